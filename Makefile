@@ -1,0 +1,86 @@
+# Corota: `make demo` and `make test` set up everything they need.
+# SPDX-License-Identifier: BSD-3-Clause
+PYTHON ?= python3
+JOBS ?= 2
+RESULTS ?= results
+
+VENV := .venv
+BIN := $(VENV)/bin
+DEPS := $(VENV)/.stamp-deps
+CORE := $(VENV)/.stamp-core
+
+CORE_SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -type f 2>/dev/null)
+# One profile and one target folder for wheel, tests and clippy: dependencies build once.
+CARGO := --release --locked
+WITH_PYTHON := --features python,pyo3/extension-module
+
+export VIRTUAL_ENV := $(abspath $(VENV))
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test test-rust test-python lint clippy format bench wheel try-wheel \
+	meshes lock clean
+
+help: ## Say what the targets do
+	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
+
+$(DEPS): requirements.txt requirements-dev.txt
+	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh
+	@echo "Setting up the Python environment in $(VENV)"
+	@$(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements.txt -r requirements-dev.txt
+	@touch $@
+
+$(CORE): $(DEPS) $(CORE_SOURCES)
+	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh
+	@echo "Building the compute core (minutes the first time)"
+	@$(BIN)/maturin develop --quiet $(CARGO) --jobs $(JOBS)
+	@touch $@
+
+setup: $(CORE) ## Make the environment and build the compute core
+
+demo: $(CORE) ## Run the compliant gripper: progress, files and a picture
+	@$(BIN)/python examples/gripper/gripper.py --output $(RESULTS)/gripper
+
+test: test-rust test-python ## Set up everything and run all tests
+
+test-rust: $(CORE)
+	cargo test --quiet $(CARGO) --jobs $(JOBS)
+
+test-python: $(CORE) test-rust
+	$(BIN)/python -m pytest -n $(JOBS)
+
+lint: $(DEPS) clippy ## Check style, types and lints of both languages
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python scripts/check_tree.py
+
+clippy: $(DEPS)
+	cargo fmt --check
+	cargo clippy --quiet $(CARGO) --jobs $(JOBS) --all-targets $(WITH_PYTHON) -- -D warnings
+
+format: $(DEPS) ## Format both languages
+	$(BIN)/ruff check --fix --quiet .
+	$(BIN)/ruff format .
+	cargo fmt
+
+bench: $(CORE) ## Run the benchmarks (benchmarks/README.md)
+	$(BIN)/python -m benchmarks
+
+wheel: $(DEPS) ## Build a wheel into dist/ for every Python from 3.10
+	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh
+	$(BIN)/maturin build --quiet $(CARGO) --jobs $(JOBS) --out dist
+
+try-wheel: wheel ## Install the wheel where no toolchain is, and solve a deck
+	@PYTHON="$(PYTHON)" scripts/try_wheel.sh
+
+meshes: $(CORE) ## Mesh the examples again (needs Gmsh's Python package)
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements-mesh.txt
+	$(BIN)/python examples/gripper/mesh.py
+
+lock: ## Pin the newest versions of the Python packages again (needs uv)
+	scripts/lock.sh
+
+clean: ## Remove what was built, the environment included
+	rm -rf $(VENV) target dist $(RESULTS) src/corota/_core*.so

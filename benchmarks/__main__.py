@@ -1,0 +1,35 @@
+"""Run the benchmarks: all, or those named on the command line."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+#: What is not a benchmark by itself.
+HELPERS = {"__init__", "__main__", "common", "cantilever"}
+
+
+def names() -> list[str]:
+    """Benchmarks by module name."""
+    return sorted(path.stem for path in HERE.glob("*.py") if path.stem not in HELPERS)
+
+
+def main() -> int:
+    """Run one after the other; the number of those that failed."""
+    wanted = sys.argv[1:] or names()
+    unknown = sorted(set(wanted) - set(names()))
+    if unknown:
+        sys.stderr.write(f"no benchmark {', '.join(unknown)}; there are: {', '.join(names())}\n")
+        return 64
+    failed = 0
+    for name in wanted:
+        command = [sys.executable, "-m", f"benchmarks.{name}"]
+        failed += subprocess.run(command, cwd=HERE.parent, check=False).returncode != 0
+    return min(failed, 63)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,82 @@
+"""A whole Newton iteration against factorising and solving alone, at 250 thousand equations.
+
+Between two reports of Newton's method lie assembly, boundary conditions, factorisation, solution,
+line search and the judgement of the residual: everything that an iteration costs. Target: at most
+1.6 times factorisation and solution (``Q4I``).
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+import warnings
+
+import numpy as np
+
+import corota as ct
+from benchmarks import cantilever as p1
+from benchmarks.common import report
+from corota.mesh import Cells
+from corota.results import Iteration, Silent
+
+#: Elements through the height of the cantilever: about 4, 40 and 250 thousand equations.
+SIZES = {"4k": 14, "40k": 45, "250k": 112}
+
+
+class Watch(Silent):
+    """Wall times between the reports of one attempt [s]."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+        self._last: tuple[tuple[int, int, int], float] | None = None
+
+    def iteration(self, info: Iteration) -> None:
+        key, now = (info.step, info.increment, info.attempt), time.perf_counter()
+        if self._last is not None and self._last[0] == key:
+            self.times.append(now - self._last[1])
+        self._last = (key, now)
+
+
+def measure(size: str, element: str, threads: int) -> list[object]:
+    """One row of the table."""
+    points, cells = p1.grid(SIZES[size])
+    model = ct.Model(ct.Mesh(points, [Cells("quad4", cells, np.arange(1, len(cells) + 1))]))
+    material = ct.Elastic(E=p1.YOUNG, nu=p1.POISSON)
+    model.section("all", element=element, material=material, thickness=p1.THICKNESS)
+    model.fix(np.flatnonzero(points[:, 0] == 0.0))
+    for node, share in p1.tip_shares(points).items():
+        model.force([node], y=0.2 * p1.SHEAR * p1.THICKNESS * share)
+    watch = Watch()
+    results = ct.solve(
+        model, ct.Static(increments=2), observers=[watch], threads=threads, fields=False
+    )
+    profile, count = results.info["profile"], results.info["iterations"]
+    direct = (profile["factor"] + profile["solve"]) / count
+    whole = float(np.mean(watch.times))
+    assembly = profile["assemble"] / count
+    n = results.info["n_dofs"]
+    return [element, n, count, 1e3 * assembly, 1e3 * direct, 1e3 * whole, whole / direct]
+
+
+def main() -> int:
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--sizes", nargs="+", default=list(SIZES), choices=list(SIZES))
+    options.add_argument("--elements", nargs="+", default=["Q4I", "Q4D"])
+    options.add_argument("--threads", type=int, default=1)
+    chosen = options.parse_args()
+    warnings.filterwarnings("ignore", message="local strain")
+    rows = [
+        measure(size, element, chosen.threads)
+        for size in chosen.sizes
+        for element in chosen.elements
+    ]
+    head = ["element", "dofs", "iterations", "assembly [ms]", "factor + solve [ms]"]
+    head += ["whole iteration [ms]", "ratio"]
+    report(f"Newton iteration, {chosen.threads} thread(s)", head, rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,65 @@
+"""Stresses and frequencies of a spinning annulus.
+
+A quarter of a disc with a hole turns steadily. With radii a and b and s = rho omega^2 the hoop
+stress at the hole and the largest radial stress (at r = sqrt(a b)) of plane stress are
+
+    sigma_t(a) = s (3 + nu) / 4 (b^2 + (1 - nu) / (3 + nu) a^2),
+    sigma_r    = s (3 + nu) / 8 (b - a)^2,
+
+see S. Timoshenko and J. N. Goodier, Theory of Elasticity, section 32.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+import sys
+
+import numpy as np
+
+import corota as ct
+
+INNER, OUTER = 0.1, 0.4
+YOUNG, POISSON, DENSITY, SPEED = 210e9, 0.3, 7850.0, 600.0
+
+
+def annulus(cells: int = 12) -> ct.Model:
+    """Build the quarter with twice as many elements around as across."""
+    mesh = ct.mesh.rectangle(1.0, 1.0, nx=cells, ny=2 * cells, cell="quad8")
+    radius = INNER + (OUTER - INNER) * mesh.points[:, 0]
+    angle = 0.5 * np.pi * mesh.points[:, 1]
+    mesh.points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    model = ct.Model(mesh, name="rotor")
+    model.section("all", element="Q8", material=ct.Elastic(YOUNG, POISSON, rho=DENSITY))
+    model.fix("bottom", x=None)
+    model.fix("top", y=None)
+    model.loads.append(ct.model.BodyForce("", "centrifugal", (SPEED**2, 0.0, 0.0)))
+    return model
+
+
+def growth(cells: int = 12) -> tuple[float, float, float]:
+    """Growth of the hole's radius, as computed and by the formula [m]; first frequency [1/s]."""
+    model = annulus(cells)
+    results = ct.solve(model, [ct.Static(nlgeom=False), ct.Frequency(modes=1, nlgeom=False)])
+    hole = model.mesh.nodes_of("left")
+    frame = next(f for f in results.frames if f.increment > 0)
+    found = float(np.hypot(*frame.U[hole].T).mean())
+    return found, hoop_at_hole() * INNER / YOUNG, float(results.modes[-1].factors[0])
+
+
+def hoop_at_hole() -> float:
+    """Hoop stress at the hole by the formula [Pa]."""
+    share = (1.0 - POISSON) / (3.0 + POISSON)
+    return DENSITY * SPEED**2 * (3.0 + POISSON) / 4.0 * (OUTER**2 + share * INNER**2)
+
+
+def main() -> None:
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
+    found, exact, frequency = growth()
+    sys.stdout.write(f"growth of the hole {1e6 * found:.4f} um, formula {1e6 * exact:.4f} um\n")
+    sys.stdout.write(f"hoop stress at the hole by the formula {hoop_at_hole() / 1e6:.2f} MPa\n")
+    sys.stdout.write(f"first symmetric frequency at speed {frequency:.1f} Hz\n")
+
+
+if __name__ == "__main__":
+    main()

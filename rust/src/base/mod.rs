@@ -1,0 +1,11 @@
+//! Number types and small array algebra: everything the kernels are written in.
+// SPDX-License-Identifier: BSD-3-Clause
+
+pub mod dual;
+pub mod pack;
+pub mod real;
+pub mod small;
+
+pub use dual::Dual;
+pub use pack::{Kernel, Lanes, MAX_LANES, dispatch};
+pub use real::Real;

@@ -1,0 +1,166 @@
+//! The number type that every kernel is generic in.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A real number, or several at once (lanes), or one with its derivatives.
+///
+/// Kernels branch only through [`Real::select`], so that all lanes take the same way.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + 'static
+{
+    /// Truth value for each lane.
+    type Mask: Copy;
+    /// How many numbers travel together.
+    const LANES: usize;
+
+    fn real(v: f64) -> Self;
+    /// `self * a + b`, fused where the hardware does it.
+    fn fma(self, a: Self, b: Self) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    fn round(self) -> Self;
+    fn exp(self) -> Self;
+    fn ln(self) -> Self;
+    fn atan2(self, x: Self) -> Self;
+
+    fn lt(self, other: Self) -> Self::Mask;
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    fn any(mask: Self::Mask) -> bool;
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn none() -> Self::Mask;
+    fn mask_lane(mask: Self::Mask, lane: usize) -> bool;
+
+    /// Value of one lane.
+    fn lane(self, lane: usize) -> f64;
+    /// Values of all lanes.
+    fn lanes(&self) -> &[f64];
+    /// Build from a function of the lane.
+    fn from_lanes(f: impl FnMut(usize) -> f64) -> Self;
+    /// The first `LANES` numbers of a slice.
+    fn load(from: &[f64]) -> Self;
+    /// Write to the first `LANES` numbers of a slice.
+    fn store(self, to: &mut [f64]);
+
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::real(0.0)
+    }
+    #[inline(always)]
+    fn one() -> Self {
+        Self::real(1.0)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(self.lt(other), other, self)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(other.lt(self), other, self)
+    }
+    /// Times a plain number.
+    #[inline(always)]
+    fn scale(self, k: f64) -> Self {
+        self * Self::real(k)
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Self::one() / self
+    }
+}
+
+impl Real for f64 {
+    type Mask = bool;
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn real(v: f64) -> Self {
+        v
+    }
+    // Without the hardware instruction a fused operation is a slow library call.
+    #[inline(always)]
+    fn fma(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        f64::round_ties_even(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        f64::exp(self)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        f64::ln(self)
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn or(a: bool, b: bool) -> bool {
+        a | b
+    }
+    #[inline(always)]
+    fn and(a: bool, b: bool) -> bool {
+        a & b
+    }
+    #[inline(always)]
+    fn none() -> bool {
+        false
+    }
+    #[inline(always)]
+    fn mask_lane(mask: bool, _: usize) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn lanes(&self) -> &[f64] {
+        std::slice::from_ref(self)
+    }
+    #[inline(always)]
+    fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+        f(0)
+    }
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        from[0]
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[0] = self;
+    }
+}

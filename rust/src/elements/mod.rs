@@ -1,0 +1,16 @@
+//! Elements: one file each, facts and one function.
+// SPDX-License-Identifier: BSD-3-Clause
+
+pub mod element;
+pub mod line;
+pub mod opt;
+pub mod q4;
+pub mod q4d;
+pub mod q4i;
+pub mod q8;
+pub mod q9;
+pub mod shapes;
+pub mod t3;
+pub mod t6;
+
+pub use element::{Drilling, Element, Full, Grad, Operator, Point, Sample};

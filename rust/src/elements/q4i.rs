@@ -1,0 +1,59 @@
+//! Four-node quadrilateral with incompatible modes `1 - r^2`, `1 - s^2` whose gradients are
+//! taken with the centre Jacobian, so that any shape passes the patch test (Wilson et al.
+//! 1973; Taylor, Beresford & Wilson 1976; in a co-rotational frame: Battini 2008).
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::element::{Element, Grad, Point, Sample};
+use super::shapes;
+use crate::base::Real;
+use crate::base::small::{Nodal, inverse2};
+
+#[derive(Clone, Copy)]
+pub struct Q4i;
+
+/// Inverse Jacobian and determinant at the centre.
+#[derive(Clone, Copy)]
+pub struct Centre<T> {
+    inverse: [[T; 2]; 2],
+    det: T,
+}
+
+impl Element<4, 2, 2> for Q4i {
+    const NAME: &'static str = "Q4I";
+    const CELL: &'static str = "quad4";
+    type Op<T: Real> = Grad<T, 4>;
+    type Prepared<T: Real> = Centre<T>;
+
+    fn rule() -> Vec<[f64; 3]> {
+        shapes::gauss_square(2)
+    }
+    fn mass_rule() -> Vec<[f64; 3]> {
+        shapes::gauss_square(2)
+    }
+    fn shape(xi: [f64; 2]) -> ([f64; 4], [[f64; 2]; 4]) {
+        shapes::square_linear(xi)
+    }
+    #[inline(always)]
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, _: f64) -> Centre<T> {
+        let (_, dn) = shapes::square_linear([0.0, 0.0]);
+        let (inverse, det) = inverse2(&shapes::jacobian(x, &dn));
+        Centre { inverse, det }
+    }
+    #[inline(always)]
+    fn sample<T: Real>(
+        x: &Nodal<T, 4, 2>,
+        centre: &Centre<T>,
+        point: &Point<4>,
+    ) -> Sample<T, Grad<T, 4>, 2> {
+        let (g, weight) = shapes::gradients(x, point);
+        let [r, s] = point.xi;
+        let mut modes = shapes::push(&centre.inverse, &[[-2.0 * r, 0.0], [0.0, -2.0 * s]]);
+        let ratio = centre.det.scale(point.weight) / weight;
+        for mode in &mut modes {
+            for j in 0..2 {
+                mode[j] = mode[j] * ratio;
+            }
+        }
+        Sample { op: Grad(g), modes, weight }
+    }
+}

@@ -1,0 +1,378 @@
+//! The energy-momentum step: internal and inertia forces between two configurations that
+//! conserve linear and angular momentum exactly and, in the elastic range, energy.
+//!
+//! All maps of the co-rotational kinematics have exact discrete derivatives at the mid-point.
+//! With `R = (R0 + R1) / 2`, `eta = R X`, `x = (x0 + x1) / 2` (centroidal),
+//! `Gamma = S eta / sum(eta . x)` and `tau = Gamma . du = 2 tan(dtheta / 2)`:
+//!
+//! - local displacements: `dd = R^T (dx - tau S x)`;
+//! - local rotations: `dtheta_L = kappa (psi - tau)` with `psi = 2 tan(dphi / 2)`, the
+//!   increment that moments do work on, and kappa from the addition theorem of the tangent;
+//! - edge bulges: `dy = (1 + tau^2 / 4) w d(phi_a - phi_b) + tau S y`, `w = R s`.
+//!
+//! Each sends a rigid turn about the mid-point configuration to a rigid turn, so forces built
+//! with their transposes have no resultant and no moment, and their work is the difference of
+//! the energies when the local force is the mean one (linear laws) or a discrete gradient
+//! (Gonzalez 1996). Velocities follow the mid-point rule; those of the bulges are carried.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::corotation::Frame;
+use super::inertia::{Mass, MassKind};
+use super::integrate::{History, Section, local, stored};
+use crate::base::small::{Blocks, Nodal, blocks, nodal};
+use crate::elements::Element;
+
+/// Where the step starts and what it is.
+pub struct Step<'a, const N: usize, const M: usize> {
+    pub u0: &'a Nodal<f64, N, M>,
+    pub v0: &'a Nodal<f64, N, M>,
+    pub u1: &'a Nodal<f64, N, M>,
+    pub dt: f64,
+    pub turning: bool,
+    pub tangent: bool,
+}
+
+/// Discrete kinematics between two configurations.
+struct Between<const N: usize> {
+    /// Mean rotation matrix, entries cos and sin (shorter than 1 by the turn).
+    c: f64,
+    s: f64,
+    tau: f64,
+    gamma: [[f64; 2]; N],
+    /// `S x` of the centroidal mid-point positions.
+    sx: [[f64; 2]; N],
+    psi: [f64; N],
+}
+
+/// `atan(z) / z`.
+fn atanc(z: f64) -> f64 {
+    if z.abs() < 1e-4 { 1.0 - z * z / 3.0 + z * z * z * z / 5.0 } else { z.atan() / z }
+}
+
+/// Factor between a difference of angles and the difference of their doubled half tangents.
+fn kappa(psi: f64, tau: f64) -> f64 {
+    let d = 1.0 + 0.25 * psi * tau;
+    atanc(0.5 * (psi - tau) / d) / d
+}
+
+impl<const N: usize> Between<N> {
+    fn new<const M: usize>(
+        x: &Nodal<f64, N, 2>,
+        step: &Step<'_, N, M>,
+        f0: &Frame<f64, N, M>,
+        f1: &Frame<f64, N, M>,
+    ) -> Self {
+        let (c, s) = (0.5 * (f0.cos + f1.cos), 0.5 * (f0.sin + f1.sin));
+        let mut b = Self { c, s, tau: 0.0, gamma: [[0.0; 2]; N], sx: [[0.0; 2]; N], psi: [0.0; N] };
+        if M == 3 {
+            for n in 0..N {
+                let dphi = step.u1[n][M - 1] - step.u0[n][M - 1];
+                b.psi[n] = if step.turning { 2.0 * (0.5 * dphi).tan() } else { dphi };
+            }
+        }
+        if !step.turning {
+            return b;
+        }
+        let (mut mean_x, mut mean_u) = ([0.0; 2], [0.0; 2]);
+        for n in 0..N {
+            for i in 0..2 {
+                mean_x[i] += x[n][i] / N as f64;
+                mean_u[i] += 0.5 * (step.u0[n][i] + step.u1[n][i]) / N as f64;
+            }
+        }
+        let mut d = 0.0;
+        let mut eta = [[0.0; 2]; N];
+        for n in 0..N {
+            let r = [x[n][0] - mean_x[0], x[n][1] - mean_x[1]];
+            let mut m = r;
+            for i in 0..2 {
+                m[i] += 0.5 * (step.u0[n][i] + step.u1[n][i]) - mean_u[i];
+            }
+            eta[n] = [c * r[0] - s * r[1], s * r[0] + c * r[1]];
+            d += eta[n][0] * m[0] + eta[n][1] * m[1];
+            b.sx[n] = [-m[1], m[0]];
+        }
+        for n in 0..N {
+            b.gamma[n] = [-eta[n][1] / d, eta[n][0] / d];
+            for i in 0..2 {
+                b.tau += b.gamma[n][i] * (step.u1[n][i] - step.u0[n][i]);
+            }
+        }
+        b
+    }
+
+    fn turn(&self, v: [f64; 2]) -> [f64; 2] {
+        [self.c * v[0] - self.s * v[1], self.s * v[0] + self.c * v[1]]
+    }
+
+    /// Global force from a mean local one.
+    fn force<const M: usize>(&self, local: &Nodal<f64, N, M>) -> Nodal<f64, N, M> {
+        let mut f = *local;
+        let mut moment = 0.0;
+        for n in 0..N {
+            let v = self.turn([local[n][0], local[n][1]]);
+            f[n][0] = v[0];
+            f[n][1] = v[1];
+            moment += self.sx[n][0] * v[0] + self.sx[n][1] * v[1];
+            if M == 3 {
+                f[n][M - 1] = kappa(self.psi[n], self.tau) * local[n][M - 1];
+                moment += f[n][M - 1];
+            }
+        }
+        for n in 0..N {
+            for i in 0..2 {
+                f[n][i] -= self.gamma[n][i] * moment;
+            }
+        }
+        f
+    }
+}
+
+/// Answer for one element.
+pub struct Answer<const N: usize, const M: usize> {
+    /// Internal force, conjugate to displacements and `psi`.
+    pub internal: Nodal<f64, N, M>,
+    pub inertia: Nodal<f64, N, M>,
+    /// Symmetric approximation of the derivative of both, blocks `a <= b`.
+    pub tangent: Blocks<f64, N, M>,
+    pub failed: bool,
+}
+
+/// Internal and inertia force of an element between `u0` and `u1`. `rates` holds the carried
+/// velocities of the bulges at the start; those at the end are written to `rates_end`.
+pub fn element<E, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<f64, N, 2>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    mass: (&Mass<f64, N>, MassKind),
+    step: &Step<'_, N, M>,
+    rates: &[[f64; 2]; N],
+    rates_end: &mut [[f64; 2]; N],
+) -> Answer<N, M>
+where
+    E: Element<N, M, A>,
+{
+    let f0 = Frame::new(x, step.u0, step.turning);
+    let f1 = Frame::new(x, step.u1, step.turning);
+    let begin = local::<E, f64, N, M, A>(x, &f0.q, section, history, false);
+    let hyperelastic =
+        section.law.n_state() == 0 && !(section.law.is_linear() && section.strain.is_linear());
+    let v0 = if hyperelastic { stored::<E, N, M, A>(x, &f0.q, section, history) } else { 0.0 };
+    let mut end = local::<E, f64, N, M, A>(x, &f1.q, section, history, step.tangent);
+    let v1 = if hyperelastic { stored::<E, N, M, A>(x, &f1.q, section, history) } else { 0.0 };
+    let mut mean = nodal::<f64, N, M>();
+    for n in 0..N {
+        for i in 0..M {
+            mean[n][i] = 0.5 * (begin.force[n][i] + end.force[n][i]);
+        }
+    }
+    if hyperelastic {
+        discrete_gradient(x, &f0.q, &f1.q, v0, v1, &mut mean);
+    }
+    let between = Between::new(x, step, &f0, &f1);
+    let internal = between.force(&mean);
+    let mut tangent = blocks::<f64, N, M>();
+    if step.tangent {
+        let mut middle = *step.u0;
+        for n in 0..N {
+            for i in 0..M {
+                middle[n][i] = 0.5 * (step.u0[n][i] + step.u1[n][i]);
+            }
+        }
+        let frame = Frame::new(x, &middle, step.turning);
+        if step.turning {
+            frame.stiffness(&mean, &mut end.stiffness);
+        }
+        tangent = end.stiffness;
+        for v in tangent.as_flattened_mut().as_flattened_mut().as_flattened_mut() {
+            *v *= 0.5;
+        }
+    }
+    let inertia = if mass.1 == MassKind::Consistent && M == 3 && !E::LINE {
+        coupled(mass.0, step, &between, [&f0, &f1], (rates, rates_end), &mut tangent)
+    } else {
+        plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent)
+    };
+    Answer { internal, inertia, tangent, failed: begin.failed | end.failed }
+}
+
+/// Add to the mean force what makes its work the difference of the energies.
+fn discrete_gradient<const N: usize, const M: usize>(
+    x: &Nodal<f64, N, 2>,
+    q0: &Nodal<f64, N, M>,
+    q1: &Nodal<f64, N, M>,
+    v0: f64,
+    v1: f64,
+    mean: &mut Nodal<f64, N, M>,
+) {
+    // Rotations count by the size of the element.
+    let size2 = (0..N)
+        .map(|n| (x[n][0] - x[0][0]).powi(2) + (x[n][1] - x[0][1]).powi(2))
+        .fold(0.0, f64::max);
+    let weight = |i: usize| if i == 2 { size2 } else { 1.0 };
+    let (mut work, mut norm, mut size) = (0.0, 0.0, v0.abs() + v1.abs());
+    for n in 0..N {
+        for i in 0..M {
+            let d = q1[n][i] - q0[n][i];
+            work += mean[n][i] * d;
+            size += (mean[n][i] * d).abs();
+            norm += weight(i) * d * d;
+        }
+    }
+    let defect = v1 - v0 - work;
+    if defect.abs() <= 1e-14 * size || norm == 0.0 {
+        return;
+    }
+    for n in 0..N {
+        for i in 0..M {
+            mean[n][i] += defect / norm * weight(i) * (q1[n][i] - q0[n][i]);
+        }
+    }
+}
+
+/// Inertia force of a constant mass.
+fn plain<const N: usize, const M: usize>(
+    mass: &Mass<f64, N>,
+    lumped: bool,
+    step: &Step<'_, N, M>,
+    between: &Between<N>,
+    tangent: &mut Blocks<f64, N, M>,
+) -> Nodal<f64, N, M> {
+    let matrix = mass.matrix::<M>(lumped);
+    let mut a = nodal::<f64, N, M>();
+    for n in 0..N {
+        for i in 0..M {
+            let d = if i == 2 { between.psi[n] } else { step.u1[n][i] - step.u0[n][i] };
+            a[n][i] = 2.0 / step.dt * (d / step.dt - step.v0[n][i]);
+        }
+    }
+    if step.tangent {
+        for p in 0..N {
+            for q in p..N {
+                for i in 0..M {
+                    tangent[p][q][i][i] += 2.0 / (step.dt * step.dt) * matrix[p][q][i][i];
+                }
+            }
+        }
+    }
+    crate::base::small::symmetric_times(&matrix, &a)
+}
+
+/// Inertia force of the consistent mass of a drilling element.
+fn coupled<const N: usize, const M: usize>(
+    mass: &Mass<f64, N>,
+    step: &Step<'_, N, M>,
+    between: &Between<N>,
+    frames: [&Frame<f64, N, M>; 2],
+    (rates, rates_end): (&[[f64; 2]; N], &mut [[f64; 2]; N]),
+    tangent: &mut Blocks<f64, N, M>,
+) -> Nodal<f64, N, M> {
+    let dt = step.dt;
+    let z = [[0.0; 2]; N];
+    // Bulges at both ends; S of their mean; column for a difference of rotations.
+    let (mut dy, mut s_mean, mut column) = (z, z, z);
+    for k in 0..N {
+        let k1 = (k + 1) % N;
+        let mut y = [[0.0; 2]; 2];
+        for (end, (frame, u)) in [(frames[0], step.u0), (frames[1], step.u1)].iter().enumerate() {
+            let p = u[k][M - 1] - u[k1][M - 1];
+            let w = frame.to_global(mass.s[k]);
+            y[end] = [p * w[0], p * w[1]];
+        }
+        let w = between.turn(mass.s[k]);
+        let factor = (1.0 + 0.25 * between.tau * between.tau)
+            * if step.turning { kappa(between.psi[k], between.psi[k1]) } else { 1.0 };
+        for i in 0..2 {
+            dy[k][i] = y[1][i] - y[0][i];
+            rates_end[k][i] = 2.0 * dy[k][i] / dt - rates[k][i];
+            column[k][i] = factor * w[i];
+        }
+        s_mean[k] = [-0.5 * (y[0][1] + y[1][1]), 0.5 * (y[0][0] + y[1][0])];
+    }
+    let mut f = nodal::<f64, N, M>();
+    let mut on_edge = z;
+    for a in 0..N {
+        for b in 0..N {
+            for i in 0..2 {
+                let acc = |d: f64, v: f64| 2.0 / dt * (d / dt - v);
+                let node = acc(step.u1[b][i] - step.u0[b][i], step.v0[b][i]);
+                let edge = acc(dy[b][i], rates[b][i]);
+                f[a][i] += mass.nn[a][b] * node + mass.ne[a][b] * edge;
+                on_edge[a][i] += mass.ne[b][a] * node + mass.ee[a][b] * edge;
+            }
+        }
+    }
+    let mut couple = 0.0;
+    for k in 0..N {
+        let k1 = (k + 1) % N;
+        couple += s_mean[k][0] * on_edge[k][0] + s_mean[k][1] * on_edge[k][1];
+        let moment = column[k][0] * on_edge[k][0] + column[k][1] * on_edge[k][1];
+        f[k][M - 1] += moment;
+        f[k1][M - 1] -= moment;
+    }
+    for n in 0..N {
+        for i in 0..2 {
+            f[n][i] += between.gamma[n][i] * couple;
+        }
+    }
+    if step.tangent {
+        coupled_tangent(mass, 2.0 / (dt * dt), between, &s_mean, &column, tangent);
+    }
+    f
+}
+
+/// `scale J^T mass J` with the discrete Jacobian J of (x, y).
+fn coupled_tangent<const N: usize, const M: usize>(
+    mass: &Mass<f64, N>,
+    scale: f64,
+    between: &Between<N>,
+    s_mean: &[[f64; 2]; N],
+    column: &[[f64; 2]; N],
+    tangent: &mut Blocks<f64, N, M>,
+) {
+    // Bulges that each dof moves.
+    let bulges = |q: usize, j: usize| {
+        let mut y = [[0.0; 2]; N];
+        if j < 2 {
+            for k in 0..N {
+                for i in 0..2 {
+                    y[k][i] = s_mean[k][i] * between.gamma[q][j];
+                }
+            }
+        } else {
+            y[q] = column[q];
+            let before = (q + N - 1) % N;
+            y[before] = [-column[before][0], -column[before][1]];
+        }
+        y
+    };
+    for q in 0..N {
+        for j in 0..M {
+            let y = bulges(q, j);
+            let mut on_node = [[0.0; 2]; N];
+            let mut on_edge = [[0.0; 2]; N];
+            for a in 0..N {
+                for i in 0..2 {
+                    if i == j {
+                        on_node[a][i] += mass.nn[a][q];
+                        on_edge[a][i] += mass.ne[q][a];
+                    }
+                    for b in 0..N {
+                        on_node[a][i] += mass.ne[a][b] * y[b][i];
+                        on_edge[a][i] += mass.ee[a][b] * y[b][i];
+                    }
+                }
+            }
+            for p in 0..=q {
+                for i in 0..M {
+                    let own = bulges(p, i);
+                    let mut v = if i < 2 { on_node[p][i] } else { 0.0 };
+                    for k in 0..N {
+                        v += own[k][0] * on_edge[k][0] + own[k][1] * on_edge[k][1];
+                    }
+                    tangent[p][q][i][j] += scale * v;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,524 @@
+//! Integration of the local element law over its points, with the internal modes condensed:
+//! written once for every element, material and local strain.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::dilatation::Dilatation;
+use super::local_strain::LocalStrain;
+use crate::base::Real;
+use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_forward, ldlt_solve, nodal};
+use crate::elements::{Element, Operator, Point, Sample};
+use crate::materials::{Law, Plane, PointState};
+
+/// Least stiffness of an internal mode, relative to the elastic one in shear. Where all points
+/// of an element flow alike without hardening, a mode may have none at all; then its coupling
+/// with the nodes vanishes too, and the lifted pivot only keeps it where it is.
+const LEAST_PIVOT: f64 = 1e-6;
+/// Longest first step of an internal mode, relative to the largest local dof.
+const MODE_STEP: f64 = 2.0;
+/// Share of its slope at the start beyond which a step has run past the minimum.
+const OVERSHOT: f64 = 0.5;
+/// Most internal components of an element (two for each mode).
+const INTERNAL: usize = 4;
+/// Local iterations before the increment is given up.
+const MAX_LOCAL: usize = 50;
+/// Local step, relative to the largest local dof, below which one linear correction is exact
+/// to round-off (its error is the square of this).
+const LOCAL_STEP: f64 = 1e-8;
+
+/// What all elements of a block share.
+#[derive(Clone, Debug)]
+pub struct Section<const N: usize> {
+    pub points: Vec<Point<N>>,
+    pub law: Law,
+    pub plane: Plane,
+    pub strain: LocalStrain,
+    /// Thickness; of line elements the area of the cross-section.
+    pub thickness: f64,
+    /// Numbers of line elements, see each.
+    pub profile: [f64; 3],
+    /// [`Element::parameter`] of the law's moduli.
+    pub parameter: f64,
+    /// Whether the trace of the gradient is its mean over the element.
+    pub mean_dilatation: bool,
+    /// Whether displacements are finite, so that a cell may turn inside out; infinitesimal
+    /// ones have no size of their own.
+    pub finite: bool,
+}
+
+impl<const N: usize> Section<N> {
+    /// The same section for a geometrically linear analysis.
+    pub fn linearised(&self) -> Self {
+        Self { strain: LocalStrain::Simplified, finite: false, ..self.clone() }
+    }
+}
+
+/// History of a batch of elements: state members by point, internal modes; `stride` apart.
+pub struct History<'a> {
+    pub old: &'a [f64],
+    pub new: &'a mut [f64],
+    pub alpha: &'a mut [f64],
+    /// Initial strain: by point rows xx, yy, xy and what the driver adds through the
+    /// thickness; empty where there is none.
+    pub initial: &'a [f64],
+    pub stride: usize,
+}
+
+impl History<'_> {
+    /// Initial strain of a point, zero where there is none.
+    #[inline(always)]
+    pub fn initial_strain<T: Real>(&self, p: usize, row: usize) -> T {
+        if self.initial.is_empty() {
+            return T::zero();
+        }
+        T::load(&self.initial[(4 * p + row) * self.stride..])
+    }
+    /// Strain that the law sees.
+    #[inline(always)]
+    fn elastic<T: Real>(&self, p: usize, mut strain: [T; 3]) -> [T; 3] {
+        if !self.initial.is_empty() {
+            for (row, e) in strain.iter_mut().enumerate() {
+                *e -= self.initial_strain(p, row);
+            }
+        }
+        strain
+    }
+    #[inline(always)]
+    fn point(&mut self, p: usize, members: usize) -> PointState<'_> {
+        // An empty history may not be sliced past its end.
+        let start = if members == 0 { 0 } else { p * members * self.stride };
+        PointState { old: &self.old[start..], new: &mut self.new[start..], stride: self.stride }
+    }
+}
+
+/// Local force and stiffness (blocks `a <= b`), and the lanes that failed.
+pub struct Local<T: Real, const N: usize, const M: usize> {
+    pub force: Nodal<T, N, M>,
+    pub stiffness: Blocks<T, N, M>,
+    pub failed: T::Mask,
+}
+
+impl<T: Real, const N: usize, const M: usize> Local<T, N, M> {
+    /// Zero, to be filled by [`local_into`].
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { force: nodal(), stiffness: blocks(), failed: T::none() }
+    }
+}
+
+/// Gradient at a point: nodal part plus internal modes.
+#[inline(always)]
+pub fn gradient<T: Real, Op, const N: usize, const M: usize, const A: usize>(
+    s: &Sample<T, Op, A>,
+    q: &Nodal<T, N, M>,
+    alpha: &Nodal<T, A, 2>,
+) -> [T; 4]
+where
+    Op: Operator<T, N, M>,
+{
+    let mut h = s.op.gradient(q);
+    for m in 0..A {
+        for i in 0..2 {
+            for j in 0..2 {
+                h[2 * i + j] = s.modes[m][j].fma(alpha[m][i], h[2 * i + j]);
+            }
+        }
+    }
+    h
+}
+
+/// Drilling row of an internal mode: its skew gradient.
+#[inline(always)]
+fn mode_drill<T: Real>(mode: &[T; 2], i: usize) -> T {
+    if i == 0 { mode[1].scale(-0.5) } else { mode[0].scale(0.5) }
+}
+
+/// Sums over the points for the internal modes; of the symmetric matrix the lower triangle.
+struct Internal<T: Real, const N: usize, const M: usize> {
+    force: [T; INTERNAL],
+    stiffness: Mat<T, INTERNAL>,
+    /// Least pivots: see [`LEAST_PIVOT`].
+    least: [T; INTERNAL],
+    coupling: [Nodal<T, N, M>; INTERNAL],
+    failed: T::Mask,
+}
+
+/// One pass over the points. Adds to `out`, if given, nodal force and, with `tangent`, nodal
+/// stiffness; without it the coupling stays zero.
+#[inline(always)]
+fn pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    alpha: &Nodal<T, A, 2>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    mut out: Option<&mut Local<T, N, M>>,
+    tangent: bool,
+) -> Internal<T, N, M>
+where
+    E: Element<N, M, A>,
+{
+    let o = T::zero();
+    let mut sums = Internal {
+        force: [o; INTERNAL],
+        stiffness: [[o; INTERNAL]; INTERNAL],
+        least: [o; INTERNAL],
+        coupling: [nodal(); INTERNAL],
+        failed: T::none(),
+    };
+    let members = section.law.n_state();
+    let stiff = if A > 0 { LEAST_PIVOT * section.law.moduli()[2][2] } else { 0.0 };
+    let prepared = E::prepare(x, section.parameter);
+    let mut bar = section
+        .mean_dilatation
+        .then(|| Dilatation::<T, N, M>::new::<E, A>(x, q, &prepared, section));
+    // Coupling of the internal modes with the mean trace.
+    let mut trace = [o; INTERNAL];
+    for (p, point) in section.points.iter().enumerate() {
+        let s = E::sample(x, &prepared, point);
+        let w = s.weight.scale(section.thickness);
+        let mut h = gradient(&s, q, alpha);
+        if let Some(bar) = &bar {
+            bar.apply(&mut h);
+        }
+        let strain = history.elastic(p, section.strain.strain(&h));
+        let answer = section.law.update(strain, &mut history.point(p, members));
+        // A local gradient that turns the material inside out.
+        let det = (h[0] + T::one()) * (h[3] + T::one()) - h[1] * h[2];
+        sums.failed = T::or(sums.failed, answer.failed);
+        if section.finite {
+            sums.failed = T::or(sums.failed, det.lt(o));
+        }
+        let mut stress = section.strain.pull(&h, &answer.stress);
+        for v in &mut stress {
+            *v = *v * w;
+        }
+        if let Some(bar) = &mut bar {
+            bar.split_stress(&mut stress);
+        }
+        let gamma = if E::Op::<T>::DRILL { w.scale(section.parameter) } else { o };
+        let mut drill = o;
+        if E::Op::<T>::DRILL {
+            drill = s.op.drill(q);
+            for m in 0..A {
+                for i in 0..2 {
+                    drill = mode_drill(&s.modes[m], i).fma(alpha[m][i], drill);
+                }
+            }
+            drill = drill * gamma;
+        }
+        if let Some(out) = out.as_deref_mut() {
+            s.op.add_force(&stress, drill, &mut out.force);
+        }
+        if A == 0 && !tangent {
+            continue;
+        }
+        let mut a = section.strain.tangent(&h, &answer.stress, &answer.tangent);
+        for row in &mut a {
+            for v in row {
+                *v = *v * w;
+            }
+        }
+        let mut mixed = [o; 4];
+        if let Some(bar) = &mut bar {
+            let square;
+            (mixed, square) = Dilatation::<T, N, M>::split_tangent(&mut a);
+            if tangent && out.is_some() {
+                bar.add(&s.op, &mixed, square);
+            }
+        }
+        if tangent && let Some(out) = out.as_deref_mut() {
+            s.op.add_stiffness(&a, gamma, &mut out.stiffness);
+        }
+        for m in 0..A {
+            let square = s.modes[m][0].fma(s.modes[m][0], s.modes[m][1] * s.modes[m][1]);
+            let least = square * w.scale(stiff);
+            for i in 0..2 {
+                let r = 2 * m + i;
+                let mode = &s.modes[m];
+                sums.least[r] += least;
+                for j in 0..2 {
+                    sums.force[r] = mode[j].fma(stress[2 * i + j], sums.force[r]);
+                }
+                if section.mean_dilatation {
+                    trace[r] = mode[0].fma(mixed[2 * i], trace[r]);
+                    trace[r] = mode[1].fma(mixed[2 * i + 1], trace[r]);
+                }
+                // Row of A H for this mode.
+                let mut t = [o; 4];
+                for c in 0..4 {
+                    t[c] = mode[0].fma(a[2 * i][c], mode[1] * a[2 * i + 1][c]);
+                }
+                let skew = mode_drill(mode, i) * gamma;
+                if E::Op::<T>::DRILL {
+                    sums.force[r] = mode_drill(mode, i).fma(drill, sums.force[r]);
+                }
+                for n in 0..=m {
+                    for j in 0..2 {
+                        let k = &mut sums.stiffness[r][2 * n + j];
+                        let other = &s.modes[n];
+                        *k = other[0].fma(t[2 * j], *k);
+                        *k = other[1].fma(t[2 * j + 1], *k);
+                        if E::Op::<T>::DRILL {
+                            *k = skew.fma(mode_drill(other, j), *k);
+                        }
+                    }
+                }
+                if out.is_some() {
+                    s.op.add_force(&t, skew, &mut sums.coupling[r]);
+                }
+            }
+        }
+    }
+    if let Some(bar) = &bar
+        && let Some(out) = out
+    {
+        bar.finish_force(&mut out.force);
+        if tangent {
+            bar.finish_stiffness(&mut out.stiffness);
+        }
+        for r in 0..2 * A {
+            bar.add_rows(trace[r], &mut sums.coupling[r]);
+        }
+    }
+    sums
+}
+
+/// Local force and stiffness of an element (of a batch) with local dofs `q`.
+#[inline(always)]
+pub fn local<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    tangent: bool,
+) -> Local<T, N, M>
+where
+    E: Element<N, M, A>,
+{
+    let mut out = Local::zero();
+    E::law_into(x, q, section, history, tangent, &mut out);
+    out
+}
+
+/// [`local`] into a zero `out`: a matrix of packs is too large to be moved about.
+///
+/// Internal modes are found by a damped Newton iteration that starts from the stored ones and
+/// are stored again; laws that are linear take one pass.
+#[inline(always)]
+pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    tangent: bool,
+    out: &mut Local<T, N, M>,
+) where
+    E: Element<N, M, A>,
+{
+    if A == 0 {
+        let none = [[T::zero(); 2]; A];
+        let sums = pass::<E, T, N, M, A>(x, q, &none, section, history, Some(&mut *out), tangent);
+        out.failed = sums.failed;
+        return;
+    }
+    let linear = section.law.is_linear() && section.strain.is_linear();
+    let mut alpha = [[T::zero(); 2]; A];
+    let mut failed = T::none();
+    if !linear {
+        for m in 0..A {
+            for i in 0..2 {
+                alpha[m][i] = T::load(&history.alpha[(2 * m + i) * history.stride..]);
+            }
+        }
+        failed = relax::<E, T, N, M, A>(x, q, section, history, &mut alpha);
+    }
+    let sums = pass::<E, T, N, M, A>(x, q, &alpha, section, history, Some(&mut *out), tangent);
+    // What is left of the internal force is removed by its linear part.
+    let mut factor = sums.stiffness;
+    ldlt(&mut factor, 2 * A, &sums.least);
+    let mut step = sums.force;
+    ldlt_solve(&factor, 2 * A, &mut step);
+    for r in 0..2 * A {
+        alpha[r / 2][r % 2] -= step[r];
+        for a in 0..N {
+            for i in 0..M {
+                out.force[a][i] = (-sums.coupling[r][a][i]).fma(step[r], out.force[a][i]);
+            }
+        }
+    }
+    for m in 0..A {
+        for i in 0..2 {
+            alpha[m][i].store(&mut history.alpha[(2 * m + i) * history.stride..]);
+        }
+    }
+    if tangent {
+        condense::<T, N, M, A>(&factor, &sums.coupling, &mut out.stiffness);
+    }
+    out.failed = T::or(failed, sums.failed);
+}
+
+/// `K -= (L^-1 C)^T D^-1 (L^-1 C)`, blocks `a <= b`.
+#[inline(always)]
+fn condense<T: Real, const N: usize, const M: usize, const A: usize>(
+    factor: &Mat<T, INTERNAL>,
+    coupling: &[Nodal<T, N, M>; INTERNAL],
+    k: &mut Blocks<T, N, M>,
+) {
+    let mut reduced = [[[T::zero(); INTERNAL]; M]; N];
+    for b in 0..N {
+        for j in 0..M {
+            let c = &mut reduced[b][j];
+            for r in 0..2 * A {
+                c[r] = coupling[r][b][j];
+            }
+            ldlt_forward(factor, 2 * A, c);
+            let mut d = *c;
+            for r in 0..2 * A {
+                d[r] = d[r] * -factor[r][r];
+            }
+            for a in 0..=b {
+                for i in 0..M {
+                    if a == b && i > j {
+                        // Below the diagonal; copied from above it afterwards.
+                        continue;
+                    }
+                    let mut v = k[a][b][i][j];
+                    for r in 0..2 * A {
+                        v = reduced[a][i][r].fma(d[r], v);
+                    }
+                    k[a][b][i][j] = v;
+                }
+            }
+        }
+        for i in 0..M {
+            for j in 0..i {
+                k[b][b][i][j] = k[b][b][j][i];
+            }
+        }
+    }
+}
+
+/// Newton iteration for the internal modes at fixed nodal dofs. A plastic element may have
+/// next to no stiffness left in them, so steps are bounded by the size of the nodal dofs, and
+/// one that runs past the minimum along it is shortened to where the slope vanishes. Returns
+/// the lanes that did not settle.
+#[inline(always)]
+fn relax<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    alpha: &mut Nodal<T, A, 2>,
+) -> T::Mask
+where
+    E: Element<N, M, A>,
+{
+    let mut size = T::zero();
+    for a in 0..N {
+        for i in 0..2 {
+            size = size.max(q[a][i].abs());
+        }
+    }
+    let tolerance = size.scale(LOCAL_STEP).max(T::real(f64::MIN_POSITIVE));
+    let mut radius = size.scale(MODE_STEP);
+    let mut base = *alpha;
+    let mut direction = [T::zero(); INTERNAL];
+    let mut length = T::one();
+    let mut reach = T::zero();
+    // Work of the internal force along the step at its start.
+    let mut start = T::real(-f64::MAX);
+    let mut settled = T::none();
+    for _ in 0..MAX_LOCAL {
+        let sums = pass::<E, T, N, M, A>(x, q, alpha, section, history, None, false);
+        let mut factor = sums.stiffness;
+        ldlt(&mut factor, 2 * A, &sums.least);
+        let mut step = sums.force;
+        ldlt_solve(&factor, 2 * A, &mut step);
+        let (mut along, mut work) = (T::zero(), T::zero());
+        let mut largest = T::zero();
+        for r in 0..2 * A {
+            along = sums.force[r].fma(direction[r], along);
+            work = sums.force[r].fma(step[r], work);
+            largest = largest.max(step[r].abs());
+        }
+        let better = along.lt(start.scale(-OVERSHOT));
+        let small = T::and(better, largest.lt(tolerance));
+        let held = settled;
+        settled = T::or(settled, small);
+        let share = T::select(radius.lt(largest), radius / largest, T::one());
+        let shorter = start / (start - along);
+        let shorter = T::select(shorter.lt(T::real(0.7)), shorter, T::real(0.7));
+        let shorter = shorter.max(T::real(0.1));
+        // What was too far once bounds the next steps as well: a mode without stiffness may
+        // have to stop at the kink where a point begins to unload.
+        length = T::select(better, T::one(), length * shorter);
+        reach = T::select(better, largest.min(radius), reach);
+        radius = T::select(better, radius.scale(2.0), length * reach);
+        start = T::select(better, -(work * share), start);
+        for r in 0..2 * A {
+            step[r] = step[r] * share;
+        }
+        for r in 0..2 * A {
+            let at = &mut alpha[r / 2][r % 2];
+            let origin = &mut base[r / 2][r % 2];
+            *origin = T::select(better, *at, *origin);
+            direction[r] = T::select(better, -step[r], direction[r]);
+            // The small step is still taken, so that the tangent too is exact; lanes that had
+            // settled before stay where they are.
+            *at = T::select(held, *at, length.fma(direction[r], *origin));
+        }
+        let done = T::select(settled, T::one(), T::zero());
+        if !T::any(done.lt(T::real(0.5))) {
+            return T::none();
+        }
+    }
+    let open = T::select(settled, T::zero(), T::one());
+    T::real(0.5).lt(open)
+}
+
+/// Recoverable energy of an element with local dofs `q` and the stored internal modes.
+pub fn stored<E, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<f64, N, 2>,
+    q: &Nodal<f64, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+) -> f64
+where
+    E: Element<N, M, A>,
+{
+    let mut alpha = [[0.0; 2]; A];
+    for m in 0..A {
+        for i in 0..2 {
+            alpha[m][i] = history.alpha[(2 * m + i) * history.stride];
+        }
+    }
+    let members = section.law.n_state();
+    let prepared = E::prepare(x, section.parameter);
+    let bar = section
+        .mean_dilatation
+        .then(|| Dilatation::<f64, N, M>::new::<E, A>(x, q, &prepared, section));
+    let mut energy = 0.0;
+    for (p, point) in section.points.iter().enumerate() {
+        let s = E::sample(x, &prepared, point);
+        let w = s.weight * section.thickness;
+        let mut h = gradient(&s, q, &alpha);
+        if let Some(bar) = &bar {
+            bar.apply(&mut h);
+        }
+        let strain = history.elastic(p, section.strain.strain(&h));
+        let mut state = history.point(p, members);
+        let stress = section.law.update(strain, &mut state).stress;
+        let values: Vec<f64> = (0..members).map(|m| state.new[m * state.stride]).collect();
+        energy += w * section.law.energy(strain, stress, &values);
+        if E::Op::<f64>::DRILL {
+            let mut drill = s.op.drill(q);
+            for m in 0..A {
+                for i in 0..2 {
+                    drill += mode_drill(&s.modes[m], i) * alpha[m][i];
+                }
+            }
+            energy += 0.5 * w * section.parameter * drill * drill;
+        }
+    }
+    energy
+}

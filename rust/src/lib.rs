@@ -1,0 +1,16 @@
+//! Compute core of Corota: co-rotational planar finite elements.
+//!
+//! Modules go one way: base, elements and materials, kinematics, loads,
+//! model, contact; `linear` stands beside them and `python` on top.
+// SPDX-License-Identifier: BSD-3-Clause
+
+pub mod base;
+pub mod elements;
+pub mod io;
+pub mod kinematics;
+pub mod linear;
+pub mod loads;
+pub mod materials;
+pub mod model;
+#[cfg(feature = "python")]
+mod python;

@@ -1,0 +1,56 @@
+//! Isotropic linear elasticity. Parameters: E, nu.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::material::{Material, Plane, PointState, Response, broadcast, hooke};
+use crate::base::Real;
+use crate::base::small::Mat;
+
+#[derive(Clone, Debug)]
+pub struct Elastic {
+    moduli: Mat<f64, 3>,
+    plane: Plane,
+    nu: f64,
+}
+
+impl Material for Elastic {
+    const NAME: &'static str = "elastic";
+
+    fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
+        let &[e, nu] = parameters else {
+            return Err(format!("elastic takes E and nu, not {} numbers", parameters.len()));
+        };
+        if !(e > 0.0 && e.is_finite() && nu > -1.0 && nu < 0.5) {
+            return Err(format!("elastic needs E > 0 and -1 < nu < 0.5, not {e} and {nu}"));
+        }
+        let g = e / (2.0 * (1.0 + nu));
+        let (c, d) = match plane {
+            Plane::Stress => (e / (1.0 - nu * nu), nu),
+            Plane::Strain => (e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)), nu / (1.0 - nu)),
+        };
+        let moduli = [[c, c * d, 0.0], [c * d, c, 0.0], [0.0, 0.0, g]];
+        Ok(Self { moduli, plane, nu })
+    }
+    fn is_linear(&self) -> bool {
+        true
+    }
+    fn moduli(&self) -> Mat<f64, 3> {
+        self.moduli
+    }
+    #[inline(always)]
+    fn update<T: Real>(&self, strain: [T; 3], _: &mut PointState<'_>) -> Response<T> {
+        Response {
+            stress: hooke(&self.moduli, strain),
+            tangent: broadcast(&self.moduli),
+            failed: T::none(),
+        }
+    }
+    fn out_of_plane(&self, strain: [f64; 3], stress: [f64; 3], _: &[f64]) -> (f64, f64) {
+        match self.plane {
+            Plane::Stress => (-self.nu / (1.0 - self.nu) * (strain[0] + strain[1]), 0.0),
+            Plane::Strain => (0.0, self.nu * (stress[0] + stress[1])),
+        }
+    }
+    fn energy(&self, e: [f64; 3], s: [f64; 3], _: &[f64]) -> f64 {
+        0.5 * (e[0] * s[0] + e[1] * s[1] + e[2] * s[2])
+    }
+}

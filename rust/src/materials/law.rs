@@ -1,0 +1,64 @@
+//! The one list of materials. A block holds one [`Law`]; the branch is uniform over the block.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::material::{Material, Plane, PointState, Response, TensorOutput};
+use super::{elastic::Elastic, given::Given, mises::Mises, orthotropic::Orthotropic};
+use crate::base::Real;
+use crate::base::small::Mat;
+
+macro_rules! laws {
+    ($($name:ident),+ $(,)?) => {
+        /// Any registered material.
+        #[derive(Clone, Debug)]
+        pub enum Law { $($name($name)),+ }
+
+        impl Law {
+            /// Names of all materials.
+            pub const NAMES: &'static [&'static str] = &[$($name::NAME),+];
+
+            /// Build the material of that name.
+            pub fn new(name: &str, parameters: &[f64], plane: Plane) -> Result<Self, String> {
+                $(if name == $name::NAME {
+                    return $name::new(parameters, plane).map(Law::$name);
+                })+
+                Err(format!("no material named {name:?}; there are {:?}", Self::NAMES))
+            }
+            pub fn n_state(&self) -> usize {
+                match self { $(Law::$name(m) => m.n_state()),+ }
+            }
+            pub fn is_linear(&self) -> bool {
+                match self { $(Law::$name(m) => m.is_linear()),+ }
+            }
+            pub fn moduli(&self) -> Mat<f64, 3> {
+                match self { $(Law::$name(m) => m.moduli()),+ }
+            }
+            #[inline(always)]
+            pub fn update<T: Real>(&self, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
+                match self { $(Law::$name(m) => m.update(e, state)),+ }
+            }
+            pub fn out_of_plane(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
+                match self { $(Law::$name(m) => m.out_of_plane(e, s, state)),+ }
+            }
+            pub fn energy(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> f64 {
+                match self { $(Law::$name(m) => m.energy(e, s, state)),+ }
+            }
+            pub fn outputs(&self) -> &'static [&'static str] {
+                match self { $(Law::$name(m) => m.outputs()),+ }
+            }
+            pub fn output(&self, i: usize, s: [f64; 3], state: &[f64]) -> f64 {
+                match self { $(Law::$name(m) => m.output(i, s, state)),+ }
+            }
+            pub fn tensors(&self) -> &'static [TensorOutput] {
+                match self { $(Law::$name(m) => m.tensors()),+ }
+            }
+            pub fn tensor(&self, i: usize, state: &[f64]) -> [f64; 4] {
+                match self { $(Law::$name(m) => m.tensor(i, state)),+ }
+            }
+            pub fn plastic_member(&self) -> Option<usize> {
+                match self { $(Law::$name(m) => m.plastic_member()),+ }
+            }
+        }
+    };
+}
+
+laws![Elastic, Orthotropic, Mises, Given];

@@ -1,0 +1,116 @@
+//! What a material is: a pure function of the strain and the committed state.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use crate::base::Real;
+use crate::base::small::Mat;
+
+/// Kinematic assumption through the thickness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    Stress,
+    Strain,
+}
+
+/// History of one point (of one batch of lanes): the committed values are read, the new ones
+/// written. Members lie `stride` apart.
+pub struct PointState<'a> {
+    pub old: &'a [f64],
+    pub new: &'a mut [f64],
+    pub stride: usize,
+}
+
+impl PointState<'_> {
+    #[inline(always)]
+    pub fn get<T: Real>(&self, member: usize) -> T {
+        T::load(&self.old[member * self.stride..])
+    }
+    #[inline(always)]
+    pub fn set<T: Real>(&mut self, member: usize, value: T) {
+        value.store(&mut self.new[member * self.stride..]);
+    }
+}
+
+/// Answer of a material at a point; rows xx, yy, xy, shear strain engineering.
+#[derive(Clone, Copy)]
+pub struct Response<T: Real> {
+    pub stress: [T; 3],
+    /// Algorithmic tangent, symmetric.
+    pub tangent: Mat<T, 3>,
+    /// Lanes in which the update did not converge.
+    pub failed: T::Mask,
+}
+
+/// A symmetric tensor of the state, for output.
+#[derive(Clone, Copy, Debug)]
+pub struct TensorOutput {
+    pub name: &'static str,
+    /// Whether its shear is engineering shear (twice the tensor's).
+    pub engineering: bool,
+}
+
+/// A material law in the plane.
+pub trait Material: Sized {
+    const NAME: &'static str;
+
+    /// Build from numbers in the order that the law's file documents.
+    fn new(parameters: &[f64], plane: Plane) -> Result<Self, String>;
+    /// Members of the history at a point.
+    fn n_state(&self) -> usize {
+        0
+    }
+    /// Whether stress is a linear function of strain.
+    fn is_linear(&self) -> bool {
+        false
+    }
+    /// Elastic moduli in the plane.
+    fn moduli(&self) -> Mat<f64, 3>;
+    fn update<T: Real>(&self, strain: [T; 3], state: &mut PointState<'_>) -> Response<T>;
+    /// Strain and stress through the thickness (zz) of a state that [`Material::update`] wrote.
+    fn out_of_plane(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> (f64, f64);
+    /// Recoverable energy density.
+    fn energy(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> f64;
+    /// Named scalars of the state for output.
+    fn outputs(&self) -> &'static [&'static str] {
+        &[]
+    }
+    /// Value of the `i`-th output.
+    fn output(&self, _i: usize, _stress: [f64; 3], _state: &[f64]) -> f64 {
+        0.0
+    }
+    /// Tensors of the state for output.
+    fn tensors(&self) -> &'static [TensorOutput] {
+        &[]
+    }
+    /// Rows 11, 22, 33, 12 of the `i`-th tensor, in the axes of the strain.
+    fn tensor(&self, _i: usize, _state: &[f64]) -> [f64; 4] {
+        [0.0; 4]
+    }
+    /// Member of the state that is the equivalent plastic strain.
+    fn plastic_member(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// Stress of linear elasticity.
+#[inline(always)]
+pub fn hooke<T: Real>(moduli: &Mat<f64, 3>, strain: [T; 3]) -> [T; 3] {
+    let mut s = [T::zero(); 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            s[i] = strain[j].fma(T::real(moduli[i][j]), s[i]);
+        }
+    }
+    s
+}
+
+/// Plain moduli as numbers of another kind.
+#[inline(always)]
+pub fn broadcast<T: Real>(m: &Mat<f64, 3>) -> Mat<T, 3> {
+    let mut t = [[T::zero(); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            t[i][j] = T::real(m[i][j]);
+        }
+    }
+    t
+}

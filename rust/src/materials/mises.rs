@@ -1,0 +1,407 @@
+//! J2 (von Mises) plasticity with isotropic and kinematic hardening: implicit return map in
+//! plane stress (projected, Simo & Taylor 1986; de Souza Neto, Peric & Owen 2008, chapter 9)
+//! and plane strain, as one scalar equation.
+//!
+//! Parameters: E, nu, number of back-stresses n, n pairs (C, gamma), then the isotropic
+//! hardening of [`Isotropic::new`].
+//!
+//! Tensors are held by sum `11 + 22`, difference `11 - 22` and shear, in which elasticity and
+//! the yield norm are diagonal; in plane strain the sum is that of the deviator. With the step
+//! `dp` of the equivalent plastic strain as the unknown, the multiplier is
+//! `g = 3 dp / (2 sy(p + dp))`, each component of the relative stress is its trial value over
+//! `1 + g (k + 2/3 sum C)`, and `sy / q = 1` is nearly linear in `dp`.
+//!
+//! The tangent is symmetric for linear kinematic hardening. With recall (`gamma > 0`) the exact
+//! one is not; its symmetric part is returned.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::hardening::{BackStress, Isotropic};
+use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast};
+use crate::base::Real;
+use crate::base::small::Mat;
+
+/// Most back-stresses of a material.
+pub const MAX_BACK: usize = 6;
+/// Iterations of the scalar equation; bisection alone reaches round-off in this many.
+const MAX_ITERATIONS: usize = 80;
+/// Relative error of the yield condition after which one more Newton step is exact to
+/// round-off (its error is the square of this).
+const TOLERANCE: f64 = 1e-12;
+/// Members of the state: plastic strain (3), equivalent plastic strain, plastic work.
+const EQUIVALENT: usize = 3;
+const WORK: usize = 4;
+const BACK: usize = 5;
+
+#[derive(Clone, Debug)]
+pub struct Mises {
+    young: f64,
+    nu: f64,
+    plane: Plane,
+    moduli: Mat<f64, 3>,
+    isotropic: Isotropic,
+    back: Vec<BackStress>,
+    /// Stress of a unit elastic strain, without the mean stress in plane strain.
+    elastic: [f64; 3],
+    /// Stress that a unit plastic strain takes away.
+    relief: [f64; 3],
+    /// Plastic strain for a unit relative stress and multiplier.
+    flow: [f64; 3],
+    /// Squared norm of the deviator.
+    norm: [f64; 3],
+    /// Work of stress on plastic strain.
+    work: [f64; 3],
+    /// Sum of the in-plane mean stress for a unit strain sum (plane strain).
+    volume: f64,
+}
+
+/// The state at a trial step `dp`.
+struct Trial<T: Real> {
+    dp: T,
+    /// Multiplier and its derivative.
+    g: T,
+    dg: T,
+    /// Relative stress, its derivative, and the divisor of the trial value.
+    eta: [T; 3],
+    d_eta: [T; 3],
+    divisor: [T; 3],
+    /// Equivalent relative stress.
+    q: T,
+    /// `sy' - q'`, positive.
+    slope: T,
+    /// `sy / q - 1` and its derivative.
+    value: T,
+    derivative: T,
+}
+
+impl Mises {
+    #[inline(always)]
+    fn equivalent<T: Real>(&self, s: &[T; 3]) -> T {
+        let mut sum = T::zero();
+        for k in 0..3 {
+            sum = (s[k] * s[k]).fma(T::real(1.5 * self.norm[k]), sum);
+        }
+        sum.sqrt()
+    }
+
+    #[inline(always)]
+    fn trial<T: Real>(&self, y: &[T; 3], p: T, old: &[[T; 3]; MAX_BACK], dp: T) -> Trial<T> {
+        let (sy, h) = self.isotropic.at(p + dp);
+        let r = sy.recip();
+        let g = dp.scale(1.5) * r;
+        let dg = (T::real(1.5) - g * h) * r;
+        let (mut modulus, mut d_modulus) = (T::zero(), T::zero());
+        let (mut shift, mut d_shift) = ([T::zero(); 3], [T::zero(); 3]);
+        for (b, beta) in self.back.iter().zip(old) {
+            let (kept, d_kept) = b.kept(dp);
+            modulus = kept.fma(T::real(b.modulus * 2.0 / 3.0), modulus);
+            d_modulus = d_kept.fma(T::real(b.modulus * 2.0 / 3.0), d_modulus);
+            for k in 0..3 {
+                shift[k] = kept.fma(beta[k], shift[k]);
+                d_shift[k] = d_kept.fma(beta[k], d_shift[k]);
+            }
+        }
+        let (mut eta, mut d_eta) = ([T::zero(); 3], [T::zero(); 3]);
+        let mut divisor = [T::zero(); 3];
+        for k in 0..3 {
+            let stiff = T::real(self.relief[k] * self.flow[k]) + modulus;
+            divisor[k] = g.fma(stiff, T::one());
+            let inverse = divisor[k].recip();
+            eta[k] = (y[k] - shift[k]) * inverse;
+            let d = dg.fma(stiff, g * d_modulus);
+            d_eta[k] = -(eta[k].fma(d, d_shift[k])) * inverse;
+        }
+        let q = self.equivalent(&eta).max(T::real(f64::MIN_POSITIVE));
+        let inverse = q.recip();
+        let mut dq = T::zero();
+        for k in 0..3 {
+            dq = (eta[k] * d_eta[k]).fma(T::real(1.5 * self.norm[k]), dq);
+        }
+        dq = dq * inverse;
+        let value = (sy - q) * inverse;
+        let derivative = (h - sy * dq * inverse) * inverse;
+        Trial { dp, g, dg, eta, d_eta, divisor, q, slope: h - dq, value, derivative }
+    }
+
+    /// Step of the equivalent plastic strain in the lanes that yield, by Newton's method from
+    /// zero inside a shrinking bracket; also the lanes in which it did not settle.
+    #[inline(always)]
+    fn solve<T: Real>(
+        &self,
+        y: &[T; 3],
+        p: T,
+        old: &[[T; 3]; MAX_BACK],
+        excess: T,
+        yields: T::Mask,
+    ) -> (T, T::Mask) {
+        let mut softest = f64::MAX;
+        for k in 0..3 {
+            if self.norm[k] > 0.0 {
+                softest = softest.min(self.relief[k] * self.flow[k]);
+            }
+        }
+        // Recall can only bring back what the old back-stresses hold.
+        let mut most = excess;
+        for (b, beta) in self.back.iter().zip(old) {
+            if b.recall > 0.0 {
+                most += self.equivalent(beta);
+            }
+        }
+        let (mut low, mut high) = (T::zero(), most.scale((1.0 + 1e-9) / (1.5 * softest)));
+        let mut dp = T::zero();
+        let mut open = T::zero();
+        for _ in 0..MAX_ITERATIONS {
+            let at = self.trial(y, p, old, dp);
+            let settled = at.value.abs().lt(T::real(TOLERANCE));
+            let short = at.value.lt(T::zero());
+            low = T::select(short, dp, low);
+            high = T::select(short, high, dp);
+            let next = dp - at.value / at.derivative;
+            let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+            let next = T::select(inside, next, (low + high).scale(0.5));
+            dp = T::select(yields, next, T::zero());
+            let rest = T::select(settled, T::zero(), T::one());
+            open = T::select(yields, rest, T::zero());
+            if !T::any(T::real(0.5).lt(open)) {
+                break;
+            }
+        }
+        (dp, T::real(0.5).lt(open))
+    }
+
+    /// Elastic tangent less the plastic part, symmetric.
+    #[inline(always)]
+    fn tangent<T: Real>(&self, at: &Trial<T>, yields: T::Mask) -> Mat<T, 3> {
+        const WEIGHT: [f64; 3] = [0.5, 0.5, 1.0];
+        let scale = T::select(yields, at.slope.recip(), T::zero());
+        let to_norm = at.q.recip().scale(1.5);
+        let (mut left, mut right) = ([T::zero(); 3], [T::zero(); 3]);
+        let mut b = [[T::zero(); 3]; 3];
+        for k in 0..3 {
+            let inverse = at.divisor[k].recip();
+            let stiff = self.relief[k] * self.flow[k];
+            let rest = T::one() - at.g.scale(stiff) * inverse;
+            b[k][k] = rest.scale(WEIGHT[k] * self.elastic[k]);
+            left[k] = at.dg.fma(at.eta[k], at.g * at.d_eta[k]).scale(WEIGHT[k] * stiff);
+            right[k] = (at.eta[k] * inverse * to_norm).scale(self.norm[k] * self.elastic[k]);
+            right[k] = right[k] * scale;
+        }
+        b[0][0] += T::real(0.5 * self.volume);
+        for i in 0..3 {
+            for j in i..3 {
+                let sum = left[i].fma(right[j], left[j] * right[i]);
+                b[i][j] = sum.fma(T::real(-0.5), b[i][j]);
+            }
+        }
+        let cross = b[0][0] - b[1][1];
+        let straight = b[0][0] + b[1][1];
+        let twice = b[0][1].scale(2.0);
+        let (d13, d23) = (b[0][2] + b[1][2], b[0][2] - b[1][2]);
+        [[straight + twice, cross, d13], [cross, straight - twice, d23], [d13, d23, b[2][2]]]
+    }
+
+    /// A tensor of the state as 11, 22, 33, 12.
+    fn tensor_at(state: &[f64], first: usize) -> [f64; 4] {
+        let [sum, difference, shear] = [state[first], state[first + 1], state[first + 2]];
+        [0.5 * (sum + difference), 0.5 * (sum - difference), -sum, shear]
+    }
+
+    /// Deviator of a back-stress; in plane stress the state holds the tensor with zero 33.
+    fn back_at(&self, state: &[f64], i: usize) -> [f64; 4] {
+        let first = BACK + 3 * i;
+        let mut b = Self::tensor_at(state, first);
+        if self.plane == Plane::Stress {
+            let mean = state[first] / 3.0;
+            b[0] -= mean;
+            b[1] -= mean;
+            b[2] = -mean;
+        }
+        b
+    }
+
+    /// Stress through the thickness.
+    fn normal(&self, s: [f64; 3], state: &[f64]) -> f64 {
+        match self.plane {
+            Plane::Stress => 0.0,
+            Plane::Strain => self.nu * (s[0] + s[1]) + self.young * state[0],
+        }
+    }
+
+    fn hardening_energy(&self, state: &[f64]) -> f64 {
+        let mut sum = self.isotropic.stored(state[EQUIVALENT]);
+        for (i, b) in self.back.iter().enumerate() {
+            for k in 0..3 {
+                let v = state[BACK + 3 * i + k];
+                sum += 0.75 / b.modulus * self.norm[k] * v * v;
+            }
+        }
+        sum
+    }
+}
+
+impl Material for Mises {
+    const NAME: &'static str = "mises";
+
+    fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
+        let &[young, nu, count, ref rest @ ..] = parameters else {
+            return Err("mises takes E, nu, back-stresses and a hardening".into());
+        };
+        if !(young > 0.0 && young.is_finite() && nu > -1.0 && nu < 0.5) {
+            return Err(format!("mises needs E > 0 and -1 < nu < 0.5, not {young} and {nu}"));
+        }
+        let count = count as usize;
+        if count > MAX_BACK || rest.len() < 2 * count {
+            return Err(format!("mises takes at most {MAX_BACK} back-stresses, not {count}"));
+        }
+        let (pairs, numbers) = rest.split_at(2 * count);
+        let back: Result<Vec<_>, _> =
+            pairs.as_chunks::<2>().0.iter().map(|&[c, gamma]| BackStress::new(c, gamma)).collect();
+        let g = young / (2.0 * (1.0 + nu));
+        let bulk = young / (3.0 * (1.0 - 2.0 * nu));
+        let (c11, c12) = match plane {
+            Plane::Stress => (young / (1.0 - nu * nu), nu * young / (1.0 - nu * nu)),
+            Plane::Strain => (bulk + 4.0 * g / 3.0, bulk - 2.0 * g / 3.0),
+        };
+        let sum = young / (1.0 - nu);
+        let (elastic, relief, flow, norm, work, volume) = match plane {
+            Plane::Stress => (sum, sum, 1.0 / 3.0, 1.0 / 6.0, 0.5, 0.0),
+            Plane::Strain => (2.0 * g / 3.0, 2.0 * g, 1.0, 1.5, 1.5, 2.0 * bulk),
+        };
+        Ok(Self {
+            young,
+            nu,
+            plane,
+            moduli: [[c11, c12, 0.0], [c12, c11, 0.0], [0.0, 0.0, g]],
+            isotropic: Isotropic::new(numbers)?,
+            back: back?,
+            elastic: [elastic, 2.0 * g, g],
+            relief: [relief, 2.0 * g, g],
+            flow: [flow, 1.0, 2.0],
+            norm: [norm, 0.5, 2.0],
+            work: [work, 0.5, 1.0],
+            volume,
+        })
+    }
+    fn n_state(&self) -> usize {
+        BACK + 3 * self.back.len()
+    }
+    fn moduli(&self) -> Mat<f64, 3> {
+        self.moduli
+    }
+    #[inline(always)]
+    fn update<T: Real>(&self, strain: [T; 3], state: &mut PointState<'_>) -> Response<T> {
+        let e = [strain[0] + strain[1], strain[0] - strain[1], strain[2]];
+        let mut y = [T::zero(); 3];
+        let mut plastic = [T::zero(); 3];
+        for k in 0..3 {
+            plastic[k] = state.get(k);
+            y[k] = e[k].fma(T::real(self.elastic[k]), plastic[k].scale(-self.relief[k]));
+        }
+        let p: T = state.get(EQUIVALENT);
+        let mut old = [[T::zero(); 3]; MAX_BACK];
+        let mut eta = y;
+        for i in 0..self.back.len() {
+            for k in 0..3 {
+                old[i][k] = state.get(BACK + 3 * i + k);
+                eta[k] -= old[i][k];
+            }
+        }
+        let excess = self.equivalent(&eta) - self.isotropic.at(p).0;
+        let yields = T::zero().lt(excess);
+        let (sum, tangent, failed);
+        if T::any(yields) {
+            let (dp, open) = self.solve(&y, p, &old, excess, yields);
+            failed = open;
+            let at = self.trial(&y, p, &old, dp);
+            let mut done: T = state.get(WORK);
+            for k in 0..3 {
+                let step = (at.g * at.eta[k]).scale(self.flow[k]);
+                y[k] = step.fma(T::real(-self.relief[k]), y[k]);
+                done = (y[k] * step).fma(T::real(self.work[k]), done);
+                state.set(k, plastic[k] + step);
+            }
+            state.set(EQUIVALENT, p + at.dp);
+            state.set(WORK, done);
+            for (i, b) in self.back.iter().enumerate() {
+                let (kept, _) = b.kept(at.dp);
+                for k in 0..3 {
+                    let gain = (at.g * at.eta[k]).scale(b.modulus * 2.0 / 3.0);
+                    state.set(BACK + 3 * i + k, kept * (old[i][k] + gain));
+                }
+            }
+            sum = e[0].fma(T::real(self.volume), y[0]);
+            tangent = self.tangent(&at, yields);
+        } else {
+            failed = T::none();
+            for k in 0..3 {
+                state.set(k, plastic[k]);
+            }
+            state.set(EQUIVALENT, p);
+            let done: T = state.get(WORK);
+            state.set(WORK, done);
+            for i in 0..self.back.len() {
+                for k in 0..3 {
+                    state.set(BACK + 3 * i + k, old[i][k]);
+                }
+            }
+            sum = e[0].fma(T::real(self.volume), y[0]);
+            tangent = broadcast(&self.moduli);
+        }
+        let stress = [(sum + y[1]).scale(0.5), (sum - y[1]).scale(0.5), y[2]];
+        Response { stress, tangent, failed }
+    }
+    fn out_of_plane(&self, _: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
+        match self.plane {
+            Plane::Stress => (-self.nu / self.young * (s[0] + s[1]) - state[0], 0.0),
+            Plane::Strain => (0.0, self.normal(s, state)),
+        }
+    }
+    fn energy(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> f64 {
+        let p = Self::tensor_at(state, 0);
+        let inside = s[0] * (e[0] - p[0]) + s[1] * (e[1] - p[1]) + s[2] * (e[2] - p[3]);
+        0.5 * (inside - self.normal(s, state) * p[2])
+    }
+    fn outputs(&self) -> &'static [&'static str] {
+        &["PEEQ", "YRATIO", "PWORK", "PDISS"]
+    }
+    fn output(&self, i: usize, s: [f64; 3], state: &[f64]) -> f64 {
+        match i {
+            0 => state[EQUIVALENT],
+            1 => {
+                let mean = match self.plane {
+                    Plane::Stress => 0.0,
+                    Plane::Strain => (s[0] + s[1] + self.normal(s, state)) / 3.0,
+                };
+                let mut eta = [s[0] + s[1] - 2.0 * mean, s[0] - s[1], s[2]];
+                for n in 0..self.back.len() {
+                    for k in 0..3 {
+                        eta[k] -= state[BACK + 3 * n + k];
+                    }
+                }
+                self.equivalent(&eta) / self.isotropic.at(state[EQUIVALENT]).0
+            }
+            2 => state[WORK],
+            _ => state[WORK] - self.hardening_energy(state),
+        }
+    }
+    fn tensors(&self) -> &'static [TensorOutput] {
+        const PLASTIC: TensorOutput = TensorOutput { name: "PE", engineering: true };
+        const BACK: TensorOutput = TensorOutput { name: "ALPHA", engineering: false };
+        if self.back.is_empty() { &[PLASTIC] } else { &[PLASTIC, BACK] }
+    }
+    fn tensor(&self, i: usize, state: &[f64]) -> [f64; 4] {
+        if i == 0 {
+            return Self::tensor_at(state, 0);
+        }
+        let mut sum = [0.0; 4];
+        for n in 0..self.back.len() {
+            let b = self.back_at(state, n);
+            for c in 0..4 {
+                sum[c] += b[c];
+            }
+        }
+        sum
+    }
+    fn plastic_member(&self) -> Option<usize> {
+        Some(EQUIVALENT)
+    }
+}

@@ -1,0 +1,13 @@
+//! Material laws: one file each, values in and values out.
+// SPDX-License-Identifier: BSD-3-Clause
+
+pub mod elastic;
+pub mod given;
+pub mod hardening;
+pub mod law;
+pub mod material;
+pub mod mises;
+pub mod orthotropic;
+
+pub use law::Law;
+pub use material::{Material, Plane, PointState, Response, TensorOutput};

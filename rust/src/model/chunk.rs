@@ -1,0 +1,478 @@
+//! A chunk: some hundred elements of one block with their history, evaluated in batches.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::dofs::Dofs;
+use super::dynamics::{Between, Momenta, Motion};
+use super::scatter::Sink;
+use crate::base::small::{Blocks, Nodal};
+use crate::base::{Kernel, Lanes, MAX_LANES, Real, dispatch};
+use crate::elements::Element;
+use crate::kinematics::corotation::Frame;
+use crate::kinematics::inertia::MassKind;
+use crate::kinematics::integrate::{History, Local, Section};
+use crate::loads::body::{self, Field};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// Elements a chunk; large enough to hide a virtual call, small enough to colour well.
+pub const CHUNK: usize = 512;
+/// Histories are padded so that every batch can load whole lanes.
+const PAD: usize = MAX_LANES;
+
+/// What an evaluation needs besides the elements.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// Reference coordinates by node.
+    pub x: &'a [[f64; 2]],
+    /// Displacements by dof.
+    pub u: &'a [f64],
+    pub dofs: &'a Dofs,
+    /// Whether frames turn (geometrically nonlinear).
+    pub turning: bool,
+    pub tangent: bool,
+    /// Instructions to use.
+    pub lanes: Lanes,
+}
+
+/// What all chunks of a block share.
+pub struct Shared<const N: usize> {
+    pub block: usize,
+    pub section: Section<N>,
+    /// The section where the frames stay.
+    pub linear: Section<N>,
+    /// Mass per volume; 0 if none was given.
+    pub rho: f64,
+    pub mass_points: Vec<crate::elements::Point<N>>,
+}
+
+impl<const N: usize> Shared<N> {
+    /// Section for frames that turn, or stay.
+    pub fn section(&self, turning: bool) -> &Section<N> {
+        if turning { &self.section } else { &self.linear }
+    }
+}
+
+/// A chunk seen without its element type.
+pub trait Chunk: Send + Sync {
+    /// Add forces and stiffnesses; returns the indices (in the block) of failed elements.
+    fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize>;
+    /// Values at the points, written to the block's arrays.
+    fn recover(&mut self, context: &Context<'_>, out: &mut super::recover::Fields);
+    /// Add the nodal forces of a body force with mass per area `rho * thickness`; `mask` by
+    /// element of the block.
+    fn body_force(
+        &self,
+        context: &Context<'_>,
+        field: Field,
+        rho: f64,
+        mask: &[bool],
+        sink: &Sink<'_>,
+    );
+    /// Add inertia forces and effective tangents.
+    fn inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>);
+    /// Add the forces of a conserving step; returns failed elements.
+    fn conserving(
+        &mut self,
+        context: &Context<'_>,
+        between: &Between<'_>,
+        sink: &Sink<'_>,
+        internal: &Sink<'_>,
+    ) -> Vec<usize>;
+    /// Set the carried velocities of the conserving scheme.
+    fn start(&mut self, context: &Context<'_>, v: &[f64]);
+    /// Add kinetic energy and momenta.
+    fn momenta(
+        &self,
+        context: &Context<'_>,
+        v: &[f64],
+        kind: MassKind,
+        carried: bool,
+        sums: &mut Momenta,
+    );
+    /// Set the initial strains from those of the block, `[n, p, 4]`.
+    fn set_initial(&mut self, values: &[f64]);
+    /// Make the trial history of the last evaluation, if there was one, the committed one.
+    fn commit(&mut self);
+    /// Strains at the points with the committed or the trial internal modes, written to the
+    /// block's array.
+    fn strains(&self, context: &Context<'_>, committed: bool, out: &mut [f64]);
+    /// Read the committed history from the block's array `[n, p, members]`.
+    fn give(&mut self, values: &[f64]);
+    /// Largest growth of the equivalent plastic strain from the committed to the trial state.
+    fn plastic_increment(&self) -> f64;
+    fn block(&self) -> usize;
+    /// Nodes of all elements.
+    fn nodes(&self) -> Vec<u32>;
+    /// Committed history, for tests and restart.
+    fn history(&self) -> (&[f64], &[f64]);
+}
+
+pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
+    pub(super) shared: Arc<Shared<N>>,
+    /// Index of each element in the block.
+    pub(super) elements: Vec<u32>,
+    pub(super) nodes: Vec<[u32; N]>,
+    /// Slot of each node pair of each element, `N (N + 1) / 2` each.
+    slots: Vec<u32>,
+    stride: usize,
+    pub(super) old: Vec<f64>,
+    pub(super) new: Vec<f64>,
+    alpha_old: Vec<f64>,
+    pub(super) alpha: Vec<f64>,
+    /// Whether the trial history belongs to an evaluation since the last commit.
+    evaluated: bool,
+    /// Carried velocities of the edge bulges (conserving scheme), committed and trial.
+    pub(super) rates_old: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+    /// Initial strain, `[p, 4]` strided; empty for none.
+    pub(super) initial: Vec<f64>,
+    element: PhantomData<E>,
+}
+
+impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    /// Chunk of the `elements` of a block with the given nodes.
+    pub fn new(
+        shared: &Arc<Shared<N>>,
+        elements: &[u32],
+        all_nodes: &[[u32; N]],
+        dofs: &Dofs,
+    ) -> Self {
+        let nodes: Vec<[u32; N]> = elements.iter().map(|&e| all_nodes[e as usize]).collect();
+        let stride = nodes.len().div_ceil(PAD) * PAD;
+        let section = &shared.section;
+        let state = section.points.len() * section.law.n_state() * stride;
+        let rates = if M == 3 { 2 * N * nodes.len() } else { 0 };
+        let mut slots = Vec::with_capacity(nodes.len() * N * (N + 1) / 2);
+        for element in &nodes {
+            for a in 0..N {
+                for b in a..N {
+                    let (low, high) = (element[a].min(element[b]), element[a].max(element[b]));
+                    slots.push(dofs.slot(low, high));
+                }
+            }
+        }
+        Self {
+            shared: shared.clone(),
+            elements: elements.to_vec(),
+            nodes,
+            slots,
+            stride,
+            old: vec![0.0; state],
+            new: vec![0.0; state],
+            alpha_old: vec![0.0; 2 * A * stride],
+            alpha: vec![0.0; 2 * A * stride],
+            evaluated: false,
+            rates_old: vec![0.0; rates],
+            rates: vec![0.0; rates],
+            initial: Vec::new(),
+            element: PhantomData,
+        }
+    }
+
+    /// Initial strain from the element `e` of the chunk on.
+    pub(super) fn initial_from(&self, e: usize) -> &[f64] {
+        if self.initial.is_empty() { &[] } else { &self.initial[e..] }
+    }
+
+    pub(super) fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Reference positions and displacements of the batch that starts at `first`; lanes past
+    /// the end repeat the last element.
+    #[inline(always)]
+    pub(super) fn gather<T: Real>(
+        &self,
+        first: usize,
+        context: &Context<'_>,
+    ) -> (Nodal<T, N, 2>, Nodal<T, N, M>) {
+        let last = self.nodes.len() - 1;
+        let mut x = [[T::zero(); 2]; N];
+        let mut u = [[T::zero(); M]; N];
+        for a in 0..N {
+            let mut node = [0; MAX_LANES];
+            let mut dof = [0; MAX_LANES];
+            for l in 0..T::LANES {
+                node[l] = self.nodes[(first + l).min(last)][a] as usize;
+                dof[l] = context.dofs.start[node[l]] as usize;
+            }
+            for i in 0..2 {
+                x[a][i] = T::from_lanes(
+                    #[inline(always)]
+                    |l| context.x[node[l]][i],
+                );
+            }
+            for i in 0..M {
+                u[a][i] = T::from_lanes(
+                    #[inline(always)]
+                    |l| context.u[dof[l] + i],
+                );
+            }
+        }
+        (x, u)
+    }
+
+    /// Each evaluation starts from the committed modes, so that trials leave no trace.
+    pub(super) fn begin_trial(&mut self) {
+        self.alpha.copy_from_slice(&self.alpha_old);
+        self.evaluated = true;
+    }
+
+    #[inline(always)]
+    fn run<T: Real>(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
+        let mut failed = Vec::new();
+        let n = self.nodes.len();
+        let shared = self.shared.clone();
+        let members = usize::from(shared.section.law.n_state() > 0);
+        for e in (0..n).step_by(T::LANES) {
+            let (x, u) = self.gather::<T>(e, context);
+            let frame = Frame::new(&x, &u, context.turning && E::TURNS);
+            let mut history = History {
+                old: &self.old[e * members..],
+                new: &mut self.new[e * members..],
+                alpha: &mut self.alpha[e.min(2 * A * self.stride)..],
+                initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
+                stride: self.stride,
+            };
+            let mut answer = Local::zero();
+            E::law_into(
+                &x,
+                &frame.q,
+                shared.section(context.turning),
+                &mut history,
+                context.tangent,
+                &mut answer,
+            );
+            let force = frame.force(&answer.force);
+            if context.tangent && E::TURNS {
+                frame.stiffness(&answer.force, &mut answer.stiffness);
+            }
+            let count = T::LANES.min(n - e);
+            if T::any(answer.failed) {
+                for l in 0..count {
+                    if T::mask_lane(answer.failed, l) {
+                        failed.push(self.elements[e + l] as usize);
+                    }
+                }
+            }
+            self.scatter_force(e, count, &force, context.dofs, sink);
+            if context.tangent {
+                self.scatter_stiffness(e, count, &answer.stiffness, context.dofs, sink);
+            }
+        }
+        failed
+    }
+
+    /// Add the forces of a batch. Not inlined, so that the packs lie in memory and each lane
+    /// is one load.
+    #[inline(never)]
+    pub(super) fn scatter_force<T: Real>(
+        &self,
+        first: usize,
+        count: usize,
+        f: &Nodal<T, N, M>,
+        dofs: &Dofs,
+        sink: &Sink<'_>,
+    ) {
+        for l in 0..count {
+            let nodes = &self.nodes[first + l];
+            for a in 0..N {
+                let start = dofs.start[nodes[a] as usize] as usize;
+                let mut run = [0.0; M];
+                for i in 0..M {
+                    run[i] = f[a][i].lanes()[l];
+                }
+                sink.force.add_run(start, &run);
+                for v in &mut run {
+                    *v = v.abs();
+                }
+                sink.scale.add_run(start, &run);
+            }
+        }
+    }
+
+    /// Add the stiffnesses of a batch; not inlined for the same reason.
+    #[inline(never)]
+    pub(super) fn scatter_stiffness<T: Real>(
+        &self,
+        first: usize,
+        count: usize,
+        k: &Blocks<T, N, M>,
+        dofs: &Dofs,
+        sink: &Sink<'_>,
+    ) {
+        let pairs = N * (N + 1) / 2;
+        for l in 0..count {
+            let e = first + l;
+            let slots = &self.slots[e * pairs..(e + 1) * pairs];
+            let nodes = &self.nodes[e];
+            let mut lead = [0; N];
+            for a in 0..N {
+                lead[a] = dofs.lead[nodes[a] as usize] as usize;
+            }
+            let mut pair = 0;
+            for a in 0..N {
+                for b in a..N {
+                    let slot = slots[pair] as usize;
+                    pair += 1;
+                    let m = &k[a][b];
+                    // Columns belong to the node with the larger index.
+                    let straight = nodes[a] <= nodes[b];
+                    let lead = if straight { lead[b] } else { lead[a] };
+                    for j in 0..M {
+                        let at = slot + j * lead + j * (j + 1) / 2;
+                        if a == b {
+                            for i in 0..=j {
+                                sink.values.add(at + i, m[i][j].lanes()[l]);
+                            }
+                        } else {
+                            let mut run = [0.0; M];
+                            for i in 0..M {
+                                let v = if straight { &m[i][j] } else { &m[j][i] };
+                                run[i] = v.lanes()[l];
+                            }
+                            sink.values.add_run(at, &run);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The assembly of a chunk, to be run with the processor's widest numbers.
+struct Assemble<'a, E, const N: usize, const M: usize, const A: usize> {
+    chunk: &'a mut ChunkOf<E, N, M, A>,
+    context: &'a Context<'a>,
+    sink: &'a Sink<'a>,
+}
+
+impl<E, const N: usize, const M: usize, const A: usize> Kernel for Assemble<'_, E, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    type Output = Vec<usize>;
+    #[inline(always)]
+    fn run<T: Real>(self) -> Vec<usize> {
+        self.chunk.run::<T>(self.context, self.sink)
+    }
+}
+
+impl<E, const N: usize, const M: usize, const A: usize> Chunk for ChunkOf<E, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
+        self.begin_trial();
+        dispatch(context.lanes, Assemble { chunk: self, context, sink })
+    }
+    fn recover(&mut self, context: &Context<'_>, out: &mut super::recover::Fields) {
+        super::recover::chunk(self, context, out);
+    }
+    fn body_force(
+        &self,
+        context: &Context<'_>,
+        field: Field,
+        rho: f64,
+        mask: &[bool],
+        sink: &Sink<'_>,
+    ) {
+        let shared = &self.shared;
+        let rho_t = rho * shared.section.thickness;
+        for (e, nodes) in self.nodes.iter().enumerate() {
+            if !mask[self.elements[e] as usize] {
+                continue;
+            }
+            let x = nodes.map(|n| context.x[n as usize]);
+            let f = body::force::<E, N, M, A>(&x, &shared.mass_points, rho_t, field);
+            self.scatter_force(e, 1, &f, context.dofs, sink);
+        }
+    }
+    fn inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
+        self.add_inertia(context, motion, sink);
+    }
+    fn conserving(
+        &mut self,
+        context: &Context<'_>,
+        between: &Between<'_>,
+        sink: &Sink<'_>,
+        internal: &Sink<'_>,
+    ) -> Vec<usize> {
+        self.add_conserving(context, between, sink, internal)
+    }
+    fn start(&mut self, context: &Context<'_>, v: &[f64]) {
+        self.start_rates(context, v);
+    }
+    fn momenta(
+        &self,
+        context: &Context<'_>,
+        v: &[f64],
+        kind: MassKind,
+        carried: bool,
+        sums: &mut Momenta,
+    ) {
+        self.add_momenta(context, v, kind, carried, sums);
+    }
+    fn set_initial(&mut self, values: &[f64]) {
+        let rows = 4 * self.shared.section.points.len();
+        self.initial.clear();
+        if values.is_empty() {
+            return;
+        }
+        self.initial.resize(rows * self.stride, 0.0);
+        for (e, &element) in self.elements.iter().enumerate() {
+            for row in 0..rows {
+                self.initial[row * self.stride + e] = values[element as usize * rows + row];
+            }
+        }
+    }
+    fn commit(&mut self) {
+        if !self.evaluated {
+            return;
+        }
+        self.evaluated = false;
+        std::mem::swap(&mut self.old, &mut self.new);
+        self.alpha_old.copy_from_slice(&self.alpha);
+        self.rates_old.copy_from_slice(&self.rates);
+    }
+    fn strains(&self, context: &Context<'_>, committed: bool, out: &mut [f64]) {
+        let alpha = if committed { &self.alpha_old } else { &self.alpha };
+        super::recover::strains(self, context, alpha, out);
+    }
+    fn give(&mut self, values: &[f64]) {
+        let per_element = self.shared.section.points.len() * self.shared.section.law.n_state();
+        for e in 0..self.nodes.len() {
+            let start = self.elements[e] as usize * per_element;
+            for m in 0..per_element {
+                self.old[m * self.stride + e] = values[start + m];
+            }
+        }
+    }
+    fn plastic_increment(&self) -> f64 {
+        let law = &self.shared.section.law;
+        let Some(member) = law.plastic_member() else { return 0.0 };
+        if !self.evaluated {
+            return 0.0;
+        }
+        let mut largest = 0.0f64;
+        for p in 0..self.shared.section.points.len() {
+            let start = (p * law.n_state() + member) * self.stride;
+            for e in start..start + self.nodes.len() {
+                largest = largest.max(self.new[e] - self.old[e]);
+            }
+        }
+        largest
+    }
+    fn block(&self) -> usize {
+        self.shared.block
+    }
+    fn nodes(&self) -> Vec<u32> {
+        self.nodes.as_flattened().to_vec()
+    }
+    fn history(&self) -> (&[f64], &[f64]) {
+        (&self.old, &self.alpha_old)
+    }
+}

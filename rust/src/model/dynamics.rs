@@ -1,0 +1,226 @@
+//! Inertia of chunks: forces, effective tangents, constant matrices, momenta.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::chunk::{ChunkOf, Context};
+use super::scatter::Sink;
+use crate::base::small::{Nodal, symmetric_times};
+use crate::elements::Element;
+use crate::kinematics::conserving::{self, Step};
+use crate::kinematics::inertia::{Mass, MassKind, Spin, bulge_rates, consistent};
+use crate::kinematics::integrate::History;
+
+/// State of motion, and what is wanted of the inertia.
+#[derive(Clone, Copy)]
+pub struct Motion<'a> {
+    pub v: &'a [f64],
+    pub a: &'a [f64],
+    pub kind: MassKind,
+    /// Weights of the derivatives with respect to displacement, velocity, acceleration.
+    pub weights: [f64; 3],
+}
+
+/// The step of the conserving scheme.
+#[derive(Clone, Copy)]
+pub struct Between<'a> {
+    pub u0: &'a [f64],
+    pub v0: &'a [f64],
+    pub dt: f64,
+    pub kind: MassKind,
+}
+
+/// Sums over the body: kinetic energy, linear momentum, angular momentum about the origin.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Momenta {
+    pub kinetic: f64,
+    pub linear: [f64; 2],
+    pub angular: f64,
+    pub mass: f64,
+}
+
+impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    fn of_dofs(&self, e: usize, values: &[f64], context: &Context<'_>) -> Nodal<f64, N, M> {
+        let mut out = [[0.0; M]; N];
+        for a in 0..N {
+            let start = context.dofs.start[self.nodes[e][a] as usize] as usize;
+            out[a].copy_from_slice(&values[start..start + M]);
+        }
+        out
+    }
+
+    fn mass(&self, x: &Nodal<f64, N, 2>, kind: MassKind) -> Mass<f64, N> {
+        let s = &self.shared;
+        let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, s.rho * s.section.thickness, kind);
+        if E::LINE && M == 3 && s.section.thickness > 0.0 {
+            mass.turn_with(s.section.profile[1] / s.section.thickness);
+        }
+        mass
+    }
+
+    pub(super) fn add_inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
+        for e in 0..self.nodes.len() {
+            let (x, u) = self.gather::<f64>(e, context);
+            let mass = self.mass(&x, motion.kind);
+            let a = self.of_dofs(e, motion.a, context);
+            let (f, k) = if motion.kind == MassKind::Consistent && M == 3 && !E::LINE {
+                let v = self.of_dofs(e, motion.v, context);
+                consistent(&mass, &x, &u, &v, &a, motion.weights)
+            } else {
+                let mut k = mass.matrix::<M>(motion.kind == MassKind::Lumped);
+                let f = symmetric_times(&k, &a);
+                for v in k.as_flattened_mut().as_flattened_mut().as_flattened_mut() {
+                    *v *= motion.weights[2];
+                }
+                (f, k)
+            };
+            self.scatter_force(e, 1, &f, context.dofs, sink);
+            if context.tangent {
+                self.scatter_stiffness(e, 1, &k, context.dofs, sink);
+            }
+        }
+    }
+
+    /// Internal and inertia force of the conserving step to `context.u`; the internal one
+    /// alone also goes to `internal`.
+    pub(super) fn add_conserving(
+        &mut self,
+        context: &Context<'_>,
+        between: &Between<'_>,
+        sink: &Sink<'_>,
+        internal: &Sink<'_>,
+    ) -> Vec<usize> {
+        self.begin_trial();
+        let mut failed = Vec::new();
+        let shared = self.shared.clone();
+        let members = usize::from(shared.section.law.n_state() > 0);
+        for e in 0..self.nodes.len() {
+            let (x, u1) = self.gather::<f64>(e, context);
+            let mass = self.mass(&x, between.kind);
+            let (u0, v0) =
+                (self.of_dofs(e, between.u0, context), self.of_dofs(e, between.v0, context));
+            let mut rates = [[0.0; 2]; N];
+            let mut rates_end = [[0.0; 2]; N];
+            if M == 3 {
+                rates
+                    .as_flattened_mut()
+                    .copy_from_slice(&self.rates_old[2 * N * e..2 * N * (e + 1)]);
+            }
+            let stride = self.stride();
+            let mut history = History {
+                old: &self.old[e * members..],
+                new: &mut self.new[e * members..],
+                alpha: &mut self.alpha[e.min(2 * A * stride)..],
+                initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
+                stride,
+            };
+            let step = Step {
+                u0: &u0,
+                v0: &v0,
+                u1: &u1,
+                dt: between.dt,
+                turning: context.turning && E::TURNS,
+                tangent: context.tangent,
+            };
+            let answer = conserving::element::<E, N, M, A>(
+                &x,
+                &shared.section,
+                &mut history,
+                (&mass, between.kind),
+                &step,
+                &rates,
+                &mut rates_end,
+            );
+            if M == 3 {
+                self.rates[2 * N * e..2 * N * (e + 1)].copy_from_slice(rates_end.as_flattened());
+            }
+            if answer.failed {
+                failed.push(self.elements[e] as usize);
+            }
+            self.scatter_force(e, 1, &answer.internal, context.dofs, sink);
+            self.scatter_force(e, 1, &answer.internal, context.dofs, internal);
+            self.scatter_force(e, 1, &answer.inertia, context.dofs, sink);
+            if context.tangent {
+                self.scatter_stiffness(e, 1, &answer.tangent, context.dofs, sink);
+            }
+        }
+        failed
+    }
+
+    /// Carry velocities of the edge bulges that belong to a motion.
+    pub(super) fn start_rates(&mut self, context: &Context<'_>, v: &[f64]) {
+        if M < 3 {
+            return;
+        }
+        for e in 0..self.nodes.len() {
+            let (x, u) = self.gather::<f64>(e, context);
+            let mass = self.mass(&x, MassKind::Consistent);
+            let v = self.of_dofs(e, v, context);
+            let y = bulge_rates(&Spin::new(&x, &u, &mass.s), &u, &v);
+            self.rates_old[2 * N * e..2 * N * (e + 1)].copy_from_slice(y.as_flattened());
+        }
+    }
+
+    /// Add this chunk's share; with `carried` the bulges move with the carried velocities.
+    pub(super) fn add_momenta(
+        &self,
+        context: &Context<'_>,
+        v: &[f64],
+        kind: MassKind,
+        carried: bool,
+        sums: &mut Momenta,
+    ) {
+        for e in 0..self.nodes.len() {
+            let (x, u) = self.gather::<f64>(e, context);
+            let mass = self.mass(&x, kind);
+            let v = self.of_dofs(e, v, context);
+            let coupled = kind == MassKind::Consistent && M == 3 && !E::LINE;
+            let mut y = [[0.0; 2]; N];
+            let mut rate = [[0.0; 2]; N];
+            if coupled {
+                let spin = Spin::new(&x, &u, &mass.s);
+                rate = bulge_rates(&spin, &u, &v);
+                if carried {
+                    rate.as_flattened_mut()
+                        .copy_from_slice(&self.rates_old[2 * N * e..2 * N * (e + 1)]);
+                }
+                for k in 0..N {
+                    let p = u[k][M - 1] - u[(k + 1) % N][M - 1];
+                    y[k] = [p * spin.w[k][0], p * spin.w[k][1]];
+                }
+            }
+            for a in 0..N {
+                let mut p_node = [0.0; 2];
+                let mut p_edge = [0.0; 2];
+                for b in 0..N {
+                    sums.mass += mass.nn[a][b];
+                    for i in 0..2 {
+                        p_node[i] += mass.nn[a][b] * v[b][i];
+                        if coupled {
+                            p_node[i] += mass.ne[a][b] * rate[b][i];
+                            p_edge[i] += mass.ne[b][a] * v[b][i] + mass.ee[a][b] * rate[b][i];
+                        }
+                    }
+                }
+                let position = [x[a][0] + u[a][0], x[a][1] + u[a][1]];
+                sums.angular += position[0] * p_node[1] - position[1] * p_node[0];
+                sums.angular += y[a][0] * p_edge[1] - y[a][1] * p_edge[0];
+                for i in 0..2 {
+                    sums.linear[i] += p_node[i];
+                    sums.kinetic += 0.5 * (v[a][i] * p_node[i] + rate[a][i] * p_edge[i]);
+                }
+            }
+            if M == 3 && !coupled {
+                let turn = mass.rotations(kind == MassKind::Lumped);
+                for a in 0..N {
+                    for b in 0..N {
+                        let spin = turn[a][b] * v[b][M - 1];
+                        sums.kinetic += 0.5 * v[a][M - 1] * spin;
+                        sums.angular += spin;
+                    }
+                }
+            }
+        }
+    }
+}

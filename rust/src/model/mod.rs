@@ -1,0 +1,19 @@
+//! The discrete model: dofs, sparsity pattern, chunks of elements, assembly and recovery.
+// SPDX-License-Identifier: BSD-3-Clause
+
+pub mod chunk;
+pub mod dofs;
+pub mod dynamics;
+pub mod locality;
+pub mod problem;
+pub mod recover;
+pub mod registry;
+pub mod scatter;
+pub mod sizes;
+
+pub use problem::{BlockInput, Problem};
+
+#[cfg(test)]
+mod lanes_test;
+#[cfg(test)]
+mod threads_test;

@@ -1,0 +1,474 @@
+//! The whole discrete model: blocks of elements, their chunks by colour, assembly.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::chunk::{CHUNK, Chunk, ChunkOf, Context, Shared as BlockData};
+use super::dofs::Dofs;
+use super::dynamics::{Between, Momenta, Motion};
+use super::locality;
+use super::recover::Fields;
+use super::registry;
+use super::scatter::{Shared, Sink};
+use crate::base::Lanes;
+use crate::elements::Element;
+use crate::for_each_element;
+use crate::kinematics::inertia::MassKind;
+use crate::kinematics::integrate::Section;
+use crate::kinematics::local_strain::LocalStrain;
+use crate::loads::body::Field;
+use crate::materials::{Law, Plane};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Elements of one type with one material and section.
+#[derive(Clone, Debug)]
+pub struct BlockInput {
+    pub element: String,
+    pub law: String,
+    pub parameters: Vec<f64>,
+    pub plane: Plane,
+    pub local_strain: String,
+    pub thickness: f64,
+    /// Section numbers of line elements.
+    pub profile: [f64; 3],
+    pub rho: f64,
+    pub options: Options,
+    /// Node indices, element by element.
+    pub nodes: Vec<u32>,
+}
+
+/// Choices of a section that few need.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Mean dilatation over each element: see [`crate::kinematics::dilatation`].
+    pub mean_dilatation: bool,
+    /// Weight of the higher-order stiffness of OPT; by default from the elastic moduli.
+    pub beta0: Option<f64>,
+}
+
+/// What is kept of a block beside its chunks.
+#[derive(Clone, Debug)]
+pub struct Block {
+    pub facts: registry::Facts,
+    pub n_elements: usize,
+    pub law: Law,
+    /// Shape functions at the points, `[p, N]`.
+    pub shape: Vec<f64>,
+}
+
+impl Block {
+    /// Names of the scalars that recovery gives.
+    pub fn outputs(&self) -> &'static [&'static str] {
+        if self.facts.line { self.facts.outputs } else { self.law.outputs() }
+    }
+}
+
+/// Elements that could not be evaluated: pairs of block and index in it.
+#[derive(Clone, Debug, Default)]
+pub struct Failed(pub Vec<(usize, usize)>);
+
+pub struct Problem {
+    pub x: Vec<[f64; 2]>,
+    pub dofs: Dofs,
+    pub blocks: Vec<Block>,
+    /// Chunks of one colour share no node.
+    colours: Vec<Vec<Box<dyn Chunk>>>,
+    pool: Option<rayon::ThreadPool>,
+    lanes: Lanes,
+}
+
+impl Problem {
+    /// Number the dofs and lay out the chunks. Nodes without elements carry no dofs, unless
+    /// `extra_dofs` gives them some.
+    pub fn new(x: Vec<[f64; 2]>, inputs: &[BlockInput], extra_dofs: &[u8]) -> Result<Self, String> {
+        let mut per_node = vec![0u8; x.len()];
+        per_node[..extra_dofs.len()].copy_from_slice(extra_dofs);
+        let mut cells = Vec::new();
+        for input in inputs {
+            let facts = registry::find(&input.element)?;
+            if input.nodes.iter().any(|&n| n as usize >= x.len()) {
+                return Err(format!("{}: a node index is outside the mesh", input.element));
+            }
+            for &n in &input.nodes {
+                let m = &mut per_node[n as usize];
+                *m = (*m).max(facts.dofs_per_node as u8);
+            }
+            cells.push((input.nodes.as_slice(), facts.n_nodes));
+        }
+        let dofs = Dofs::new(&per_node, &cells);
+        let mut blocks = Vec::new();
+        let mut chunks: Vec<Box<dyn Chunk>> = Vec::new();
+        for (b, input) in inputs.iter().enumerate() {
+            let (block, own) = build(b, input, &x, &dofs)?;
+            blocks.push(block);
+            chunks.extend(own);
+        }
+        let colours = colour(chunks, x.len());
+        Ok(Self { x, dofs, blocks, colours, pool: None, lanes: Lanes::Best })
+    }
+
+    /// Use so many threads from now on; results do not depend on it.
+    pub fn set_threads(&mut self, n: usize) -> Result<(), String> {
+        self.pool = if n > 1 {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+            Some(pool.map_err(|e| e.to_string())?)
+        } else {
+            None
+        };
+        Ok(())
+    }
+
+    /// Use these instructions from now on; results differ by rounding.
+    pub fn set_lanes(&mut self, lanes: Lanes) {
+        self.lanes = lanes;
+    }
+
+    /// Internal force, its scale, and with a non-empty `values` the tangent's upper triangle.
+    /// The arrays are overwritten.
+    pub fn assemble(
+        &mut self,
+        u: &[f64],
+        turning: bool,
+        force: &mut [f64],
+        scale: &mut [f64],
+        values: &mut [f64],
+    ) -> Result<(), Failed> {
+        let tangent = !values.is_empty();
+        let context =
+            Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
+        // A pool costs more than it brings where no two chunks can run side by side.
+        let pool = self.pool.as_ref().filter(|_| self.colours.iter().any(|c| c.len() > 1));
+        let colours = &mut self.colours;
+        let work = || {
+            for array in [&mut *force, &mut *scale, &mut *values] {
+                zero(array, pool.is_some());
+            }
+            let sink = Sink {
+                force: Shared::new(force),
+                scale: Shared::new(scale),
+                values: Shared::new(values),
+            };
+            let evaluate = |c: &mut Box<dyn Chunk>| {
+                let block = c.block();
+                let bad = c.assemble(&context, &sink);
+                bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
+            };
+            let mut failed = Vec::new();
+            for colour in colours {
+                if pool.is_some() && colour.len() > 1 {
+                    let bad: Vec<_> = colour.par_iter_mut().map(evaluate).collect();
+                    failed.extend(bad.into_iter().flatten());
+                } else {
+                    failed.extend(colour.iter_mut().flat_map(evaluate));
+                }
+            }
+            failed
+        };
+        let mut failed = match pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        };
+        failed.sort_unstable();
+        if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
+    }
+
+    /// Add inertia forces to `force` and `scale`, and effective tangents to `values`.
+    pub fn inertia(
+        &self,
+        u: &[f64],
+        motion: &Motion<'_>,
+        force: &mut [f64],
+        scale: &mut [f64],
+        values: &mut [f64],
+    ) {
+        let tangent = !values.is_empty();
+        let context =
+            Context { x: &self.x, u, dofs: &self.dofs, turning: true, tangent, lanes: self.lanes };
+        let sink = Sink {
+            force: Shared::new(force),
+            scale: Shared::new(scale),
+            values: Shared::new(values),
+        };
+        for colour in &self.colours {
+            let evaluate = |c: &dyn Chunk| c.inertia(&context, motion, &sink);
+            match &self.pool {
+                Some(pool) if colour.len() > 1 => {
+                    pool.install(|| colour.par_iter().for_each(|c| evaluate(c.as_ref())));
+                }
+                _ => colour.iter().for_each(|c| evaluate(c.as_ref())),
+            }
+        }
+    }
+
+    /// Forces of a conserving step to `u`: internal and inertia in `force`, internal alone in
+    /// `internal`. The arrays are overwritten.
+    pub fn conserving(
+        &mut self,
+        u: &[f64],
+        between: &Between<'_>,
+        turning: bool,
+        [force, internal, scale, values]: [&mut [f64]; 4],
+    ) -> Result<(), Failed> {
+        let mut unused = vec![0.0; scale.len()];
+        for array in [&mut *force, &mut *internal, &mut *scale, &mut *values] {
+            array.fill(0.0);
+        }
+        let tangent = !values.is_empty();
+        let context =
+            Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
+        let sink = Sink {
+            force: Shared::new(force),
+            scale: Shared::new(scale),
+            values: Shared::new(values),
+        };
+        let alone = Sink {
+            force: Shared::new(internal),
+            scale: Shared::new(&mut unused),
+            values: Shared::new(&mut []),
+        };
+        let mut failed = Vec::new();
+        for colour in &mut self.colours {
+            let evaluate = |c: &mut Box<dyn Chunk>| {
+                let block = c.block();
+                let bad = c.conserving(&context, between, &sink, &alone);
+                bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
+            };
+            match &self.pool {
+                Some(pool) if colour.len() > 1 => {
+                    let bad: Vec<_> =
+                        pool.install(|| colour.par_iter_mut().map(evaluate).collect());
+                    failed.extend(bad.into_iter().flatten());
+                }
+                _ => failed.extend(colour.iter_mut().flat_map(evaluate)),
+            }
+        }
+        if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
+    }
+
+    /// Begin a motion of the conserving scheme.
+    pub fn start_motion(&mut self, u: &[f64], v: &[f64]) {
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            turning: true,
+            tangent: false,
+            lanes: self.lanes,
+        };
+        for chunk in self.colours.iter_mut().flatten() {
+            chunk.start(&context, v);
+        }
+    }
+
+    /// Kinetic energy and momenta of a motion.
+    pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            turning: true,
+            tangent: false,
+            lanes: self.lanes,
+        };
+        let mut sums = Momenta::default();
+        for chunk in self.colours.iter().flatten() {
+            chunk.momenta(&context, v, kind, carried, &mut sums);
+        }
+        sums
+    }
+
+    /// Set the initial strain of a block, `[n, p, 4]`; empty for none.
+    pub fn set_initial(&mut self, block: usize, values: &[f64]) -> Result<(), String> {
+        let Some(b) = self.blocks.get(block) else {
+            return Err(format!("no block {block}"));
+        };
+        if !values.is_empty() && values.len() != 4 * b.facts.n_points * b.n_elements {
+            return Err("initial strains do not fit the block".into());
+        }
+        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+            chunk.set_initial(values);
+        }
+        Ok(())
+    }
+
+    /// Make the trial histories of the last evaluation the committed ones.
+    pub fn commit(&mut self) {
+        for chunk in self.colours.iter_mut().flatten() {
+            chunk.commit();
+        }
+    }
+
+    /// Largest growth of the equivalent plastic strain since the last commit.
+    pub fn plastic_increment(&self) -> f64 {
+        let chunks = self.colours.iter().flatten();
+        chunks.map(|c| c.plastic_increment()).fold(0.0, f64::max)
+    }
+
+    /// Nodal force of a body force; densities and element masks by block.
+    pub fn body_force(&self, field: Field, rho: &[f64], masks: &[Vec<bool>]) -> Vec<f64> {
+        let n = self.dofs.n_dofs();
+        let (mut force, mut scale) = (vec![0.0; n], vec![0.0; n]);
+        let u = vec![0.0; n];
+        let context = Context {
+            x: &self.x,
+            u: &u,
+            dofs: &self.dofs,
+            turning: false,
+            tangent: false,
+            lanes: self.lanes,
+        };
+        let sink = Sink {
+            force: Shared::new(&mut force),
+            scale: Shared::new(&mut scale),
+            values: Shared::new(&mut []),
+        };
+        for chunk in self.colours.iter().flatten() {
+            let b = chunk.block();
+            chunk.body_force(&context, field, rho[b], &masks[b], &sink);
+        }
+        force
+    }
+
+    /// Strains that the materials of a block meet, `[n, p, 3]`, with the committed internal
+    /// modes or those of the last evaluation.
+    pub fn strains(&self, block: usize, u: &[f64], turning: bool, committed: bool) -> Vec<f64> {
+        let b = &self.blocks[block];
+        let mut out = vec![0.0; b.n_elements * b.facts.n_points * 3];
+        let lanes = self.lanes;
+        let context = Context { x: &self.x, u, dofs: &self.dofs, turning, tangent: false, lanes };
+        for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
+            chunk.strains(&context, committed, &mut out);
+        }
+        out
+    }
+
+    /// Write the committed history of a block, `[n, p, members]`.
+    pub fn give(&mut self, block: usize, values: &[f64]) -> Result<(), String> {
+        let b = &self.blocks[block];
+        let wanted = b.n_elements * b.facts.n_points * b.law.n_state();
+        if values.len() != wanted {
+            return Err(format!("the history has {} numbers, {wanted} are needed", values.len()));
+        }
+        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+            chunk.give(values);
+        }
+        Ok(())
+    }
+
+    /// Values at the points of every block.
+    pub fn recover(&mut self, u: &[f64], turning: bool) -> Vec<Fields> {
+        let mut fields: Vec<_> = self
+            .blocks
+            .iter()
+            .map(|b| Fields::new(b.n_elements, b.facts.n_points, &b.law, b.outputs().len()))
+            .collect();
+        let context =
+            Context { x: &self.x, u, dofs: &self.dofs, turning, tangent: false, lanes: self.lanes };
+        for chunk in self.colours.iter_mut().flatten() {
+            let block = chunk.block();
+            chunk.recover(&context, &mut fields[block]);
+        }
+        fields
+    }
+}
+
+/// Fill with zeros, by several threads if that is wanted.
+fn zero(values: &mut [f64], parallel: bool) {
+    if parallel {
+        values.par_chunks_mut(1 << 16).for_each(|part| part.fill(0.0));
+    } else {
+        values.fill(0.0);
+    }
+}
+
+/// The chunks of one block.
+fn build(
+    index: usize,
+    input: &BlockInput,
+    x: &[[f64; 2]],
+    dofs: &Dofs,
+) -> Result<(Block, Vec<Box<dyn Chunk>>), String> {
+    fn of<E, const N: usize, const M: usize, const A: usize>(
+        index: usize,
+        input: &BlockInput,
+        x: &[[f64; 2]],
+        dofs: &Dofs,
+    ) -> Result<(Block, Vec<Box<dyn Chunk>>), String>
+    where
+        E: Element<N, M, A>,
+    {
+        let law = Law::new(&input.law, &input.parameters, input.plane)?;
+        if input.options.mean_dilatation
+            && (E::rule().len() < 4 || E::NAME == "Q4I" || input.plane == Plane::Stress)
+        {
+            return Err(format!(
+                "mean dilatation is for quadrilaterals without incompatible modes in plane strain, \
+                 not for {} in plane {}",
+                E::NAME,
+                if input.plane == Plane::Stress { "stress" } else { "strain" },
+            ));
+        }
+        let section = Section {
+            points: E::points(&E::rule()),
+            strain: LocalStrain::new(&input.local_strain)?,
+            thickness: input.thickness,
+            parameter: match input.options.beta0 {
+                Some(beta0) => E::parameter_of(beta0)
+                    .ok_or_else(|| format!("{} has no parameter beta0", E::NAME))?,
+                None => E::parameter(&law.moduli()),
+            },
+            law: law.clone(),
+            plane: input.plane,
+            profile: input.profile,
+            mean_dilatation: input.options.mean_dilatation,
+            finite: true,
+        };
+        let shape = section.points.iter().flat_map(|p| p.n).collect();
+        let mass_points = E::points(&E::mass_rule());
+        let linear = section.linearised();
+        let shared = BlockData { block: index, section, linear, rho: input.rho, mass_points };
+        let shared = Arc::new(shared);
+        let nodes: Vec<[u32; N]> = input.nodes.as_chunks::<N>().0.to_vec();
+        let order = locality::order(x, &input.nodes, N, CHUNK);
+        let chunks = order.chunks(CHUNK).map(|elements| {
+            let chunk = ChunkOf::<E, N, M, A>::new(&shared, elements, &nodes, dofs);
+            Box::new(chunk) as Box<dyn Chunk>
+        });
+        let facts = registry::find(E::NAME)?;
+        Ok((Block { facts, n_elements: nodes.len(), law, shape }, chunks.collect()))
+    }
+    macro_rules! pick {
+        ($e:ty, $n:literal, $m:literal, $a:literal) => {
+            if input.element == <$e as Element<$n, $m, $a>>::NAME {
+                return of::<$e, $n, $m, $a>(index, input, x, dofs);
+            }
+        };
+    }
+    for_each_element!(pick);
+    Err(format!("no element named {:?}", input.element))
+}
+
+/// Greedy colouring: chunks of a colour share no node.
+fn colour(chunks: Vec<Box<dyn Chunk>>, n_nodes: usize) -> Vec<Vec<Box<dyn Chunk>>> {
+    let mut colours: Vec<Vec<Box<dyn Chunk>>> = Vec::new();
+    // Colours seen at each node, 64 at a time; more fall into colours of their own.
+    let mut seen = vec![0u64; n_nodes];
+    for chunk in chunks {
+        let nodes = chunk.nodes();
+        let taken = nodes.iter().fold(0u64, |m, &n| m | seen[n as usize]);
+        let free = (!taken).trailing_zeros() as usize;
+        if free >= 64 {
+            colours.resize_with(colours.len().max(64), Vec::new);
+            colours.push(vec![chunk]);
+            continue;
+        }
+        for &n in &nodes {
+            seen[n as usize] |= 1 << free;
+        }
+        if colours.len() <= free {
+            colours.resize_with(free + 1, Vec::new);
+        }
+        colours[free].push(chunk);
+    }
+    colours.retain(|c| !c.is_empty());
+    colours
+}

@@ -1,0 +1,241 @@
+//! Values at the quadrature points for output.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::chunk::{ChunkOf, Context};
+use crate::elements::Element;
+use crate::kinematics::corotation::Frame;
+use crate::kinematics::dilatation::Dilatation;
+use crate::kinematics::integrate::{History, gradient, local};
+use crate::materials::{Law, Plane, PointState};
+
+/// Fields of one block, element by element, point by point.
+#[derive(Clone, Debug, Default)]
+pub struct Fields {
+    pub n_points: usize,
+    /// Current positions, `[n, p, 2]`.
+    pub points: Vec<f64>,
+    /// Cauchy stress in global axes, rows xx, yy, zz, xy, `[n, p, 4]`.
+    pub stress: Vec<f64>,
+    /// Local strain turned to global axes, engineering shear, `[n, p, 4]`.
+    pub strain: Vec<f64>,
+    /// Recoverable energy density, `[n, p]`.
+    pub energy: Vec<f64>,
+    /// Reference volume, `[n, p]`.
+    pub volume: Vec<f64>,
+    /// Named scalars of the material, `[outputs][n, p]`.
+    pub outputs: Vec<Vec<f64>>,
+    /// Tensors of the material in global axes, rows xx, yy, zz, xy, `[tensors][n, p, 4]`.
+    pub tensors: Vec<Vec<f64>>,
+    /// Current thickness, `[n, p]`.
+    pub thickness: Vec<f64>,
+    /// Rotation of the element frame in (-pi, pi], `[n]`.
+    pub rotation: Vec<f64>,
+    /// Energy of the drilling penalty, `[n]`.
+    pub penalty: Vec<f64>,
+    /// Largest local strain component.
+    pub largest_strain: f64,
+}
+
+impl Fields {
+    pub fn new(n: usize, n_points: usize, law: &Law, outputs: usize) -> Self {
+        let p = n * n_points;
+        Self {
+            n_points,
+            points: vec![0.0; 2 * p],
+            stress: vec![0.0; 4 * p],
+            strain: vec![0.0; 4 * p],
+            energy: vec![0.0; p],
+            volume: vec![0.0; p],
+            outputs: vec![vec![0.0; p]; outputs],
+            tensors: vec![vec![0.0; 4 * p]; law.tensors().len()],
+            thickness: vec![0.0; p],
+            rotation: vec![0.0; n],
+            penalty: vec![0.0; n],
+            largest_strain: 0.0,
+        }
+    }
+}
+
+/// Turn a symmetric tensor (xx, yy, xy) by an angle given by its cosine and sine.
+fn turn(t: [f64; 3], c: f64, s: f64) -> [f64; 3] {
+    [
+        c * c * t[0] + s * s * t[1] - 2.0 * c * s * t[2],
+        s * s * t[0] + c * c * t[1] + 2.0 * c * s * t[2],
+        c * s * (t[0] - t[1]) + (c * c - s * s) * t[2],
+    ]
+}
+
+pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
+    chunk: &ChunkOf<E, N, M, A>,
+    context: &Context<'_>,
+    out: &mut Fields,
+) where
+    E: Element<N, M, A>,
+{
+    use crate::elements::Operator;
+    let section = chunk.shared.section(context.turning);
+    let members = section.law.n_state();
+    let n_points = section.points.len();
+    let mut new = vec![0.0; members * n_points];
+    for e in 0..chunk.nodes.len() {
+        let (x, u) = chunk.gather::<f64>(e, context);
+        let frame = Frame::new(&x, &u, context.turning && E::TURNS);
+        let stride = chunk.stride();
+        let rows = 4 * n_points;
+        let initial: Vec<f64> = match chunk.initial_from(e) {
+            [] => Vec::new(),
+            from => (0..rows).map(|m| from[m * stride]).collect(),
+        };
+        let element = chunk.elements[e] as usize;
+        if E::LINE {
+            let axial = initial.first().copied().unwrap_or(0.0);
+            let found = E::resultants(&x, &frame.q, section, axial);
+            let volume = section.thickness * E::measure(&x, &section.points[0]);
+            let mut position = [0.0; 2];
+            for a in 0..N {
+                for i in 0..2 {
+                    position[i] += (x[a][i] + u[a][i]) / N as f64;
+                }
+            }
+            out.points[2 * element..2 * element + 2].copy_from_slice(&position);
+            let t = frame.to_global(found.axis);
+            let tensor = [t[0] * t[0], t[1] * t[1], 0.0, t[0] * t[1]];
+            for i in 0..4 {
+                out.stress[4 * element + i] = found.stress * tensor[i];
+                out.strain[4 * element + i] = found.strain * tensor[i];
+            }
+            out.strain[4 * element + 3] *= 2.0;
+            for (values, v) in out.outputs.iter_mut().zip(found.outputs) {
+                values[element] = v;
+            }
+            out.volume[element] = volume;
+            // Springs have no volume to spread their energy over.
+            if volume > 0.0 {
+                out.energy[element] = found.energy / volume;
+            } else {
+                out.penalty[element] = found.energy;
+            }
+            out.rotation[element] = frame.angle();
+            continue;
+        }
+        let old: Vec<f64> = (0..members * n_points).map(|m| chunk.old[m * stride + e]).collect();
+        let mut alpha: Vec<f64> = (0..2 * A).map(|m| chunk.alpha[m * stride + e]).collect();
+        {
+            // The internal modes that belong to these nodal dofs.
+            let mut history = History {
+                old: &old,
+                new: &mut new,
+                alpha: &mut alpha,
+                initial: &initial,
+                stride: 1,
+            };
+            let _ = local::<E, f64, N, M, A>(&x, &frame.q, section, &mut history, false);
+        }
+        let mut modes = [[0.0; 2]; A];
+        for m in 0..A {
+            modes[m] = [alpha[2 * m], alpha[2 * m + 1]];
+        }
+        let prepared = E::prepare(&x, section.parameter);
+        let bar = section
+            .mean_dilatation
+            .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
+        for (p, point) in section.points.iter().enumerate() {
+            let s = E::sample(&x, &prepared, point);
+            let mut h = gradient(&s, &frame.q, &modes);
+            if let Some(bar) = &bar {
+                bar.apply(&mut h);
+            }
+            let total = section.strain.strain(&h);
+            let offset = |row: usize| initial.get(4 * p + row).copied().unwrap_or(0.0);
+            // What the law sees; output is the total strain.
+            let strain = [total[0] - offset(0), total[1] - offset(1), total[2] - offset(2)];
+            let range = p * members..(p + 1) * members;
+            let mut state =
+                PointState { old: &old[range.clone()], new: &mut new[range.clone()], stride: 1 };
+            let stress = section.law.update(strain, &mut state).stress;
+            let state = &new[range];
+            let (mut strain_zz, mut stress_zz) = section.law.out_of_plane(strain, stress, state);
+            match section.plane {
+                Plane::Stress => strain_zz += offset(3),
+                Plane::Strain => stress_zz += offset(3),
+            }
+            let stretch = section.strain.stretch(strain_zz);
+            let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);
+            let s_global = turn([xx, yy, xy], frame.cos, frame.sin);
+            let e_global = turn([total[0], total[1], 0.5 * total[2]], frame.cos, frame.sin);
+            let at = element * n_points + p;
+            let mut position = [0.0; 2];
+            for a in 0..N {
+                for i in 0..2 {
+                    position[i] += point.n[a] * (x[a][i] + u[a][i]);
+                }
+            }
+            out.points[2 * at..2 * at + 2].copy_from_slice(&position);
+            let row = [s_global[0], s_global[1], zz, s_global[2]];
+            out.stress[4 * at..4 * at + 4].copy_from_slice(&row);
+            let row = [e_global[0], e_global[1], strain_zz, 2.0 * e_global[2]];
+            out.strain[4 * at..4 * at + 4].copy_from_slice(&row);
+            out.energy[at] = section.law.energy(strain, stress, state);
+            out.volume[at] = s.weight * section.thickness;
+            for (i, values) in out.outputs.iter_mut().enumerate() {
+                values[at] = section.law.output(i, stress, state);
+            }
+            out.thickness[at] = section.thickness * stretch;
+            for (i, (kind, values)) in
+                section.law.tensors().iter().zip(&mut out.tensors).enumerate()
+            {
+                let [xx, yy, zz, xy] = section.law.tensor(i, state);
+                let shear = if kind.engineering { 0.5 } else { 1.0 };
+                let t = turn([xx, yy, shear * xy], frame.cos, frame.sin);
+                values[4 * at..4 * at + 4].copy_from_slice(&[t[0], t[1], zz, t[2] / shear]);
+            }
+            for v in total {
+                out.largest_strain = out.largest_strain.max(v.abs());
+            }
+            if E::Op::<f64>::DRILL {
+                let mut drill = s.op.drill(&frame.q);
+                for m in 0..A {
+                    drill += 0.5 * (s.modes[m][0] * modes[m][1] - s.modes[m][1] * modes[m][0]);
+                }
+                let gamma = section.parameter * section.thickness * s.weight;
+                out.penalty[element] += 0.5 * gamma * drill * drill;
+            }
+        }
+        out.rotation[element] = frame.angle();
+    }
+}
+
+/// Strains that the material meets at the points, `[n, p, 3]` of the whole block.
+pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
+    chunk: &ChunkOf<E, N, M, A>,
+    context: &Context<'_>,
+    alpha: &[f64],
+    out: &mut [f64],
+) where
+    E: Element<N, M, A>,
+{
+    let section = chunk.shared.section(context.turning);
+    let n_points = section.points.len();
+    let stride = chunk.stride();
+    for e in 0..chunk.nodes.len() {
+        let (x, u) = chunk.gather::<f64>(e, context);
+        let frame = Frame::new(&x, &u, context.turning && E::TURNS);
+        let mut modes = [[0.0; 2]; A];
+        for m in 0..A {
+            modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];
+        }
+        let prepared = E::prepare(&x, section.parameter);
+        let bar = section
+            .mean_dilatation
+            .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
+        for (p, point) in section.points.iter().enumerate() {
+            let s = E::sample(&x, &prepared, point);
+            let mut h = gradient(&s, &frame.q, &modes);
+            if let Some(bar) = &bar {
+                bar.apply(&mut h);
+            }
+            let at = 3 * (chunk.elements[e] as usize * n_points + p);
+            out[at..at + 3].copy_from_slice(&section.strain.strain(&h));
+        }
+    }
+}

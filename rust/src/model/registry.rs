@@ -1,0 +1,89 @@
+//! The one list of elements: name, type, sizes (nodes, dofs a node, internal modes).
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// Call `$then!(Type, N, M, A)` for every registered planar element.
+#[macro_export]
+macro_rules! for_each_planar_element {
+    ($then:ident) => {
+        $then!($crate::elements::t3::T3, 3, 2, 0);
+        $then!($crate::elements::t6::T6, 6, 2, 0);
+        $then!($crate::elements::q4::Q4, 4, 2, 0);
+        $then!($crate::elements::q4i::Q4i, 4, 2, 2);
+        $then!($crate::elements::q8::Q8, 8, 2, 0);
+        $then!($crate::elements::q8::Q8r, 8, 2, 0);
+        $then!($crate::elements::q9::Q9, 9, 2, 0);
+        $then!($crate::elements::opt::Opt, 3, 3, 0);
+        $then!($crate::elements::q4d::Q4d, 4, 3, 1);
+    };
+}
+
+/// Call `$then!(Type, N, M, A)` for every registered element.
+#[macro_export]
+macro_rules! for_each_element {
+    ($then:ident) => {
+        $crate::for_each_planar_element!($then);
+        $then!($crate::elements::line::Truss, 2, 2, 0);
+        $then!($crate::elements::line::Beam, 2, 3, 0);
+        $then!($crate::elements::line::Spring, 2, 2, 0);
+        $then!($crate::elements::line::Ground, 1, 2, 0);
+        $then!($crate::elements::line::GroundTurn, 1, 3, 0);
+        $then!($crate::elements::line::Between, 2, 2, 0);
+        $then!($crate::elements::line::BetweenTurn, 2, 3, 0);
+    };
+}
+
+use crate::elements::Element;
+
+/// Facts of an element that the outside needs.
+#[derive(Clone, Debug)]
+pub struct Facts {
+    pub name: &'static str,
+    pub cell: &'static str,
+    pub n_nodes: usize,
+    pub dofs_per_node: usize,
+    pub n_internal_modes: usize,
+    pub n_points: usize,
+    pub hourglass_modes: usize,
+    pub alpha_b: f64,
+    /// Structural companion.
+    pub line: bool,
+    /// Whether its frame turns with it.
+    pub turns: bool,
+    /// Names of resultants of line elements.
+    pub outputs: &'static [&'static str],
+}
+
+/// All registered elements.
+pub fn facts() -> Vec<Facts> {
+    fn of<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() -> Facts {
+        Facts {
+            name: E::NAME,
+            cell: E::CELL,
+            n_nodes: N,
+            dofs_per_node: M,
+            n_internal_modes: A,
+            n_points: E::rule().len(),
+            hourglass_modes: E::HOURGLASS,
+            alpha_b: E::ALPHA_B,
+            line: E::LINE,
+            turns: E::TURNS,
+            outputs: E::OUTPUTS,
+        }
+    }
+    let mut all = Vec::new();
+    macro_rules! push {
+        ($e:ty, $n:literal, $m:literal, $a:literal) => {
+            all.push(of::<$e, $n, $m, $a>());
+        };
+    }
+    for_each_element!(push);
+    all
+}
+
+/// Facts of the element of that name.
+pub fn find(name: &str) -> Result<Facts, String> {
+    facts().into_iter().find(|f| f.name == name).ok_or_else(|| {
+        let names: Vec<_> = facts().iter().map(|f| f.name).collect();
+        format!("no element named {name:?}; there are {}", names.join(", "))
+    })
+}

@@ -1,0 +1,19 @@
+//! The border to Python: conversions, names, docstrings; no numerics.
+// SPDX-License-Identifier: BSD-3-Clause
+
+mod io;
+mod linear;
+mod material;
+mod problem;
+
+use pyo3::prelude::*;
+
+/// Compiled core of Corota.
+#[pymodule]
+fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    io::register(m)?;
+    linear::register(m)?;
+    material::register(m)?;
+    problem::register(m)?;
+    Ok(())
+}

@@ -1,0 +1,510 @@
+//! `Problem` and the list of elements for Python.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use crate::base::Lanes;
+use crate::kinematics::inertia::MassKind;
+use crate::loads::body::Field;
+use crate::loads::edge;
+use crate::materials::Law;
+use crate::model::dynamics::{Between, Motion};
+use crate::model::problem::{BlockInput, Failed, Options, Problem};
+use crate::model::registry;
+use crate::model::sizes;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+fn value_error(message: impl Into<String>) -> PyErr {
+    PyValueError::new_err(message.into())
+}
+
+/// Elements failed: a ``RuntimeError`` whose second argument is the list of (block, element).
+fn failed(f: Failed) -> PyErr {
+    PyRuntimeError::new_err(("elements could not be evaluated", f.0))
+}
+
+/// Discrete model: blocks of elements, dofs, sparsity pattern, assembly.
+#[pyclass(name = "Problem")]
+pub struct PyProblem {
+    inner: Problem,
+}
+
+#[pymethods]
+impl PyProblem {
+    /// Problem(points, blocks, extra_dofs)
+    ///
+    /// ``points`` (n, 2); ``blocks`` a list of dicts with element, law, parameters, plane,
+    /// local_strain, thickness, rho, nodes (flat uint32), and
+    /// where wanted profile (3 numbers), mean_dilatation (bool) and beta0 (float or None); ``extra_dofs`` (n,) uint8 or empty.
+    #[new]
+    fn new(
+        points: PyReadonlyArray2<'_, f64>,
+        blocks: &Bound<'_, PyList>,
+        extra_dofs: PyReadonlyArray1<'_, u8>,
+    ) -> PyResult<Self> {
+        let x: Vec<[f64; 2]> = points.as_slice()?.as_chunks::<2>().0.to_vec();
+        let mut inputs = Vec::new();
+        for block in blocks {
+            let d = block.cast::<PyDict>()?;
+            let get = |key: &str| -> PyResult<Bound<'_, PyAny>> {
+                d.get_item(key)?.ok_or_else(|| value_error(format!("block lacks {key:?}")))
+            };
+            let plane: String = get("plane")?.extract()?;
+            let nodes: PyReadonlyArray1<'_, u32> = get("nodes")?.extract()?;
+            inputs.push(BlockInput {
+                element: get("element")?.extract()?,
+                law: get("law")?.extract()?,
+                parameters: get("parameters")?.extract()?,
+                plane: super::material::plane(&plane)?,
+                local_strain: get("local_strain")?.extract()?,
+                thickness: get("thickness")?.extract()?,
+                profile: match d.get_item("profile")? {
+                    Some(v) => v.extract()?,
+                    None => [0.0; 3],
+                },
+                rho: get("rho")?.extract()?,
+                options: Options {
+                    mean_dilatation: match d.get_item("mean_dilatation")? {
+                        Some(v) => v.extract()?,
+                        None => false,
+                    },
+                    beta0: match d.get_item("beta0")? {
+                        Some(v) => v.extract()?,
+                        None => None,
+                    },
+                },
+                nodes: nodes.as_slice()?.to_vec(),
+            });
+        }
+        let extra = extra_dofs.as_slice()?;
+        let inner = Problem::new(x, &inputs, extra).map_err(value_error)?;
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn n_dofs(&self) -> usize {
+        self.inner.dofs.n_dofs()
+    }
+
+    /// First dof of each node and the total, shape (n_nodes + 1,).
+    #[getter]
+    fn dof_start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.inner.dofs.start.clone().into_pyarray(py)
+    }
+
+    /// Node of each dof, shape (n_dofs,).
+    #[getter]
+    fn node_of_dof<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.inner.dofs.node_of_dof().into_pyarray(py)
+    }
+
+    /// Column pointers of the upper triangle, shape (n_dofs + 1,).
+    #[getter]
+    fn indptr<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+        let p: Vec<u64> = self.inner.dofs.indptr.iter().map(|&p| p as u64).collect();
+        p.into_pyarray(py)
+    }
+
+    /// Row indices of the upper triangle.
+    #[getter]
+    fn indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.inner.dofs.indices.clone().into_pyarray(py)
+    }
+
+    fn set_threads(&mut self, n: usize) -> PyResult<()> {
+        self.inner.set_threads(n).map_err(value_error)
+    }
+
+    /// Numbers that kernels treat at once, "best", "scalar", "4" or "8"; returns how many it is.
+    fn set_lanes(&mut self, lanes: &str) -> PyResult<usize> {
+        let lanes = Lanes::new(lanes).map_err(value_error)?;
+        self.inner.set_lanes(lanes);
+        Ok(lanes.width())
+    }
+
+    /// Fill ``force``, ``scale`` and, unless it is empty, ``values`` (upper triangle).
+    fn assemble(
+        &mut self,
+        py: Python<'_>,
+        u: PyReadonlyArray1<'_, f64>,
+        turning: bool,
+        mut force: PyReadwriteArray1<'_, f64>,
+        mut scale: PyReadwriteArray1<'_, f64>,
+        mut values: PyReadwriteArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let n = self.inner.dofs.n_dofs();
+        let (u, f, s, v) =
+            (u.as_slice()?, force.as_slice_mut()?, scale.as_slice_mut()?, values.as_slice_mut()?);
+        let nnz = self.inner.dofs.indices.len();
+        if u.len() != n || f.len() != n || s.len() != n || !(v.is_empty() || v.len() == nnz) {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let inner = &mut self.inner;
+        py.detach(|| inner.assemble(u, turning, f, s, v)).map_err(failed)
+    }
+
+    /// Add inertia forces and effective tangents (see ``Problem::inertia``).
+    #[allow(clippy::too_many_arguments)]
+    fn inertia(
+        &self,
+        py: Python<'_>,
+        u: PyReadonlyArray1<'_, f64>,
+        v: PyReadonlyArray1<'_, f64>,
+        a: PyReadonlyArray1<'_, f64>,
+        kind: &str,
+        weights: [f64; 3],
+        mut force: PyReadwriteArray1<'_, f64>,
+        mut scale: PyReadwriteArray1<'_, f64>,
+        mut values: PyReadwriteArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let kind = MassKind::new(kind).map_err(value_error)?;
+        let (u, v, a) = (u.as_slice()?, v.as_slice()?, a.as_slice()?);
+        let (f, s, k) = (force.as_slice_mut()?, scale.as_slice_mut()?, values.as_slice_mut()?);
+        let n = self.inner.dofs.n_dofs();
+        let fits = [u.len(), v.len(), a.len(), f.len(), s.len()].iter().all(|&l| l == n);
+        if !fits || !(k.is_empty() || k.len() == self.inner.dofs.indices.len()) {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let motion = Motion { v, a, kind, weights };
+        py.detach(|| self.inner.inertia(u, &motion, f, s, k));
+        Ok(())
+    }
+
+    /// Forces of a conserving step from (u0, v0) to ``u`` (see ``Problem::conserving``).
+    #[allow(clippy::too_many_arguments)]
+    fn conserving(
+        &mut self,
+        py: Python<'_>,
+        u: PyReadonlyArray1<'_, f64>,
+        u0: PyReadonlyArray1<'_, f64>,
+        v0: PyReadonlyArray1<'_, f64>,
+        dt: f64,
+        kind: &str,
+        turning: bool,
+        mut force: PyReadwriteArray1<'_, f64>,
+        mut internal: PyReadwriteArray1<'_, f64>,
+        mut scale: PyReadwriteArray1<'_, f64>,
+        mut values: PyReadwriteArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let kind = MassKind::new(kind).map_err(value_error)?;
+        let (u, u0, v0) = (u.as_slice()?, u0.as_slice()?, v0.as_slice()?);
+        let (f, i) = (force.as_slice_mut()?, internal.as_slice_mut()?);
+        let (s, k) = (scale.as_slice_mut()?, values.as_slice_mut()?);
+        let n = self.inner.dofs.n_dofs();
+        let fits = [u.len(), u0.len(), v0.len(), f.len(), i.len(), s.len()];
+        if fits.iter().any(|&l| l != n)
+            || !(k.is_empty() || k.len() == self.inner.dofs.indices.len())
+        {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let between = Between { u0, v0, dt, kind };
+        let inner = &mut self.inner;
+        py.detach(|| inner.conserving(u, &between, turning, [f, i, s, k])).map_err(failed)
+    }
+
+    /// Begin a motion of the conserving scheme.
+    fn start_motion(
+        &mut self,
+        u: PyReadonlyArray1<'_, f64>,
+        v: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        self.inner.start_motion(u.as_slice()?, v.as_slice()?);
+        Ok(())
+    }
+
+    /// (kinetic energy, momentum x, momentum y, angular momentum about the origin, mass).
+    fn momenta(
+        &self,
+        u: PyReadonlyArray1<'_, f64>,
+        v: PyReadonlyArray1<'_, f64>,
+        kind: &str,
+        carried: bool,
+    ) -> PyResult<(f64, f64, f64, f64, f64)> {
+        let kind = MassKind::new(kind).map_err(value_error)?;
+        let m = self.inner.momenta(u.as_slice()?, v.as_slice()?, kind, carried);
+        Ok((m.kinetic, m.linear[0], m.linear[1], m.angular, m.mass))
+    }
+
+    /// Set the initial strain of a block, rows xx, yy, xy and the share through the thickness
+    /// by element and point, shape (n, p, 4) flat; empty for none.
+    fn set_initial(&mut self, block: usize, values: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        self.inner.set_initial(block, values.as_slice()?).map_err(value_error)
+    }
+
+    /// Make the trial history the committed one.
+    fn commit(&mut self, py: Python<'_>) {
+        let inner = &mut self.inner;
+        py.detach(|| inner.commit());
+    }
+
+    /// Strains that the materials of a block meet, flat (n, p, 3), with the ``committed``
+    /// internal modes or those of the last evaluation.
+    fn strains<'py>(
+        &self,
+        py: Python<'py>,
+        block: usize,
+        u: PyReadonlyArray1<'py, f64>,
+        turning: bool,
+        committed: bool,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        if block >= self.inner.blocks.len() || u.as_slice()?.len() != self.inner.dofs.n_dofs() {
+            return Err(value_error("the block or the displacements do not fit the problem"));
+        }
+        Ok(self.inner.strains(block, u.as_slice()?, turning, committed).into_pyarray(py))
+    }
+
+    /// Write the committed history of a block, flat (n, p, members).
+    fn give(&mut self, block: usize, values: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        if block >= self.inner.blocks.len() {
+            return Err(value_error("there is no such block"));
+        }
+        self.inner.give(block, values.as_slice()?).map_err(value_error)
+    }
+
+    /// Largest growth of the equivalent plastic strain of the last evaluation.
+    fn plastic_increment(&self) -> f64 {
+        self.inner.plastic_increment()
+    }
+
+    /// Largest absolute values, each of displacement dofs and of rotations: forces (``scale`` and
+    /// ``external``), residual at free dofs, its place, displacements.
+    fn sizes(
+        &self,
+        residual: PyReadonlyArray1<'_, f64>,
+        scale: PyReadonlyArray1<'_, f64>,
+        external: PyReadonlyArray1<'_, f64>,
+        u: PyReadonlyArray1<'_, f64>,
+        held: PyReadonlyArray1<'_, bool>,
+    ) -> PyResult<([f64; 2], [f64; 2], [usize; 2], [f64; 2])> {
+        let dofs = &self.inner.dofs;
+        let (r, s, e) = (residual.as_slice()?, scale.as_slice()?, external.as_slice()?);
+        let (u, held) = (u.as_slice()?, held.as_slice()?);
+        let n = dofs.n_dofs();
+        if [r.len(), s.len(), e.len(), u.len(), held.len()] != [n; 5] {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let sizes = sizes::sizes(dofs, r, s, e, u, held);
+        Ok((sizes.scale, sizes.residual, sizes.worst, sizes.displacement))
+    }
+
+    /// Product of the symmetric matrix ``values`` with ``x``.
+    fn multiply<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+        x: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (v, x) = (values.as_slice()?, x.as_slice()?);
+        let dofs = &self.inner.dofs;
+        if v.len() != dofs.indices.len() || x.len() != dofs.n_dofs() {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        Ok(py.detach(|| dofs.multiply(v, x)).into_pyarray(py))
+    }
+
+    /// Replace the rows and columns of held dofs by those of a diagonal matrix.
+    fn mask(
+        &self,
+        py: Python<'_>,
+        mut values: PyReadwriteArray1<'_, f64>,
+        held: PyReadonlyArray1<'_, bool>,
+    ) -> PyResult<()> {
+        let (v, held) = (values.as_slice_mut()?, held.as_slice()?);
+        let dofs = &self.inner.dofs;
+        if v.len() != dofs.indices.len() || held.len() != dofs.n_dofs() {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        py.detach(|| dofs.mask(v, held));
+        Ok(())
+    }
+
+    /// Nodal force by dof of a body force: ``kind`` gravity with value (bx, by), or centrifugal
+    /// with (omega^2, x0, y0); densities and element masks by block.
+    fn body_force<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        value: Vec<f64>,
+        rho: Vec<f64>,
+        masks: Vec<PyReadonlyArray1<'py, bool>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let field = match (kind, value.as_slice()) {
+            ("gravity", &[x, y]) => Field::Uniform([x, y]),
+            ("centrifugal", &[w2, x, y]) => Field::Centrifugal(w2, [x, y]),
+            _ => return Err(value_error(format!("no body force {kind:?} with {value:?}"))),
+        };
+        let masks: Vec<Vec<bool>> = masks.iter().map(|m| m.as_array().to_vec()).collect();
+        let fits = masks.iter().zip(&self.inner.blocks).all(|(m, b)| m.len() == b.n_elements);
+        if masks.len() != self.inner.blocks.len() || rho.len() != masks.len() || !fits {
+            return Err(value_error("densities and masks must fit the blocks"));
+        }
+        Ok(self.inner.body_force(field, &rho, &masks).into_pyarray(py))
+    }
+
+    /// Point fields of every block: a list of dicts of flat arrays.
+    fn recover<'py>(
+        &mut self,
+        py: Python<'py>,
+        u: PyReadonlyArray1<'py, f64>,
+        turning: bool,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let u = u.as_slice()?;
+        let inner = &mut self.inner;
+        let fields = py.detach(|| inner.recover(u, turning));
+        let mut all = Vec::new();
+        for (f, block) in fields.into_iter().zip(&self.inner.blocks) {
+            let d = PyDict::new(py);
+            d.set_item("n_points", f.n_points)?;
+            d.set_item("points", f.points.into_pyarray(py))?;
+            d.set_item("stress", f.stress.into_pyarray(py))?;
+            d.set_item("strain", f.strain.into_pyarray(py))?;
+            d.set_item("energy", f.energy.into_pyarray(py))?;
+            d.set_item("volume", f.volume.into_pyarray(py))?;
+            d.set_item("rotation", f.rotation.into_pyarray(py))?;
+            d.set_item("penalty", f.penalty.into_pyarray(py))?;
+            d.set_item("shape", block.shape.clone().into_pyarray(py))?;
+            d.set_item("largest_strain", f.largest_strain)?;
+            let outputs = PyDict::new(py);
+            for (name, values) in block.outputs().iter().zip(f.outputs) {
+                outputs.set_item(name, values.into_pyarray(py))?;
+            }
+            d.set_item("outputs", outputs)?;
+            let tensors = PyDict::new(py);
+            for (kind, values) in block.law.tensors().iter().zip(f.tensors) {
+                tensors.set_item(kind.name, values.into_pyarray(py))?;
+            }
+            d.set_item("tensors", tensors)?;
+            d.set_item("thickness", f.thickness.into_pyarray(py))?;
+            all.push(d);
+        }
+        Ok(all)
+    }
+}
+
+/// Loaded edges, all with the same kind of load.
+///
+/// EdgeLoads(nodes, thickness, alpha_b): ``nodes`` (n, 3) uint32, the third repeated from the
+/// first where the edge is straight.
+#[pyclass(name = "EdgeLoads")]
+pub struct PyEdgeLoads {
+    edges: Vec<edge::Edge>,
+}
+
+#[pymethods]
+impl PyEdgeLoads {
+    #[new]
+    fn new(
+        nodes: PyReadonlyArray2<'_, u32>,
+        thickness: PyReadonlyArray1<'_, f64>,
+        alpha_b: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let (t, b) = (thickness.as_slice()?, alpha_b.as_slice()?);
+        let rows = nodes.as_slice()?.as_chunks::<3>().0;
+        let edges = rows.iter().zip(t).zip(b).map(|((&nodes, &thickness), &alpha_b)| {
+            let n_nodes = if nodes[2] == nodes[0] { 2 } else { 3 };
+            edge::Edge { nodes, n_nodes, thickness, alpha_b }
+        });
+        Ok(Self { edges: edges.collect() })
+    }
+
+    /// Nodal force (n_nodes, 3) flat of a dead traction at positions ``x`` (n_nodes, 2).
+    fn traction<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray2<'py, f64>,
+        t: [f64; 2],
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let x = x.as_slice()?.as_chunks::<2>().0;
+        let mut f = vec![0.0; 3 * x.len()];
+        for e in &self.edges {
+            let local = e.nodes.map(|n| x[n as usize]);
+            add(e, &edge::traction(e, &local, t), &mut f);
+        }
+        Ok(f.into_pyarray(py))
+    }
+
+    /// Nodal force (n_nodes, 3) flat of a following pressure at current positions ``x``, and
+    /// its derivative as triplets (row, column, value) with row and column = 3 node + dof.
+    fn pressure<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray2<'py, f64>,
+        p: f64,
+    ) -> PyResult<(
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<u32>>,
+        Bound<'py, PyArray1<u32>>,
+        Bound<'py, PyArray1<f64>>,
+    )> {
+        let x = x.as_slice()?.as_chunks::<2>().0;
+        let mut f = vec![0.0; 3 * x.len()];
+        let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        for e in &self.edges {
+            let local = e.nodes.map(|n| x[n as usize]);
+            let (force, k) = edge::pressure(e, &local, p);
+            add(e, &force, &mut f);
+            for a in 0..e.n_nodes {
+                for b in 0..e.n_nodes {
+                    for i in 0..3 {
+                        for j in 0..2 {
+                            if k[a][b][i][j] != 0.0 {
+                                rows.push(3 * e.nodes[a] + i as u32);
+                                columns.push(3 * e.nodes[b] + j as u32);
+                                values.push(k[a][b][i][j]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok((
+            f.into_pyarray(py),
+            rows.into_pyarray(py),
+            columns.into_pyarray(py),
+            values.into_pyarray(py),
+        ))
+    }
+}
+
+fn add(e: &edge::Edge, force: &edge::EdgeForce, f: &mut [f64]) {
+    for a in 0..e.n_nodes {
+        for i in 0..3 {
+            f[3 * e.nodes[a] as usize + i] += force[a][i];
+        }
+    }
+}
+
+/// Facts of all elements: a list of dicts.
+#[pyfunction]
+fn elements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let mut all = Vec::new();
+    for f in registry::facts() {
+        let d = PyDict::new(py);
+        d.set_item("name", f.name)?;
+        d.set_item("cell", f.cell)?;
+        d.set_item("n_nodes", f.n_nodes)?;
+        d.set_item("dofs_per_node", f.dofs_per_node)?;
+        d.set_item("n_points", f.n_points)?;
+        d.set_item("hourglass_modes", f.hourglass_modes)?;
+        d.set_item("alpha_b", f.alpha_b)?;
+        d.set_item("line", f.line)?;
+        d.set_item("turns", f.turns)?;
+        all.push(d);
+    }
+    Ok(all)
+}
+
+/// Names of all materials.
+#[pyfunction]
+fn materials() -> Vec<&'static str> {
+    Law::NAMES.to_vec()
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<PyProblem>()?;
+    m.add_class::<PyEdgeLoads>()?;
+    m.add_function(wrap_pyfunction!(elements, m)?)?;
+    m.add_function(wrap_pyfunction!(materials, m)?)?;
+    Ok(())
+}

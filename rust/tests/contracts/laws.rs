@@ -1,0 +1,145 @@
+//! Materials: the tangent is the derivative of the stress, symmetric, and at small strain the
+//! moduli; energy and thickness values belong to the stress.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use crate::common::Random;
+use corota::base::{Dual, Real};
+use corota::materials::{Law, Plane, PointState};
+
+const EXACT: f64 = 1e-10;
+
+/// Constants to try each law with.
+fn parameters(name: &str) -> Vec<Vec<f64>> {
+    match name {
+        "elastic" => vec![vec![7.0, 0.3]],
+        "orthotropic" => vec![vec![9.0, 4.0, 3.0, 0.25, 0.2, 0.3, 1.7, 0.6]],
+        "mises" => vec![
+            // perfectly plastic; linear isotropic and kinematic; Voce; table
+            vec![7.0, 0.3, 0.0, 0.0, 0.05, 0.0],
+            vec![7.0, 0.3, 1.0, 0.8, 0.0, 0.0, 0.05, 0.4],
+            vec![7.0, 0.3, 0.0, 2.0, 0.05, 0.03, 40.0, 0.1],
+            vec![7.0, 0.3, 0.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
+        ],
+        "given" => vec![vec![9.0, 2.0, 0.5, 2.0, 6.0, -0.4, 0.5, -0.4, 3.0]],
+        other => panic!("give constants to try the law {other:?} with"),
+    }
+}
+
+/// History of a point at rest.
+fn rest(name: &str, law: &Law) -> Vec<f64> {
+    let mut state = vec![0.0; law.n_state()];
+    if name == "given" {
+        let c = law.moduli();
+        state[6..12].copy_from_slice(&[c[0][0], c[0][1], c[0][2], c[1][1], c[1][2], c[2][2]]);
+    }
+    state
+}
+
+fn stress<T: Real>(law: &Law, strain: [T; 3], old: &[f64]) -> ([T; 3], [[T; 3]; 3], Vec<f64>) {
+    let mut new = old.to_vec();
+    let mut state = PointState { old, new: &mut new, stride: 1 };
+    let answer = law.update(strain, &mut state);
+    assert!(!T::any(answer.failed));
+    (answer.stress, answer.tangent, new)
+}
+
+#[test]
+fn tangent_is_the_derivative_of_the_stress() {
+    for name in Law::NAMES {
+        for plane in [Plane::Stress, Plane::Strain] {
+            for numbers in parameters(name) {
+                let law = Law::new(name, &numbers, plane).expect("valid constants");
+                paths(name, &law, &format!("{name} {plane:?} {numbers:?}"));
+            }
+        }
+    }
+}
+
+/// Random strain paths; the first stays so small that it is elastic.
+fn paths(name: &str, law: &Law, what: &str) {
+    let mut random = Random::new(8);
+    let moduli = law.moduli();
+    let top = moduli[0][0].max(moduli[1][1]);
+    for path in 0..40 {
+        let size = if path == 0 { 1e-9 } else { 0.02 };
+        let mut old = rest(name, law);
+        let mut strain = [0.0; 3];
+        for step in 0..6 {
+            for e in &mut strain {
+                *e += size * random.signed();
+            }
+            let mut variable = [Dual::<3>::real(0.0); 3];
+            for i in 0..3 {
+                variable[i] = Dual::variable(strain[i], i);
+            }
+            let (s, t, new) = stress(law, strain, &old);
+            let (dual, _, _) = stress(law, variable, &old);
+            for i in 0..3 {
+                assert!((dual[i].v - s[i]).abs() <= 1e-13 * top, "{what}: number types");
+                for j in 0..3 {
+                    let error = (t[i][j] - dual[i].d[j]).abs() / top;
+                    assert!(error <= EXACT, "{what}: step {step}: off by {error:e}");
+                    let skew = (t[i][j] - t[j][i]).abs() / top;
+                    assert!(skew <= 1e-13, "{what}: not symmetric {skew:e}");
+                    if path == 0 {
+                        let error = (t[i][j] - moduli[i][j]).abs() / top;
+                        assert!(error <= 1e-13, "{what}: moduli {error:e}");
+                    }
+                }
+            }
+            old = new;
+        }
+    }
+}
+
+/// Compliance of an isotropic and an orthotropic solid in its own axes, by rows 11, 22, 33.
+fn compliance(name: &str) -> ([[f64; 3]; 3], f64, f64) {
+    if name == "elastic" {
+        let (e, nu) = (7.0, 0.3);
+        let (d, o) = (1.0 / e, -nu / e);
+        ([[d, o, o], [o, d, o], [o, o, d]], 2.0 * (1.0 + nu) / e, 0.0)
+    } else {
+        let (a, b, c) = (-0.25 / 9.0, -0.2 / 9.0, -0.3 / 4.0);
+        let s = [[1.0 / 9.0, a, b], [a, 0.25, c], [b, c, 1.0 / 3.0]];
+        (s, 1.0 / 1.7, 0.6)
+    }
+}
+
+/// Hooke's law in three dimensions, from the stress back to the strain, in material axes.
+#[test]
+fn elastic_laws_obey_hooke_in_three_dimensions() {
+    let mut random = Random::new(9);
+    for name in ["elastic", "orthotropic"] {
+        let (s, shear, angle) = compliance(name);
+        for plane in [Plane::Stress, Plane::Strain] {
+            let law = Law::new(name, &parameters(name)[0], plane).expect("valid constants");
+            for _ in 0..20 {
+                let e = [random.signed(), random.signed(), random.signed()];
+                let (t, _, state) = stress(&law, e, &[]);
+                let (strain_zz, stress_zz) = law.out_of_plane(e, t, &state);
+                let to_material = |v: [f64; 3]| {
+                    let (s, c) = f64::sin_cos(angle);
+                    [
+                        c * c * v[0] + s * s * v[1] + 2.0 * c * s * v[2],
+                        s * s * v[0] + c * c * v[1] - 2.0 * c * s * v[2],
+                        c * s * (v[1] - v[0]) + (c * c - s * s) * v[2],
+                    ]
+                };
+                let tensor = to_material([e[0], e[1], 0.5 * e[2]]);
+                let t_material = to_material(t);
+                let normal = [t_material[0], t_material[1], stress_zz];
+                for (i, expected) in [tensor[0], tensor[1], strain_zz].into_iter().enumerate() {
+                    let found: f64 = (0..3).map(|j| s[i][j] * normal[j]).sum();
+                    assert!((found - expected).abs() < 1e-13, "{name} {plane:?}: strain {i}");
+                }
+                assert!((shear * t_material[2] - 2.0 * tensor[2]).abs() < 1e-13, "{name}: shear");
+                match plane {
+                    Plane::Stress => assert!(stress_zz == 0.0),
+                    Plane::Strain => assert!(strain_zz == 0.0),
+                }
+                let work = 0.5 * (e[0] * t[0] + e[1] * t[1] + e[2] * t[2]);
+                assert!((law.energy(e, t, &state) - work).abs() < 1e-13, "{name}: energy");
+            }
+        }
+    }
+}

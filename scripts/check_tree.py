@@ -1,0 +1,62 @@
+"""Check what no linter sees: file sizes, licence lines, foreign addresses, the changelog."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+MAX_KILOBYTES = 600
+MAX_LINES = 600
+SPDX = "SPDX-License-Identifier: BSD-3-Clause"
+SOURCES = {".py", ".pyi", ".rs", ".sh"}
+REGISTRY = re.compile(r"--(extra-)?index-url|--find-links|^# .*https?://", re.MULTILINE)
+
+
+def tracked() -> list[Path]:
+    """Files under version control, relative to the root."""
+    listing = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout
+    return [Path(name) for name in listing.split("\0") if name and (ROOT / name).is_file()]
+
+
+def faults(path: Path) -> list[str]:
+    """List what is wrong with one file.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the root.
+    """
+    file = ROOT / path
+    found = []
+    size = file.stat().st_size
+    if size > MAX_KILOBYTES * 1024:
+        found.append(f"{size // 1024} kB; at most {MAX_KILOBYTES}")
+    if path.suffix in SOURCES:
+        text = file.read_text(encoding="utf-8")
+        if text.strip() and SPDX not in text[:2000]:
+            found.append(f"no line '{SPDX}' at its head")
+        if text.count("\n") > MAX_LINES:
+            found.append(f"{text.count(chr(10))} lines; at most {MAX_LINES}")
+    pins = path.name.startswith("requirements")
+    if pins and REGISTRY.search(file.read_text(encoding="utf-8")):
+        found.append("holds the address of a registry")
+    return found
+
+
+def main() -> int:
+    """Print the faults; 1 if there are any."""
+    lines = [f"{path}: {fault}" for path in tracked() for fault in faults(path)]
+    if "## [Unreleased]" not in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"):
+        lines.append("CHANGELOG.md: no section '## [Unreleased]'")
+    print("\n".join(lines) if lines else "tree: sizes, licences and pins are in order")
+    return 1 if lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

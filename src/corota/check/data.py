@@ -1,0 +1,107 @@
+"""Counts, sets that nothing uses, steps and loads without effect."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.check.parts import cells_of
+from corota.errors import Diagnostic
+from corota.model import BodyForce, EdgeLoad, NodalForce
+
+if TYPE_CHECKING:
+    from corota.model import Load, Model
+
+
+def check_data(model: Model) -> list[Diagnostic]:
+    """Findings about the model's lists."""
+    mesh = model.mesh
+    kinds = ", ".join(f"{len(c)} {c.kind}" for c in mesh.cells) or "no cells"
+    found = [Diagnostic("note", f"{mesh.n_nodes} nodes, {kinds}, {len(model.steps)} steps")]
+    loads = model.loads + [load for step in model.steps for load in step.loads]
+    found += _effects(model, loads)
+    found += _unused(model, loads)
+    for number, step in enumerate(model.steps, start=1):
+        moved = any(s.value != 0.0 for s in model.supports + step.supports)
+        later = number > 1
+        if not (moved or later or step.loads or model.loads):
+            found.append(
+                Diagnostic("warning", f"step {number}: nothing loads or moves the model",
+                           step.where)
+            )  # fmt: skip
+        if step.procedure.startswith("dynamic"):
+            found += [
+                Diagnostic("error", f"step {number}: material {s.material.name} has no density",
+                           s.where, hint="give *DENSITY (rho=)")
+                for s in model.sections if s.material.rho == 0.0
+            ]  # fmt: skip
+    return found
+
+
+def _effects(model: Model, loads: list[Load]) -> list[Diagnostic]:
+    found = []
+    mesh = model.mesh
+    bare = np.ones(mesh.n_nodes, bool)
+    for block in mesh.cells:
+        bare[block.nodes] = False
+    light = np.zeros(mesh.n_cells, bool)
+    for section in model.sections:
+        if section.material.rho == 0.0:
+            light[cells_of(mesh, section.cells)] = True
+    for load in loads:
+        if isinstance(load, NodalForce):
+            nodes = mesh.nodes_of(load.nodes) if isinstance(load.nodes, str) else load.nodes
+            lost = nodes[bare[nodes]]
+            if len(lost):
+                found.append(
+                    Diagnostic(
+                        "error",
+                        f"node {mesh.node_labels[lost[0]]} is loaded and belongs to no cell",
+                        load.where,
+                    )
+                )
+        elif isinstance(load, BodyForce):
+            cells = cells_of(mesh, load.cells)
+            if len(cells) and light[cells].any():
+                label = mesh.cell_labels[cells[light[cells]][0]]
+                found.append(
+                    Diagnostic(
+                        "error",
+                        f"{load.kind} acts on element {label}, whose material has no density",
+                        load.where,
+                        hint="give *DENSITY (rho=)",
+                    )
+                )
+    return found
+
+
+def _unused(model: Model, loads: list[Load]) -> list[Diagnostic]:
+    used: set[str] = set()
+
+    def use(where: object) -> None:
+        if isinstance(where, str):
+            used.add(where)
+
+    for section in model.sections:
+        use(section.cells)
+    for support in model.supports + [s for step in model.steps for s in step.supports]:
+        use(support.nodes)
+    for load in loads:
+        if isinstance(load, NodalForce):
+            use(load.nodes)
+        elif isinstance(load, EdgeLoad):
+            use(load.edges)
+        else:
+            use(load.cells)
+    for step in model.steps:
+        for request in step.outputs:
+            use(request.where)
+    mesh = model.mesh
+    names = dict.fromkeys([*mesh.node_sets, *mesh.cell_sets, *mesh.edge_sets])
+    idle = [name for name in names if name not in used and name != "all"]
+    if not idle:
+        return []
+    shown = ", ".join(idle[:8]) + (f" and {len(idle) - 8} more" if len(idle) > 8 else "")
+    return [Diagnostic("note", f"sets that nothing uses: {shown}")]

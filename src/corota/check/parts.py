@@ -1,0 +1,60 @@
+"""Which cells and nodes hang together."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from corota.mesh.data import EDGES
+
+if TYPE_CHECKING:
+    from corota.mesh.data import Ints, Mesh
+
+
+def cells_of(mesh: Mesh, where: str | Ints) -> Ints:
+    """Global cell indices of a set name (``all`` and the empty name: every cell) or array."""
+    if not isinstance(where, str):
+        return where
+    if where in mesh.cell_sets:
+        return mesh.cell_sets[where]
+    if where in ("", "all"):
+        return np.arange(mesh.n_cells)
+    return np.zeros(0, np.int64)
+
+
+def part_of_cells(mesh: Mesh) -> Ints:
+    """Number the parts that hang together by common nodes; shape (n_cells,)."""
+    nodes, cells = _incidence(mesh)
+    total = mesh.n_nodes + mesh.n_cells
+    return _components(nodes, cells + mesh.n_nodes, total)[mesh.n_nodes :]
+
+
+def stiff_part_of_cells(mesh: Mesh) -> Ints:
+    """Number the parts that hang together by common sides; shape (n_cells,)."""
+    keys, rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
+        for local in EDGES[block.kind]:
+            ends = np.sort(block.nodes[:, local[:2]], axis=1)
+            keys.append(ends[:, 0] * np.int64(mesh.n_nodes) + ends[:, 1])
+            rows.append(np.arange(len(block)) + offset)
+    key, row = np.concatenate(keys), np.concatenate(rows)
+    order = np.argsort(key, kind="stable")
+    same = np.flatnonzero(np.diff(key[order]) == 0)
+    return _components(row[order[same]], row[order[same + 1]], mesh.n_cells)
+
+
+def _incidence(mesh: Mesh) -> tuple[Ints, Ints]:
+    nodes, cells = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
+        nodes.append(block.nodes.ravel())
+        cells.append(np.repeat(np.arange(len(block)) + offset, block.nodes.shape[1]))
+    return np.concatenate(nodes), np.concatenate(cells)
+
+
+def _components(a: Ints, b: Ints, total: int) -> Ints:
+    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(total, total))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)

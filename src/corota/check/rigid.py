@@ -1,0 +1,200 @@
+"""Free rigid-body modes and hinges, with the node that would hold them."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota import elements
+from corota.check.parts import cells_of, part_of_cells, stiff_part_of_cells
+from corota.errors import Diagnostic
+
+if TYPE_CHECKING:
+    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.model import Fixed, Model
+    from corota.steps import Step
+
+#: Share of the largest eigenvalue of the constraints below which a mode is free.
+FREE = 1e-13
+#: Bodies joined by common nodes that are looked at together.
+MAX_BODIES = 400
+
+
+def check_rigid(model: Model) -> list[Diagnostic]:
+    """Findings over all static steps (over the model's supports, if it has no step)."""
+    mesh = model.mesh
+    rotating = _rotating(model)
+    found: list[Diagnostic] = []
+    for number, held in enumerate(_held(model, rotating)):
+        step = model.steps[number] if model.steps else None
+        if step is not None and step.procedure != "static":
+            continue
+        found = _free_modes(mesh, held, rotating, step)
+        if found:
+            break
+    return found
+
+
+def _rotating(model: Model) -> Floats:
+    """Whether a node has a rotation, shape (n_nodes,)."""
+    mesh = model.mesh
+    has = np.zeros(mesh.n_nodes, bool)
+    for section in model.sections:
+        if elements.find(section.element).dofs_per_node < 3:
+            continue
+        cells, offsets = cells_of(mesh, section.cells), mesh.offsets
+        for number, block in enumerate(mesh.cells):
+            inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
+            has[block.nodes[cells[inside] - offsets[number]]] = True
+    return has
+
+
+def _held(model: Model, rotating: Floats) -> list[Floats]:
+    """Dofs held in each step, each of shape (n_nodes, 3)."""
+    base = np.zeros((model.mesh.n_nodes, 3), bool)
+    _hold(model, base, model.supports)
+    now, found = base.copy(), []
+    for step in model.steps:
+        if step.new_supports:
+            now = base.copy()
+        _hold(model, now, step.supports)
+        found.append(now.copy())
+    found = found or [base]
+    for held in found:
+        held[:, 2] &= rotating
+    return found
+
+
+def _hold(model: Model, held: Floats, supports: list[Fixed]) -> None:
+    for support in supports:
+        nodes = support.nodes
+        held[model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes, support.dof] = True
+
+
+def _free_modes(mesh: Mesh, held: Floats, rotating: Floats, step: Step | None) -> list[Diagnostic]:
+    body = stiff_part_of_cells(mesh)
+    part = part_of_cells(mesh)
+    node, owner = _body_nodes(mesh, body)
+    part_of_body = np.zeros(body.max(initial=-1) + 1, np.int64)
+    part_of_body[body] = part
+    found: list[Diagnostic] = []
+    for number in np.unique(part):
+        bodies = np.flatnonzero(part_of_body == number)
+        mine = np.isin(owner, bodies)
+        if len(bodies) > MAX_BODIES:
+            bodies = bodies[:1]
+            owner_here = np.full(int(mine.sum()), bodies[0])
+            found += _of_part(mesh, held, rotating, bodies, node[mine], owner_here)
+        else:
+            found += _of_part(mesh, held, rotating, bodies, node[mine], owner[mine])
+        if len(found) >= 20:
+            break
+    where = step.where if step is not None else None
+    return [Diagnostic("error", d.message, where, hint=d.hint) for d in found]
+
+
+def _body_nodes(mesh: Mesh, body: Ints) -> tuple[Ints, Ints]:
+    """Pairs of node and body, each once."""
+    pairs = [np.zeros((0, 2), np.int64)]
+    for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
+        mine = body[offset : offset + len(block)]
+        width = block.nodes.shape[1]
+        pairs.append(np.stack([block.nodes.ravel(), np.repeat(mine, width)], axis=1))
+    table = np.unique(np.concatenate(pairs), axis=0)
+    return table[:, 0], table[:, 1]
+
+
+def _of_part(
+    mesh: Mesh, held: Floats, rotating: Floats, bodies: Ints, node: Ints, owner: Ints
+) -> list[Diagnostic]:
+    points = mesh.points[node]
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    size = float(np.ptp(points, axis=0).max()) or 1.0
+    local = np.searchsorted(bodies, owner)
+    x, y = ((points - centre) / size).T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    # Displacement x, y and rotation (times the size) of each node by the motion of its body.
+    motion = np.stack(
+        [np.stack([one, zero, -y], 1), np.stack([zero, one, x], 1), np.stack([zero, zero, one], 1)],
+        axis=1,
+    )
+    matrix = np.zeros((3 * len(bodies), 3 * len(bodies)))
+    for dof in range(3):
+        for row in np.flatnonzero(held[node, dof]):
+            _add(matrix, [(local[row], motion[row, dof])])
+    order = np.argsort(node, kind="stable")
+    shared = np.flatnonzero(np.diff(node[order]) == 0)
+    for at in shared:
+        a, b = order[at], order[at + 1]
+        for dof in range(3 if rotating[node[a]] else 2):
+            _add(matrix, [(local[a], motion[a, dof]), (local[b], -motion[b, dof])])
+    values, vectors = np.linalg.eigh(matrix)
+    free = values <= FREE * max(float(values[-1]), 1.0)
+    return _describe(mesh, node, local, points, vectors[:, free], centre, size, len(bodies))
+
+
+def _add(matrix: Floats, terms: list[tuple[int, Floats]]) -> None:
+    for i, a in terms:
+        for j, b in terms:
+            matrix[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] += np.outer(a, b)
+
+
+def _describe(
+    mesh: Mesh,
+    node: Ints,
+    local: Ints,
+    points: Floats,
+    modes: Floats,
+    centre: Floats,
+    size: float,
+    n_bodies: int,
+) -> list[Diagnostic]:
+    found = []
+    for mode in _plain(modes):
+        motion = mode.reshape(-1, 3)[local]
+        offset = (points - centre) / size
+        u = motion[:, :2] + motion[:, 2:] * np.stack([-offset[:, 1], offset[:, 0]], axis=1)
+        moving = np.abs(u).max(axis=1) > 1e-8
+        if np.abs(motion[:, 2]).max() <= 1e-8:
+            main = u[np.abs(u).max(axis=1).argmax()]
+            text = "move along " + ("x" if abs(main[1]) < 1e-8 else
+                                    "y" if abs(main[0]) < 1e-8 else "a slanted line")  # fmt: skip
+        else:
+            turn = motion[np.abs(motion[:, 2]).argmax()]
+            pivot = centre + size * np.array([-turn[1], turn[0]]) / turn[2]
+            pivot = np.where(np.abs(pivot) < 1e-9 * size, 0.0, pivot)
+            text = f"turn about ({pivot[0]:.6g}, {pivot[1]:.6g})"
+        row = int(np.abs(u).max(axis=1).argmax())
+        dof = int(np.abs(u[row]).argmax())
+        label = mesh.node_labels[node[row]]
+        hint = f"hold node {label} in {'xy'[dof]} (dof {dof + 1})"
+        if n_bodies > 1 and not moving.all():
+            text = f"a hinge or a free body: the cells at node {label} can {text}"
+        else:
+            text = f"a free body: it can {text}"
+            if int(mesh.node_labels[node].min()) != int(mesh.node_labels.min()):
+                text += f" (the part of node {label})"
+        found.append(Diagnostic("error", text, hint=hint))
+    return found
+
+
+def _plain(modes: Floats) -> Floats:
+    """Basis of the free modes with as many zeros as it can have, one mode a row."""
+    rows = np.array(modes.T)
+    lead = 0
+    for column in [c for d in range(3) for c in range(d, rows.shape[1], 3)]:
+        if lead == len(rows):
+            break
+        pivot = lead + int(np.abs(rows[lead:, column]).argmax())
+        if abs(rows[pivot, column]) < 1e-7:
+            continue
+        rows[[lead, pivot]] = rows[[pivot, lead]]
+        rows[lead] /= rows[lead, column]
+        for other in range(len(rows)):
+            if other != lead:
+                rows[other] -= rows[other, column] * rows[lead]
+        lead += 1
+    rows[np.abs(rows) < 1e-9] = 0.0
+    return rows

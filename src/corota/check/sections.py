@@ -1,0 +1,128 @@
+"""Sections: every cell has one that fits; elements that lock where they stand."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota import elements
+from corota.check.parts import cells_of, part_of_cells
+from corota.errors import Diagnostic, InputError
+from corota.materials import Elastic
+
+if TYPE_CHECKING:
+    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.model import Model, Section
+
+#: Squared outline over area above which a part counts as slender (a strip 4 times its width).
+SLENDER = 25.0
+#: Cells through the width below which plain elements are too stiff in bending.
+ENOUGH = {"Q4": 8, "T3": 16}
+#: Elements that lock when the volume cannot change.
+VOLUMETRIC = ("T3", "Q4", "OPT", "Q4D", "T6", "Q8", "Q9")
+
+
+def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
+    """Findings, and whether every cell has exactly one section that fits."""
+    found: list[Diagnostic] = []
+    mesh = model.mesh
+    count = np.zeros(mesh.n_cells, np.int64)
+    fits = True
+    for section in model.sections:
+        cells = cells_of(mesh, section.cells)
+        count[cells] += 1
+        wrong = _wrong_shape(mesh, section, cells)
+        fits = fits and wrong is None
+        found += [wrong] if wrong else _locking(mesh, section, cells)
+    labels = mesh.cell_labels
+    for code, text, hint in (
+        (count == 0, "no section", "give one to every cell"),
+        (count > 1, "more than one section", "make the sets of the sections disjoint"),
+    ):
+        bad = np.flatnonzero(code)
+        if len(bad):
+            verb = f"and {len(bad) - 1} others have" if len(bad) > 1 else "has"
+            found.append(Diagnostic("error", f"element {labels[bad[0]]} {verb} {text}", hint=hint))
+    return found, fits and bool((count == 1).all()) and mesh.n_cells > 0
+
+
+def _wrong_shape(mesh: Mesh, section: Section, cells: Ints) -> Diagnostic | None:
+    try:
+        kind = elements.find(section.element).cell
+    except InputError as error:
+        return Diagnostic("error", error.message, section.where)
+    offsets = mesh.offsets
+    for number, block in enumerate(mesh.cells):
+        inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
+        if inside.any() and block.kind != kind:
+            label = mesh.cell_labels[cells[inside][0]]
+            return Diagnostic(
+                "error",
+                f"element {label} is a {block.kind}; {section.element} needs a {kind}",
+                section.where,
+            )
+    return None
+
+
+def _locking(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
+    found = []
+    name = section.element
+    material = section.material
+    if (
+        section.plane == "strain"
+        and isinstance(material, Elastic)
+        and material.nu > 0.49
+        and name in VOLUMETRIC
+    ):
+        found.append(
+            Diagnostic(
+                "warning",
+                f"{name} locks in plane strain at Poisson's ratio {material.nu:g}",
+                section.where,
+                hint="use Q4I or Q8R",
+            )
+        )
+    if name in ENOUGH:
+        found += _bending(mesh, section, cells)
+    return found
+
+
+def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
+    part = part_of_cells(mesh)
+    area, outline = _area(mesh), np.zeros(part.max(initial=-1) + 1)
+    edges = mesh.boundary_edges()
+    for cell, nodes in zip(edges[:, 0], mesh.edge_nodes(edges), strict=True):
+        outline[part[cell]] += math.dist(mesh.points[nodes[0]], mesh.points[nodes[1]])
+    areas = np.bincount(part, area, len(outline))
+    name = section.element
+    for number in np.unique(part[cells]):
+        mine = cells[part[cells] == number]
+        if outline[number] ** 2 < SLENDER * areas[number]:
+            continue
+        width = 2.0 * areas[number] / outline[number]
+        factor = 2.0 if name == "T3" else 1.0
+        size = float(np.sqrt(factor * area[mine].mean()))
+        if width < ENOUGH[name] * size:
+            better = "Q4I or Q4D" if name == "Q4" else "OPT or T6"
+            return [
+                Diagnostic(
+                    "warning",
+                    f"{name} is too stiff in bending: about {max(width / size, 1.0):.0f} cells "
+                    f"through the width of the part of element {mesh.cell_labels[mine[0]]}",
+                    section.where,
+                    hint=f"use {better}, or at least {ENOUGH[name]} cells",
+                )
+            ]
+    return []
+
+
+def _area(mesh: Mesh) -> Floats:
+    parts = [np.zeros(0)]
+    for block in mesh.cells:
+        count = 3 if block.kind.startswith("tri") else 4
+        x, y = mesh.points[block.nodes[:, :count]].transpose(2, 0, 1)
+        parts.append(0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(axis=1))
+    return np.concatenate(parts)

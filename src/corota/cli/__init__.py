@@ -1,0 +1,95 @@
+"""Command line: ``corota run|check|plot|info|convert``; heavy imports wait until needed."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from corota.cli.parser import make_parser
+from corota.cli.terminal import Terminal
+from corota.errors import CorotaError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Set to see the Python traceback of an error.
+TRACEBACK = "COROTA_TRACEBACK"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments; those of the process by default.
+
+    Returns
+    -------
+    int
+        Exit code: 0 done, 2 input, 3 model, 4 not converged, 5 resource, 6 file,
+        7 interrupted, 64 command line, 70 internal.
+    """
+    try:
+        args = make_parser().parse_args(argv)
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    terminal = Terminal(quiet=args.quiet, json=args.json)
+    try:
+        code = _run(args.command, args, terminal)
+    except KeyboardInterrupt:
+        terminal.error("interrupted")
+        code = 7
+    return terminal.close(code)
+
+
+def _run(command: str, args: object, terminal: Terminal) -> int:
+    """Run a command; every error becomes a message and an exit code."""
+    from importlib import import_module
+
+    try:
+        run = import_module(f"corota.cli.{command}").run
+        return int(run(args, terminal))
+    except CorotaError as error:
+        _trace()
+        terminal.error(str(error))
+        return error.exit_code
+    except ImportError as error:
+        _trace()
+        terminal.error(str(error))
+        return 5
+    except MemoryError:
+        _trace()
+        terminal.error("not enough memory for this job; use a coarser mesh or a larger machine")
+        return 5
+    except OSError as error:
+        _trace()
+        if isinstance(error, BrokenPipeError) and error.filename is None:
+            return 0
+        name = f"{error.filename}: " if error.filename else ""
+        terminal.error(f"{name}{error.strerror or error}")
+        return 5 if error.errno == errno.ENOMEM else 6
+    except Exception as error:
+        _trace()
+        frame = error.__traceback__
+        while frame is not None and frame.tb_next is not None:
+            frame = frame.tb_next
+        code = frame.tb_frame.f_code if frame else None
+        place = (
+            f" at {os.path.basename(code.co_filename)}:{frame.tb_lineno}" if frame and code else ""
+        )
+        terminal.error(
+            f"internal error: {type(error).__name__}: {error}{place}\n"
+            f"    please report it with the input; {TRACEBACK}=1 shows more"
+        )
+        return 70
+
+
+def _trace() -> None:
+    if os.environ.get(TRACEBACK):
+        import traceback
+
+        traceback.print_exc(file=sys.stderr)

@@ -1,0 +1,138 @@
+"""Arguments of the commands."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+from typing import NoReturn
+
+EPILOG = """\
+exit codes:
+  0 done   2 input   3 model   4 not converged   5 resource   6 file
+  7 interrupted   64 command line   70 internal
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """Parser that ends with exit code 64 and a pointer to the help."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(64, f"{self.prog}: {message}\n    see: {self.prog} --help\n")
+
+
+class Version(argparse.Action):
+    """Print the version without importing anything heavy."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *rest: object) -> NoReturn:
+        from corota import __version__
+
+        print(f"corota {__version__}")
+        parser.exit(0)
+
+
+def make_parser() -> Parser:
+    """Build the parser of all commands."""
+    parser = Parser(
+        prog="corota",
+        description="Co-rotational planar finite elements: decks in, results and pictures out.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action=Version, nargs=0, help="print the version")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, text: str) -> argparse.ArgumentParser:
+        made = commands.add_parser(name, help=text, description=text)
+        made.add_argument("--json", action="store_true", help="JSON lines on standard output")
+        made.add_argument("-q", "--quiet", action="store_true", help="errors only")
+        made.add_argument("-v", "--verbose", action="count", default=0, help="more lines; -vv more")
+        return made
+
+    run = command("run", "Read a deck, solve its steps, write the results.")
+    run.add_argument("deck", help="input deck (.inp)")
+    run.add_argument("-o", "--output", metavar="DIR", default=".", help="folder of the results")
+    run.add_argument("--name", metavar="JOB", default="", help="stem of the files; else the deck's")
+    run.add_argument("--threads", type=_count, metavar="N", help="threads; else all cores")
+    run.add_argument(
+        "--format",
+        dest="formats",
+        action="append",
+        choices=("vtkhdf", "pvd", "npz", "vtu"),
+        help="result format, repeatable; else vtkhdf",
+    )
+    run.add_argument(
+        "--history",
+        dest="histories",
+        action="append",
+        metavar="VAR@SET",
+        default=[],
+        help="column of the CSV file, such as U2@TIP or RF1@17, repeatable",
+    )
+    run.add_argument(
+        "--no-points", action="store_true", help="leave values at quadrature points out of the file"
+    )
+    _reading(run)
+
+    check = command("check", "Read and validate without solving; count and warn.")
+    check.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
+    _reading(check)
+
+    plot = command("plot", "Draw pictures of results (.vtkhdf), or of a model with --model.")
+    plot.add_argument("file", help="result file, or deck or mesh with --model")
+    plot.add_argument("-o", "--output", metavar="FILE", help="picture: .png .svg .pdf, or .gif")
+    plot.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
+    plot.add_argument("--frame", type=int, default=-1, help="frame from 0; -1 is the last")
+    plot.add_argument("--scale", type=float, default=1.0, help="factor of the displacements")
+    plot.add_argument("--element", dest="per_cell", action="store_true", help="element averages")
+    plot.add_argument("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
+    plot.add_argument("--model", action="store_true", help="mesh, sets, supports and loads")
+    plot.add_argument(
+        "--curve",
+        metavar="X,Y",
+        help="a curve, such as 'U2@TIP,load factor'",
+    )
+    plot.add_argument("--animate", action="store_true", help="all frames as a GIF")
+    plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
+
+    info = command("info", "Describe a deck, a mesh or a result file.")
+    info.add_argument("file")
+    _reading(info)
+
+    convert = command("convert", "Convert a mesh to a deck (.inp), or results to another format.")
+    convert.add_argument("source")
+    convert.add_argument("target", help="the ending names the format")
+    _reading(convert)
+    return parser
+
+
+def _reading(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--element",
+        dest="elements",
+        action="append",
+        metavar="OLD=NEW",
+        default=[],
+        type=_pair,
+        help="replace an element type, such as CPS4=Q4D, repeatable",
+    )
+    parser.add_argument("--lenient", action="store_true", help="unknown keywords are warnings")
+    parser.add_argument(
+        "--allow-include", action="store_true", help="*INCLUDE may leave the folder of the deck"
+    )
+
+
+def _pair(text: str) -> tuple[str, str]:
+    old, sign, new = text.partition("=")
+    if not (old.strip() and sign and new.strip()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not of the form OLD=NEW, such as CPS4=Q4D")
+    return old.strip().upper(), new.strip().upper()
+
+
+def _count(text: str) -> int:
+    try:
+        number = int(text)
+    except ValueError:
+        number = 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1")
+    return number

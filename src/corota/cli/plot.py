@@ -1,0 +1,86 @@
+"""``corota plot``: pictures of results or of a model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from corota.cli.reading import is_result, read_input
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from corota.cli.terminal import Terminal
+    from corota.histories import History
+    from corota.results import Results
+
+
+def run(args: Any, terminal: Terminal) -> int:
+    """Draw what was asked for and tell the file."""
+    from corota import plots
+
+    args.elements, args.lenient, args.allow_include = [], True, True
+    source = Path(args.file)
+    if not is_result(args.file):
+        if not args.model and source.suffix.lower() == ".inp":
+            raise InputError(
+                f"{source}: a deck has no results; draw them from {source.stem}.vtkhdf, "
+                "or the model itself with --model"
+            )
+        subject = read_input(args.file, args)
+        path = Path(args.output or f"{source.stem}_model.png")
+        plots.model(subject, edges=args.edges, path=path, dpi=args.dpi)
+        return _tell(path, terminal)
+    from corota.io.stored import read_results
+
+    with read_results(source) as results:
+        if args.model:
+            path = Path(args.output or f"{source.stem}_model.png")
+            plots.model(results.model, edges=args.edges, path=path, dpi=args.dpi)
+            return _tell(path, terminal)
+        if args.curve:
+            path = Path(args.output or f"{source.stem}_curve.png")
+            y, x = _axes(args.curve, results)
+            plots.curve(y, x, path=path, dpi=args.dpi)
+            return _tell(path, terminal)
+        field = args.field or ("MISES" if "MISES" in results.variables() else "U")
+        options = {"scale": args.scale, "per_cell": args.per_cell, "edges": args.edges}
+        moving = args.animate or (args.output or "").lower().endswith(".gif")
+        if moving:
+            path = Path(args.output or f"{source.stem}_{field}.gif")
+            plots.animate(results, field, path=path, dpi=min(args.dpi, 110), **options)
+        else:
+            path = Path(args.output or f"{source.stem}_{field}.png")
+            plots.contour(results, field, frame=args.frame, path=path, dpi=args.dpi, **options)
+    return _tell(path, terminal)
+
+
+def _axes(text: str, results: Results) -> tuple[History, History]:
+    """Read ``Y,X``, each a variable or ``VARIABLE@SET`` or ``VARIABLE@NODE``."""
+    parts = [p.strip() for p in text.split(",")]
+    if len(parts) != 2:
+        raise InputError(f"--curve {text!r}: write two quantities, such as 'U2@TIP,load factor'")
+    first, second = (_history(p, results) for p in parts)
+    return first, second
+
+
+def _history(text: str, results: Results) -> History:
+    import numpy as np
+
+    name, _, where = text.partition("@")
+    if not where:
+        return results.history(name)
+    if where.isdigit() and where not in results.mesh.node_sets:
+        node = np.flatnonzero(results.mesh.node_labels == int(where))
+        if not len(node):
+            raise InputError(f"--curve {text!r}: there is no node {where}")
+        found = results.history(name, at=int(node[0]))
+        found.name = f"{found.name.partition(' at ')[0]} at node {where}"
+        return found
+    return results.history(name, at=where)
+
+
+def _tell(path: Path, terminal: Terminal) -> int:
+    terminal.line(f"wrote {path}")
+    terminal.record({"event": "picture", "file": str(path)})
+    return 0

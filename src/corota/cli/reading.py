@@ -1,0 +1,47 @@
+"""Reading input files with the options of the command line."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from corota import mesh as meshes
+from corota.errors import FileError
+from corota.model import Model
+
+#: Endings of result files that the commands can open again.
+RESULTS = (".vtkhdf", ".hdf")
+
+
+def read_input(name: str, args: Any) -> Model:
+    """Read a deck or a mesh.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be opened.
+    InputError
+        If its contents cannot be accepted.
+    """
+    from corota.io.formats import MODEL_READERS, read
+
+    path = Path(name)
+    if not path.exists():
+        raise FileError(f"{path}: no such file")
+    if path.is_dir():
+        raise FileError(f"{path}: is a folder, not a file")
+    if path.suffix.lower() not in MODEL_READERS:
+        mesh = meshes.read(path)
+        return Model(mesh, path.stem)
+    return read(
+        path,
+        element_map=dict(args.elements),
+        lenient=args.lenient,
+        allow_include=args.allow_include,
+    )
+
+
+def is_result(name: str) -> bool:
+    """Whether a file name is that of results."""
+    return Path(name).suffix.lower() in RESULTS

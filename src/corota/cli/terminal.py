@@ -1,0 +1,121 @@
+"""Standard output and error that may be a terminal, a pipe, closed or full."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from typing import Any, TextIO
+
+COLORS = {"red": "31", "green": "32", "yellow": "33", "blue": "34", "dim": "2", "bold": "1"}
+
+
+class Terminal:
+    """Writes lines; a reader that went away never stops the work.
+
+    Parameters
+    ----------
+    quiet : bool
+        Print errors only.
+    json : bool
+        Print records instead of text.
+    """
+
+    def __init__(self, quiet: bool = False, json: bool = False) -> None:
+        self.quiet, self.json = quiet, json
+        self._failed: OSError | None = None
+        self._gone = False
+        self.live = self._is_terminal(sys.stdout) and not quiet and not json
+        plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+        self.colored = self.live and not plain
+        self._open = False
+
+    def _is_terminal(self, stream: TextIO | None) -> bool:
+        try:
+            return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
+        except ValueError:
+            return False
+
+    @property
+    def unicode(self) -> bool:
+        """Whether the terminal takes more than ASCII."""
+        return "utf" in (getattr(sys.stdout, "encoding", "") or "").lower()
+
+    def color(self, text: str, name: str) -> str:
+        """Text in a color, where colors are wanted."""
+        return f"\033[{COLORS[name]}m{text}\033[0m" if self.colored else text
+
+    def line(self, text: str = "") -> None:
+        """Print a line of text unless quiet or JSON was asked for."""
+        if not self.quiet and not self.json:
+            self._write(self._clear() + text + "\n")
+
+    def record(self, record: dict[str, Any]) -> None:
+        """Print a record as one line of JSON, if that was asked for."""
+        if self.json:
+            from corota.io.events import json_line
+
+            self._write(json_line(record))
+
+    def status(self, text: str) -> None:
+        """Replace the line that shows the progress."""
+        if self.live:
+            self._write("\r\033[2K" + text)
+            self._open = True
+
+    def _clear(self) -> str:
+        """Remove the progress line before something lasting is printed."""
+        was, self._open = self._open, False
+        return "\r\033[2K" if was else ""
+
+    def error(self, text: str) -> None:
+        """Print an error on standard error."""
+        self._stderr("error", text)
+
+    def warning(self, text: str) -> None:
+        """Print a warning on standard error."""
+        if not self.quiet:
+            self._stderr("warning", text)
+
+    def _stderr(self, kind: str, text: str) -> None:
+        if self._open:
+            self._write(self._clear())
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            sys.stderr.write(f"corota: {kind}: {_printable(text, sys.stderr)}\n")
+            sys.stderr.flush()
+
+    def _write(self, text: str) -> None:
+        if self._gone or sys.stdout is None:
+            return
+        try:
+            sys.stdout.write(_printable(text, sys.stdout))
+            sys.stdout.flush()
+        except BrokenPipeError:
+            self._silence()
+        except (OSError, ValueError) as error:
+            self._failed = error if isinstance(error, OSError) else None
+            self._silence()
+
+    def _silence(self) -> None:
+        """Send everything that still comes, and Python's own flush at the end, nowhere."""
+        self._gone = True
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)
+
+    def close(self, code: int) -> int:
+        """End the output; return the exit code, 6 if standard output could not be written."""
+        if self._open:
+            self._write(self._clear())
+        if self._failed is not None and code == 0:
+            self.error(f"standard output: cannot write: {self._failed.strerror}")
+            return 6
+        return code
+
+
+def _printable(text: str, stream: TextIO) -> str:
+    """Text with what the stream cannot encode replaced."""
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    return text.encode(encoding, "replace").decode(encoding, "replace")

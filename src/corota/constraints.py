@@ -1,0 +1,118 @@
+"""Constraints of a model: dependent degrees of freedom, eliminated by the drivers."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.errors import InputError, Location
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class Equation:
+    """A linear relation ``sum coefficient * dof = rhs``; its first term is eliminated.
+
+    Parameters
+    ----------
+    terms : list of tuple (int, int, float)
+        Node index, dof (0 and 1 displacement, 2 rotation) and coefficient. Dofs of nodes with
+        local axes are those along the axes.
+    rhs : float
+        Right-hand side [length or rad], in force from the start of the analysis.
+    """
+
+    terms: list[tuple[int, int, float]]
+    rhs: float = 0.0
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.terms:
+            raise InputError("an equation needs at least one term", self.where)
+        if not np.isfinite([c for *_, c in self.terms] + [self.rhs]).all():
+            raise InputError("the numbers of an equation must be finite", self.where)
+        first = (int(self.terms[0][0]), int(self.terms[0][1]))
+        total = sum(c for n, d, c in self.terms if (int(n), int(d)) == first)
+        if total == 0.0:
+            raise InputError(
+                "the first term of an equation is eliminated: its coefficient must not be zero",
+                self.where,
+            )
+
+
+@dataclass
+class Coupling:
+    """Nodes that move with a reference node, or a reference node that follows nodes.
+
+    Parameters
+    ----------
+    nodes : str or array_like of int
+        Node, edge or cell set, or node indices.
+    reference : int
+        Reference node; it gets a rotation if it has none.
+    kind : {"kinematic", "distributing"}
+        ``kinematic``: the chosen dofs of `nodes` follow the rigid motion of the reference
+        node, in any rotation. ``distributing``: the chosen dofs of the reference node follow
+        the weighted mean motion of `nodes`; a load there spreads over them.
+    dofs : tuple of int
+        Which dofs: 0 and 1 displacement, 2 rotation.
+    weights : ndarray, shape (n,), or None
+        Weights of a distributing coupling [1], > 0; equal by default.
+    """
+
+    nodes: str | Ints
+    reference: int
+    kind: Literal["kinematic", "distributing"] = "kinematic"
+    dofs: tuple[int, ...] = (0, 1, 2)
+    weights: NDArray[np.float64] | None = None
+    name: str = ""
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.dofs or not set(self.dofs) <= {0, 1, 2}:
+            raise InputError("a coupling takes dofs out of 0, 1 and 2", self.where)
+        if self.kind not in ("kinematic", "distributing"):
+            raise InputError(f"no coupling {self.kind!r}: kinematic or distributing", self.where)
+        if self.weights is not None:
+            self.weights = np.asarray(self.weights, dtype=np.float64)
+            if not (np.isfinite(self.weights).all() and (self.weights > 0.0).all()):
+                raise InputError("the weights of a coupling must be > 0", self.where)
+
+
+@dataclass
+class LocalAxes:
+    """Axes of nodes in which their supports, forces and equations are meant.
+
+    Parameters
+    ----------
+    nodes : str or array_like of int
+    angle : float
+        Angle of the first axis from the global one [rad].
+    centre : tuple of float or None
+        If given, the axes are radial and circumferential about this point [length], in the
+        reference configuration, and `angle` is added.
+    """
+
+    nodes: str | Ints
+    angle: float = 0.0
+    centre: tuple[float, float] | None = None
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+
+Constraint = Equation | Coupling
+
+
+def rigid(nodes: str | ArrayLike, reference: int, name: str = "") -> Coupling:
+    """All dofs of nodes in rigid motion with a reference node, in any rotation."""
+    where = nodes if isinstance(nodes, str) else np.atleast_1d(np.asarray(nodes, np.int64))
+    return Coupling(where, int(reference), name=name)
+
+
+__all__ = ["Constraint", "Coupling", "Equation", "LocalAxes", "rigid"]

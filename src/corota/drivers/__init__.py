@@ -1,0 +1,3 @@
+"""Solution procedures: what is done per iteration and above."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,242 @@
+"""The analysis as a whole: a model through its steps to results."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import os
+import time as clock
+import warnings
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.drivers.observers import Observers
+from corota.drivers.registry import PROCEDURES
+from corota.drivers.solvers import SOLVERS
+from corota.drivers.state import State
+from corota.drivers.system import System
+from corota.errors import CorotaError, InputError, UnsupportedError
+from corota.results import Frame, Results
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.drivers.solvers import LinearSolver
+    from corota.model import Model
+    from corota.results import Observer, PointFields
+    from corota.steps import Step
+
+    Floats = NDArray[np.float64]
+
+#: Procedures that eliminate constraints.
+WITH_CONSTRAINTS = ("static", "buckle")
+#: Local strain above which the linear one of ``simplified`` is no longer a good measure.
+LARGE_STRAIN = 0.05
+
+
+def solve(
+    model: Model,
+    steps: Step | Sequence[Step] | None = None,
+    *,
+    observers: Iterable[Observer] = (),
+    solver: str | LinearSolver = "faer",
+    threads: int | None = None,
+    keep: Literal["all", "last"] = "all",
+    fields: bool = True,
+) -> Results:
+    """Run the steps of a model.
+
+    Parameters
+    ----------
+    model : Model
+    steps : Step or sequence of Step, optional
+        The model's own steps by default, or one ``Static()``.
+    observers : iterable of Observer
+        Told of every iteration and increment.
+    solver : str or LinearSolver
+        Name in :data:`corota.drivers.solvers.SOLVERS`, or an object with its three methods.
+    threads : int, optional
+        All cores by default. Results do not depend on it.
+    keep : {"all", "last"}
+        Frames held in memory.
+    fields : bool
+        Recover stress and strain at the points of every increment.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        If the model cannot be analysed as it stands.
+    ConvergenceError
+        If an increment cannot be converged; ``error.results`` has everything before it.
+    SingularError
+        If the structure is not held.
+
+    Examples
+    --------
+    >>> import corota as ct
+    >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+    >>> model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    >>> model.fix("left")
+    >>> model.force("right", y=-0.1)
+    >>> results = ct.solve(model, ct.Static(), threads=1)
+    >>> bool(results.frames[-1].U[:, 1].min() < -0.7)
+    True
+    """
+    run = Analysis(model, steps, observers, solver, threads, keep, fields)
+    return run.run()
+
+
+class Analysis:
+    """One run of :func:`solve`."""
+
+    def __init__(
+        self,
+        model: Model,
+        steps: Step | Sequence[Step] | None,
+        observers: Iterable[Observer],
+        solver: str | LinearSolver,
+        threads: int | None,
+        keep: Literal["all", "last"],
+        fields: bool,
+    ) -> None:
+        from corota.steps import Static, Step
+
+        if steps is None:
+            steps = model.steps or [Static()]
+        self.steps = [steps] if isinstance(steps, Step) else list(steps)
+        self.model, self.fields = model, fields
+        self.observers = Observers(observers)
+        self.results = Results(model, keep=keep)
+        self.threads = threads or os.cpu_count() or 1
+        if isinstance(solver, str):
+            if solver not in SOLVERS:
+                raise InputError(f"no solver named {solver!r}; there are {', '.join(SOLVERS)}")
+            self.solver: LinearSolver = SOLVERS[solver]()
+        else:
+            self.solver = solver
+        if hasattr(self.solver, "threads"):
+            self.solver.threads = self.threads
+        self.system: System
+        self.warned: set[str] = set()
+
+    def run(self) -> Results:
+        """Run all steps; observers hear the end whatever happens."""
+        results, begin = self.results, clock.perf_counter()
+        error: BaseException | None = None
+        counters: dict[str, int] = {}
+        try:
+            self.system = System(self.model, self.solver, self.threads)
+            results.info["n_dofs"] = self.system.n_dofs
+            results.info["threads"] = self.threads
+            self.observers.start(self.model, self.steps)
+            state = State(
+                np.zeros(self.system.n_dofs),
+                counters=counters,
+                critical=results.critical_points,
+                modes=results.modes,
+                notes=results.notes,
+            )
+            reaction = None
+            for number, step in enumerate(self.steps, start=1):
+                reaction = self._step(step, number, state, reaction)
+        except CorotaError as caught:
+            error = caught
+            if hasattr(caught, "results"):
+                caught.results = results
+            raise
+        except BaseException as caught:
+            error = caught
+            raise
+        finally:
+            info = results.info
+            info.update(counters)
+            if hasattr(self, "system"):
+                info["profile"] = dict(self.system.profile)
+            info["seconds"] = clock.perf_counter() - begin
+            self.observers.end(results, error if isinstance(error, Exception) else None)
+        return results
+
+    def _step(
+        self, step: Step, number: int, state: State, reaction: Floats | None
+    ) -> Floats | None:
+        system = self.system
+        if step.procedure not in PROCEDURES:
+            raise UnsupportedError(
+                f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
+            )
+        if system.ties is not None and step.procedure not in WITH_CONSTRAINTS:
+            raise UnsupportedError(
+                f"a {step.procedure} step takes no constraints or local axes; model the parts "
+                "that they join, or use static and buckling steps",
+                step.where,
+            )
+        self.observers.step(number, step)
+        turning = system.turning
+        system.begin(step, state.time, state.u, reaction)
+        if state.at is None or turning != system.turning:
+            state.at = system.evaluate(state.u, 0.0)
+        if number == 1:
+            self._save(number, state, 0, 0.0, {})
+
+        def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
+            self._save(number, state, increment, factor, scalars)
+
+        stops = self._stops(step)
+        PROCEDURES[step.procedure](system, step, number, state, self.observers, save, stops)
+        assert state.at is not None
+        state.time += state.step_time
+        state.step_time = 0.0
+        return system.reaction(state.at)
+
+    def _stops(self, step: Step) -> list[float]:
+        """Step times that outputs ask for."""
+        tables = getattr(self.model, "time_points", {})
+        return [
+            float(t) for out in step.outputs if out.time_points for t in tables[out.time_points]
+        ]
+
+    def _save(
+        self, number: int, state: State, increment: int, factor: float, scalars: dict[str, float]
+    ) -> None:
+        system = self.system
+        assert state.at is not None
+        by_node = system.by_node(state.u)
+        fields: list[PointFields] = []
+        if self.fields:
+            with system.timed("recover"):
+                fields, sums = system.recover(state.u)
+            strain = sums.pop("largest simplified strain")
+            scalars = {**scalars, **sums}
+            if strain > LARGE_STRAIN and "strain" not in self.warned:
+                self.warned.add("strain")
+                note = (
+                    f"local strain reaches {strain:.1%} in step {number}, increment {increment}; "
+                    "the simplified local strain is meant for a few percent: compare with "
+                    "local_strain='modified' (LOCAL STRAIN=MODIFIED)"
+                )
+                self.results.notes.append(note)
+                warnings.warn(note, stacklevel=2)
+        frame = Frame(
+            number,
+            increment,
+            state.time + state.step_time,
+            state.step_time,
+            factor,
+            by_node[:, :2].copy(),
+            by_node[:, 2].copy(),
+            system.by_node(system.reaction(state.at)),
+            system.by_node(state.at.external),
+            fields,
+            scalars,
+            None if state.v is None else system.by_node(state.v),
+            None if state.a is None else system.by_node(state.a),
+        )
+        self.results.add(frame)
+        with system.timed("write"):
+            self.observers.increment(frame)

@@ -1,0 +1,317 @@
+"""A dynamic step: increments of a time scheme until the end of the step."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.drivers.explicit import explicit_step
+from corota.drivers.increments import Increments
+from corota.drivers.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
+from corota.drivers.newton import Settings, newton
+from corota.drivers.schemes import SCHEMES
+from corota.drivers.static import iteration_reporter
+from corota.errors import ConvergenceError, Interrupted, ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.drivers.observers import Observers
+    from corota.drivers.state import State
+    from corota.drivers.system import System
+    from corota.steps import Dynamic
+
+    Floats = NDArray[np.float64]
+
+#: An automatic increment aims at this share of the allowed local error.
+AIM = 0.7
+#: Share of the increment whose square weighs the stiffness in the first accelerations.
+TRACE = 1e-3
+#: Increments that a wave of a load needs at least, and those that follow it well.
+LEAST_PER_WAVE, PER_WAVE = 4.0, 20.0
+#: It shrinks or grows at most by these factors.
+LEAST, MOST = 0.25, 1.5
+
+
+def dynamic_step(
+    system: System,
+    step: Dynamic,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Callable[[State, int, float, dict[str, float]], None],
+    stops: list[float],
+) -> None:
+    """Run a dynamic step from the committed state.
+
+    Raises
+    ------
+    ModelError
+        If a material has no density.
+    ConvergenceError
+        With the reason, when no smaller increment helps.
+    """
+    check_density(system)
+    if step.scheme == "central_difference":
+        explicit_step(system, step, number, state, observers, save, stops)
+        return
+    warn_of_long_increments(system, step, state)
+    inertia = Inertia(system, step.mass)
+    now = start_motion(system, step, state, inertia)
+    book = Balance(system, step, now, inertia)
+    control = Increments(step, stops)
+    if not step.fixed_increments and step.first_increment >= step.period:
+        control.size = step.period / 100.0
+    settings = Settings(step.tolerance, step.max_iterations)
+    count = state.counters
+    while not control.finished:
+        if control.number >= step.max_increments:
+            raise ConvergenceError(
+                f"step {number} used its {step.max_increments} increments at step time "
+                f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
+            )
+        target = control.target()
+        motion = _motion(system, step, inertia, now, target - control.time)
+        outcome = newton(
+            motion,
+            now.u,
+            system.conditions.prescribed(target, now.u),
+            target,
+            settings,
+            None,
+            iteration_reporter(observers, system, number, control),
+        )
+        count["iterations"] = count.get("iterations", 0) + outcome.iterations
+        reason = outcome.reason if not outcome.converged else ""
+        error = 0.0
+        if outcome.converged and not step.fixed_increments:
+            error = _local_error(system, motion, step)
+            if error > 1.0:
+                reason = f"local error {error:.2g} times the allowed one"
+        if reason:
+            count["cut-backs"] = count.get("cut-backs", 0) + 1
+            end = control.cut(target)
+            if end:
+                raise ConvergenceError(
+                    f"step {number} stopped at step time {control.time:g} of {step.period:g}: "
+                    f"{end}; last attempt: {reason}. All converged increments are kept"
+                )
+            observers.cut_back(
+                number, control.number + 1, control.attempt - 1, reason, control.size
+            )
+            continue
+        system.commit()
+        book.accept(motion, target)
+        now = motion.end
+        state.u, state.v, state.a = now.u, now.v, now.a
+        state.at = outcome.at
+        state.step_time = target
+        state.work = book.external
+        dt = target - control.time
+        attempts = control.attempt
+        control.accept(target, outcome.iterations)
+        if not step.fixed_increments:
+            grown = AIM * dt * math.sqrt(1.0 / max(error, 1e-6))
+            control.size = min(max(grown, LEAST * dt), MOST * dt, step.largest_increment)
+        scalars = {
+            "dt": dt,
+            "iterations": float(outcome.iterations),
+            "attempts": float(attempts),
+            "residual": outcome.sizes[-1],
+            "external work": book.external,
+        }
+        book.add_to(scalars)
+        save(state, control.number, target / step.period, scalars)
+        if observers.stop_requested:
+            raise Interrupted(
+                f"stopped at step {number}, step time {target:g}; everything up to there is kept"
+            )
+    # A static step that follows needs the static equation at this displacement.
+    state.at = system.evaluate(state.u, step.period)
+
+
+def check_density(system: System) -> None:
+    """Refuse materials without mass."""
+    for block in system.blocks:
+        material = block.section.material
+        if material.rho <= 0.0:
+            raise ModelError(
+                f"material {material.name or material.law!r} has no density, which motion needs; "
+                "add one (*DENSITY, rho=)",
+                material.where or block.section.where,
+            )
+
+
+def warn_of_long_increments(system: System, step: Dynamic, state: State) -> None:
+    """Warn where a fixed increment steps over a load's wave; names the increment to use.
+
+    The period of an amplitude is twice the shortest time between its turning points.
+    """
+    if not step.fixed_increments:
+        return
+    model = system.model
+    items = [*model.loads, *model.supports, *step.loads, *step.supports]
+    for name in sorted({item.amplitude for item in items if item.amplitude}):
+        amplitude = model.amplitudes[name]
+        slope = np.diff(amplitude.value)
+        moving = np.flatnonzero(slope)
+        turns = moving[1:][np.sign(slope[moving[1:]]) != np.sign(slope[moving[:-1]])]
+        if len(turns) < 2:
+            continue
+        wave = 2.0 * float(np.diff(amplitude.time[turns]).min())
+        if step.first_increment > wave / LEAST_PER_WAVE:
+            note = (
+                f"the increment {step.first_increment:g} is long for the amplitude {name!r}, which "
+                f"has a period of {wave:.3g}: use at most {wave / PER_WAVE:.2g}"
+            )
+            state.notes.append(note)
+            warnings.warn(note, stacklevel=2)
+
+
+def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) -> Moving:
+    """Velocities and accelerations at the start of a step."""
+    zero = np.zeros(system.n_dofs)
+    if state.v is None:
+        state.v = initial_velocity(system)
+    support_a = _start_supports(system, step, state)
+    at = system.evaluate(state.u, 0.0)
+    u, v = state.u, state.v
+    force = inertia.force(u, v, zero)
+    stiffness = at.values.copy() if step.rayleigh[1] else None
+    damping = inertia.damping(at, u, v, 0.0, step.rayleigh, stiffness)
+    internal, external = at.internal, at.external
+    # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
+    # The consistent mass of drilling elements has none for a uniform drilling rotation, which
+    # follows quasi-statically; a trace of the stiffness decides it.
+    mass = inertia.tangent(u)
+    if system.is_rotation.any():
+        trace = step.period if not step.fixed_increments else step.first_increment
+        mass += (TRACE * trace) ** 2 * at.values
+    at.values[:] = mass
+    at.internal, at.load_stiffness = internal + force + damping, None
+    a, _ = system.predict(at, support_a)
+    state.a = a
+    system.core.start_motion(u, v)
+    return Moving(u, v, a, internal, external, inertia.force(u, v, a), damping)
+
+
+def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
+    """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
+
+    Both are differences of second order over the first increments: the trapezoidal rule would
+    carry a wrong start on for ever.
+    """
+    assert state.v is not None
+    held = system.conditions.held
+    whole = not step.fixed_increments and step.first_increment >= step.period
+    h = min(step.period / 100.0 if whole else step.first_increment, step.period / 3.0)
+    p = [system.conditions.prescribed(k * h, state.u) for k in range(4)]
+    state.v[held] = ((-3.0 * p[0] + 4.0 * p[1] - p[2]) / (2.0 * h))[held]
+    rate = (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) / (h * h)
+    return np.where(held, rate, 0.0)
+
+
+def initial_velocity(system: System) -> Floats:
+    """The model's initial velocities by dof."""
+    out = np.zeros((len(system.per_node), 3))
+    points = system.model.mesh.points
+    for item in system.model.velocities:
+        if isinstance(item.nodes, str):
+            everywhere = np.arange(len(points))
+            nodes = system.model.mesh.nodes_of(item.nodes) if item.nodes else everywhere
+        else:
+            nodes = np.asarray(item.nodes, np.int64)
+        if item.dof is not None:
+            out[nodes, item.dof] = item.value[0]
+            continue
+        vx, vy, spin, x0, y0 = (*item.value, 0.0, 0.0, 0.0)[:5]
+        out[nodes, 0] = vx - spin * (points[nodes, 1] - y0)
+        out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
+        out[nodes, 2] = spin
+    return system.from_nodes(out)
+
+
+def _motion(
+    system: System, step: Dynamic, inertia: Inertia, now: Moving, dt: float
+) -> NewmarkMotion | ConservingMotion:
+    stiffness = None
+    if step.rayleigh[1]:
+        stiffness = system.evaluate(now.u, 0.0).values
+    if step.scheme == "energy_momentum":
+        return ConservingMotion(system, inertia, now, dt, step.rayleigh, stiffness)
+    scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)
+    return NewmarkMotion(system, inertia, scheme, now, dt, step.rayleigh, stiffness)
+
+
+def _local_error(system: System, motion: NewmarkMotion | ConservingMotion, step: Dynamic) -> float:
+    """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991)."""
+    begin, end, dt = motion.start, motion.end, motion.dt
+    beta = motion.scheme.beta if isinstance(motion, NewmarkMotion) else 0.25
+    moves = ~system.is_rotation
+    error = abs(beta - 1.0 / 6.0) * dt * dt * np.abs(end.a - begin.a)[moves].max(initial=0.0)
+    size = max(np.abs(end.u[moves]).max(initial=0.0), dt * np.abs(end.v[moves]).max(initial=0.0))
+    return float(error / (step.error_tolerance * size)) if size > 0.0 else 0.0
+
+
+class Balance:
+    """Energies and momenta along a step.
+
+    Work is summed with the mean of the forces at both ends of each increment, and with the
+    mid-point forces in the energy-momentum scheme, where the sums are exact.
+    """
+
+    def __init__(self, system: System, step: Dynamic, now: Moving, inertia: Inertia) -> None:
+        self.system, self.step, self.now, self.inertia = system, step, now, inertia
+        self.internal = self.external = self.damping = 0.0
+        self.carried = step.scheme == "energy_momentum"
+        self.first = self._kinetic(now)
+
+    def _kinetic(self, now: Moving) -> list[float]:
+        return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
+
+    def accept(self, motion: NewmarkMotion | ConservingMotion, time: float) -> None:
+        """Add the work of an increment."""
+        begin, end = motion.start, motion.end
+        held = self.system.conditions.held
+        if isinstance(motion, ConservingMotion):
+            d = motion.increment(end.u)
+            internal, external, damping = end.internal, end.external, end.damping
+            inertia = end.inertia
+        else:
+            d = end.u - begin.u
+            internal, external, damping, inertia = (
+                0.5 * (getattr(begin, name) + getattr(end, name))
+                for name in ("internal", "external", "damping", "inertia")
+            )
+        self.internal += float(internal @ d)
+        self.damping += float(damping @ d)
+        # Supports that move do the work of the reaction.
+        reaction = np.where(held, internal + damping + inertia - external, 0.0)
+        self.external += float((external + reaction) @ d)
+        self.now = end
+
+    def add_to(self, scalars: dict[str, Any]) -> None:
+        """Write the balance into a frame's scalars."""
+        kinetic, px, py, angular, _ = self._kinetic(self.now)
+        scalars.update(
+            {
+                "kinetic energy": kinetic,
+                "internal work": self.internal,
+                "external work": self.external,
+                "damping energy": self.damping,
+                "energy balance": kinetic
+                - self.first[0]
+                + self.internal
+                + self.damping
+                - self.external,
+                "momentum x": px,
+                "momentum y": py,
+                "angular momentum": angular,
+            }
+        )

@@ -1,0 +1,279 @@
+"""A system in motion: what Newton's method sees of an increment of a time scheme.
+
+It offers the same methods as the static system, with the inertia and the weights of the
+scheme put into residual and tangent; so there is one Newton's method.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.drivers.attachments import Attachments
+from corota.drivers.system import Evaluation, failure
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.drivers.newton import Judgement
+    from corota.drivers.schemes import Scheme
+    from corota.drivers.system import System
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class Moving:
+    """State of motion at the end of an increment.
+
+    Parameters
+    ----------
+    u, v, a : ndarray, shape (n_dofs,)
+    internal, external, inertia, damping : ndarray, shape (n_dofs,)
+        Forces at `u`, each with the sign of the residual's first term but `external`.
+    """
+
+    u: Floats
+    v: Floats
+    a: Floats
+    internal: Floats
+    external: Floats
+    inertia: Floats
+    damping: Floats
+
+
+class Inertia:
+    """Inertia of a model: the constant matrix where there is one, else by element.
+
+    Parameters
+    ----------
+    system : System
+    kind : {"consistent", "constant", "lumped"}
+    """
+
+    def __init__(self, system: System, kind: str) -> None:
+        self.system, self.kind = system, kind
+        self.attached = Attachments(system)
+        coupled = kind == "consistent" and bool(system.is_rotation.any())
+        zero = np.zeros(system.n_dofs)
+        self.matrix: Floats | None = None
+        if not coupled:
+            self.matrix = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
+
+    def force(self, u: Floats, v: Floats, a: Floats) -> Floats:
+        """Inertia force [force]."""
+        if self.matrix is not None:
+            product: Floats = self.system.core.multiply(self.matrix, a)
+            return product
+        return self._evaluate(u, v, a, (0.0, 0.0, 0.0), False)[0]
+
+    def add(
+        self, at: Evaluation, u: Floats, v: Floats, a: Floats, weights: tuple[float, float, float]
+    ) -> Floats:
+        """Add the tangent to `at` and the size to its scale; returns the force."""
+        if self.matrix is not None:
+            at.values += weights[2] * self.matrix
+            force = self.force(u, v, a)
+            at.scale += np.abs(force)
+            return force
+        force, scale, values = self._evaluate(u, v, a, weights, True)
+        at.values += values
+        at.scale += scale
+        return force
+
+    def tangent(self, u: Floats) -> Floats:
+        """Mass matrix at a displacement, upper triangle."""
+        if self.matrix is not None:
+            return np.array(self.matrix)
+        zero = np.zeros_like(u)
+        _, _, values = self._evaluate(u, zero, zero, (0.0, 0.0, 1.0), True)
+        return values
+
+    def _evaluate(
+        self, u: Floats, v: Floats, a: Floats, weights: tuple[float, float, float], tangent: bool
+    ) -> tuple[Floats, Floats, Floats]:
+        system = self.system
+        force, scale = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
+        values = np.zeros(len(system.indices) if tangent else 0)
+        with system.timed("assemble"):
+            system.core.inertia(u, v, a, self.kind, list(weights), force, scale, values)
+        own = self.attached.mass * a
+        if tangent:
+            values[self.attached.diagonal] += weights[2] * self.attached.mass
+        return force + own, scale + np.abs(own), values
+
+    def momenta(self, u: Floats, v: Floats, carried: bool) -> Floats:
+        """Kinetic energy, linear and angular momentum and mass, shape (5,)."""
+        core = np.array(self.system.core.momenta(u, v, self.kind, carried))
+        return core + self.attached.momenta(u, v) if self.attached.mass.any() else core
+
+    def damping(
+        self, at: Evaluation, u: Floats, v: Floats, weight: float,
+        rayleigh: tuple[float, float], stiffness: Floats | None,
+    ) -> Floats:  # fmt: skip
+        """Rayleigh damping and dashpots; `weight` times the derivative by velocity goes to `at`."""
+        values = at.values
+        per_mass, per_stiffness = rayleigh
+        force = np.zeros_like(v)
+        if per_mass:
+            mass = self.tangent(u)
+            force += per_mass * self.system.core.multiply(mass, v)
+            values += weight * per_mass * mass
+        if per_stiffness and stiffness is not None:
+            force += per_stiffness * self.system.core.multiply(stiffness, v)
+            values += weight * per_stiffness * stiffness
+        if self.attached.dampers:
+            damped, triplets = self.attached.damp(u, v, values, weight)
+            force += damped
+            if triplets is not None:
+                # Derivatives of external forces have the other sign.
+                rows, columns, products = triplets
+                products = -products
+                if at.load_stiffness is not None:
+                    rows = np.concatenate([at.load_stiffness[0], rows])
+                    columns = np.concatenate([at.load_stiffness[1], columns])
+                    products = np.concatenate([at.load_stiffness[2], products])
+                at.load_stiffness = (rows, columns, products)
+        return force
+
+
+class NewmarkMotion:
+    """One increment of a scheme with Newmark's relations, for Newton's method.
+
+    Parameters
+    ----------
+    system : System
+    inertia : Inertia
+    scheme : Scheme
+    start : Moving
+    dt : float
+    rayleigh : tuple of float
+    stiffness : ndarray or None
+        Tangent at the start, for the damping per stiffness.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        inertia: Inertia,
+        scheme: Scheme,
+        start: Moving,
+        dt: float,
+        rayleigh: tuple[float, float] = (0.0, 0.0),
+        stiffness: Floats | None = None,
+    ) -> None:
+        self.system, self.inertia, self.scheme = system, inertia, scheme
+        self.start, self.dt = start, dt
+        self.rayleigh, self.stiffness = rayleigh, stiffness
+        self.end = start
+
+    def _rates(self, u: Floats) -> tuple[Floats, Floats]:
+        s, dt, b = self.scheme, self.dt, self.start
+        a = (u - b.u - dt * b.v) / (s.beta * dt * dt) - (0.5 / s.beta - 1.0) * b.a
+        return b.v + dt * ((1.0 - s.gamma) * b.a + s.gamma * a), a
+
+    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
+        """Residual and effective tangent of the equation of motion."""
+        s, b, dt = self.scheme, self.start, self.dt
+        v, a = self._rates(u)
+        at = self.system.evaluate(u, step_time)
+        internal, external = at.internal, at.external
+        c_v, c_a = s.gamma / (s.beta * dt), 1.0 / (s.beta * dt * dt)
+        share = 1.0 - s.alpha_f
+        at.values *= share
+        if at.load_stiffness is not None:
+            rows, columns, values = at.load_stiffness
+            at.load_stiffness = (rows, columns, share * values)
+        m = 1.0 - s.alpha_m
+        force = self.inertia.add(at, u, v, a, (m, m * c_v, m * c_a))
+        damping = self.inertia.damping(at, u, v, share * c_v, self.rayleigh, self.stiffness)
+        self.end = Moving(u, v, a, internal, external, force, damping)
+        at.internal = (
+            share * (internal + damping)
+            + s.alpha_f * (b.internal + b.damping)
+            + m * force
+            + s.alpha_m * b.inertia
+        )
+        at.external = share * external + s.alpha_f * b.external
+        return at
+
+    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+        """Newton correction."""
+        return self.system.predict(at, du_held)
+
+    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+        """Size of the residual."""
+        return self.system.judge(at, u)
+
+
+class ConservingMotion:
+    """One increment of the energy-momentum scheme.
+
+    Loads are taken at the middle of the increment. The increment that moments do work on is
+    ``2 tan(dphi / 2)``, which also carries the rotational velocities.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        inertia: Inertia,
+        start: Moving,
+        dt: float,
+        rayleigh: tuple[float, float] = (0.0, 0.0),
+        stiffness: Floats | None = None,
+    ) -> None:
+        self.system, self.inertia = system, inertia
+        self.start, self.dt = start, dt
+        self.rayleigh, self.stiffness = rayleigh, stiffness
+        self.end = start
+
+    def increment(self, u: Floats) -> Floats:
+        """Increment that the forces do work on, shape (n_dofs,)."""
+        d = u - self.start.u
+        turn = self.system.is_rotation
+        if self.system.turning:
+            d[turn] = 2.0 * np.tan(0.5 * d[turn])
+        return d
+
+    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
+        """Residual and tangent of the mid-point equation of motion."""
+        system, b, dt = self.system, self.start, self.dt
+        n = system.n_dofs
+        force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
+        values = np.empty(len(system.indices))
+        try:
+            with system.timed("assemble"):
+                system.core.conserving(
+                    u, b.u, b.v, dt, self.inertia.kind, system.turning,
+                    force, internal, scale, values,
+                )  # fmt: skip
+        except RuntimeError as error:
+            raise failure(system._labels(error.args[1])) from None
+        middle = 0.5 * (u + b.u)
+        external, stiffness = system.conditions.external(step_time - 0.5 * dt, middle)
+        if stiffness is not None:
+            rows, columns, k = stiffness
+            stiffness = (rows, columns, 0.5 * k)
+        d = self.increment(u)
+        v = 2.0 / dt * d - b.v
+        attached = self.inertia.attached
+        force += attached.mass * (v - b.v) / dt
+        values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
+        at = Evaluation(force, external, scale, values, stiffness)
+        damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
+        at.internal = force + damping
+        self.end = Moving(
+            u, v, 2.0 / dt * (v - b.v) - b.a, internal, external, force - internal, damping
+        )
+        return at
+
+    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+        """Newton correction."""
+        return self.system.predict(at, du_held)
+
+    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+        """Size of the residual."""
+        return self.system.judge(at, u)

@@ -1,0 +1,229 @@
+"""Relations between degrees of freedom: values, derivatives and second derivatives.
+
+Every relation gives some dofs, the dependent ones, as functions of others, its masters. Both
+are numbered as in the system; displacements are along the axes of the nodes.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.errors import Location
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class Relation:
+    """What all relations have.
+
+    Parameters
+    ----------
+    dependent : ndarray of int, shape (d,)
+    masters : ndarray of int, shape (m,)
+    what : str
+        The relation in a message.
+    where : Location or None
+    """
+
+    dependent: Ints
+    masters: Ints
+    what: str
+    where: Location | None
+
+    #: Whether the dependents are linear in the masters.
+    linear = True
+
+    def values(self, u: Floats) -> Floats:
+        """Dependents at `u`, shape (d,)."""
+        raise NotImplementedError
+
+    def jacobian(self, u: Floats) -> Floats:
+        """Derivative of the dependents by the masters at `u`, shape (d, m)."""
+        raise NotImplementedError
+
+    def bend(self, u: Floats, force: Floats) -> Floats:
+        """Second derivative of ``force . dependents`` by the masters, shape (m, m)."""
+        return np.zeros((len(self.masters), len(self.masters)))
+
+
+@dataclass
+class LinearRelation(Relation):
+    """``dependent = row . masters + constant``: an equation solved for its first term."""
+
+    row: Floats
+    constant: float
+
+    def values(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        return np.array([self.row @ u[self.masters] + self.constant])
+
+    def jacobian(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        return self.row[None, :]
+
+
+def _skew(v: Floats) -> Floats:
+    """Vectors turned by a right angle, shape (n, 2)."""
+    return np.stack([-v[:, 1], v[:, 0]], axis=1)
+
+
+def _turned(v: Floats, angle: float) -> Floats:
+    """Vectors turned by an angle, shape (n, 2)."""
+    out: Floats = np.cos(angle) * v + np.sin(angle) * _skew(v)
+    return out
+
+
+def _turned_less(v: Floats, angle: float) -> Floats:
+    """``(R - I) v`` without cancellation at small angles, shape (n, 2)."""
+    out: Floats = -2.0 * np.sin(0.5 * angle) ** 2 * v + np.sin(angle) * _skew(v)
+    return out
+
+
+@dataclass
+class Follow(Relation):
+    """Nodes in rigid motion with a reference node, chosen dofs.
+
+    ``u_s = u_ref + (R(phi) - I) (X_s - X_ref)``, ``phi_s = phi_ref``; the second derivative
+    by phi is ``-R (X_s - X_ref)``.
+
+    Parameters
+    ----------
+    arm : ndarray, shape (d, 2)
+        ``X_s - X_ref`` of the node of each dependent [length].
+    axis : ndarray, shape (d, 3)
+        What the dependent measures: direction of a displacement, or (0, 0, 1).
+    axes : ndarray, shape (2, 2)
+        Columns: axes of the reference node.
+    turning : bool
+        Whether rotations are finite.
+    """
+
+    arm: Floats
+    axis: Floats
+    axes: Floats
+    turning: bool = True
+
+    linear = False
+
+    def values(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        x, y, phi = u[self.masters]
+        arm = _turned_less(self.arm, phi) if self.turning else phi * _skew(self.arm)
+        move = arm + self.axes @ np.array([x, y])
+        out: Floats = (self.axis[:, :2] * move).sum(axis=1) + self.axis[:, 2] * phi
+        return out
+
+    def jacobian(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        lever = _skew(_turned(self.arm, u[self.masters[2]] if self.turning else 0.0))
+        out = np.empty((len(self.dependent), 3))
+        out[:, :2] = self.axis[:, :2] @ self.axes
+        out[:, 2] = (self.axis[:, :2] * lever).sum(axis=1) + self.axis[:, 2]
+        return out
+
+    def bend(self, u: Floats, force: Floats) -> Floats:
+        """See :class:`Relation`."""
+        out = np.zeros((3, 3))
+        if self.turning:
+            arm = _turned(self.arm, u[self.masters[2]])
+            out[2, 2] = -float(force @ (self.axis[:, :2] * arm).sum(axis=1))
+        return out
+
+
+@dataclass
+class Mean(Relation):
+    """A reference node that follows the weighted mean motion of nodes.
+
+    The translation is that of the weighted mean, the rotation the best fit
+    ``theta = atan2(sum w X x x, sum w X . x)``, whose gradient is ``gamma = w S eta / D`` with
+    ``eta = R X`` and D the length of both sums; its second derivative is
+    ``-(gamma eps^T + eps gamma^T)`` with ``eps = w eta / D``.
+
+    Parameters
+    ----------
+    arm : ndarray, shape (n, 2)
+        Positions of the nodes from their weighted mean [length].
+    weight : ndarray, shape (n,)
+        Of sum one.
+    offset : ndarray, shape (2,)
+        Position of the reference node from that mean [length].
+    axis : ndarray, shape (d, 3)
+        What each dependent measures, as in :class:`Follow`.
+    axes : ndarray, shape (n, 2, 2)
+        Columns: axes of each node.
+    turning : bool
+        Whether rotations are finite.
+    """
+
+    arm: Floats
+    weight: Floats
+    offset: Floats
+    axis: Floats
+    axes: Floats
+    turning: bool = True
+
+    linear = False
+
+    def _fit(self, u: Floats) -> tuple[Floats, float, float]:
+        """Displacements in global axes, rotation and D."""
+        local = u[self.masters].reshape(-1, 2)
+        move: Floats = np.einsum("nij,nj->ni", self.axes, local)
+        if not self.turning:
+            inertia = float(self.weight @ (self.arm**2).sum(axis=1))
+            turn = float(self.weight @ (_skew(self.arm) * move).sum(axis=1)) / inertia
+            return move, turn, inertia
+        now = self.arm + move - self.weight @ move
+        along = float(self.weight @ (self.arm * now).sum(axis=1))
+        across = float(self.weight @ (_skew(self.arm) * now).sum(axis=1))
+        return move, float(np.arctan2(across, along)), float(np.hypot(along, across))
+
+    def values(self, u: Floats) -> Floats:
+        """See :class:`Relation`; the rotation is the one nearest to that in `u`."""
+        move, turn, _ = self._fit(u)
+        offset = self.offset[None]
+        swing = _turned_less(offset, turn) if self.turning else turn * _skew(offset)
+        mean = self.weight @ move + swing[0]
+        out: Floats = self.axis[:, :2] @ mean
+        rotation = self.axis[:, 2] != 0.0
+        turns = np.round((u[self.dependent[rotation]] - turn) / (2.0 * np.pi))
+        out[rotation] = turn + 2.0 * np.pi * (turns if self.turning else 0.0)
+        return out
+
+    def _gradients(self, u: Floats) -> tuple[Floats, Floats, Floats]:
+        """``gamma`` and ``eps`` in the nodes' axes, flat, and ``R offset``."""
+        _, turn, size = self._fit(u)
+        if not self.turning:
+            turn = 0.0
+        eta = _turned(self.arm, turn) * (self.weight / size)[:, None]
+        gamma = np.einsum("nji,nj->ni", self.axes, _skew(eta)).ravel()
+        eps = np.einsum("nji,nj->ni", self.axes, eta).ravel()
+        return gamma, eps, _turned(self.offset[None], turn)[0]
+
+    def jacobian(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        gamma, _, offset = self._gradients(u)
+        mean = np.einsum("n,nij->inj", self.weight, self.axes).reshape(2, -1)
+        swing = self.axis[:, :2] @ np.array([-offset[1], offset[0]]) + self.axis[:, 2]
+        out: Floats = self.axis[:, :2] @ mean + np.outer(swing, gamma)
+        return out
+
+    def bend(self, u: Floats, force: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not self.turning:
+            return np.zeros((len(self.masters), len(self.masters)))
+        gamma, eps, offset = self._gradients(u)
+        push = force @ self.axis
+        couple = push[2] - push[0] * offset[1] + push[1] * offset[0]
+        mixed = np.outer(gamma, eps)
+        out: Floats = -couple * (mixed + mixed.T)
+        out -= (push[:2] @ offset) * np.outer(gamma, gamma)
+        return out

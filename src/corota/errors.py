@@ -1,0 +1,151 @@
+"""Typed errors: each names the object, the place and the way out."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from corota.results import Results
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """Where in the input something was said: file, line and column (both from 1)."""
+
+    file: str
+    line: int
+    column: int = 0
+
+    def __str__(self) -> str:
+        column = f":{self.column}" if self.column else ""
+        return f"{self.file}:{self.line}{column}"
+
+
+class CorotaError(Exception):
+    """Root of all errors that Corota raises on purpose.
+
+    ``exit_code`` is what the command line returns for it.
+    """
+
+    exit_code = 70
+
+
+class InputError(CorotaError, ValueError):
+    """An argument or a datum that cannot be accepted.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what would be accepted.
+    where : Location, optional
+        Place in the input file, printed before the message.
+    """
+
+    exit_code = 2
+
+    def __init__(self, message: str, where: Location | None = None) -> None:
+        super().__init__(f"{where}: {message}" if where else message)
+        self.message = message
+        self.where = where
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding about an input: severity, place, card, text and the way out."""
+
+    severity: str  # "error" | "warning" | "note"
+    message: str
+    where: Location | None = None
+    keyword: str = ""
+    text: str = ""  # the offending line as it stands in the file
+    hint: str = ""
+
+    def __str__(self) -> str:
+        head = f"{self.where}: " if self.where else ""
+        card = f"{self.keyword}: " if self.keyword else ""
+        lines = [f"{head}{self.severity}: {card}{self.message}"]
+        if self.text:
+            lines.append("    " + self.text)
+            if self.where and self.where.column:
+                lines.append("    " + " " * (self.where.column - 1) + "^")
+        if self.hint:
+            lines.append(f"    hint: {self.hint}")
+        return "\n".join(lines)
+
+
+class DeckError(InputError):
+    """All the errors of one input deck, found in one pass."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        super().__init__("\n".join(str(d) for d in diagnostics))
+        self.diagnostics = list(diagnostics)
+
+
+class ModelError(InputError):
+    """Well-formed input that does not make a model that can be solved."""
+
+    exit_code = 3
+
+
+class UnsupportedError(InputError):
+    """Something known that this version does not do, and what to use instead."""
+
+
+class SingularError(CorotaError):
+    """The matrix is singular: names the free node and degree of freedom.
+
+    Attributes
+    ----------
+    equation : int
+        Index of the equation of the worst pivot, -1 if unknown.
+    mode : numpy.ndarray or None
+        Null vector over all equations, shape (n_dofs,), when it was found.
+    """
+
+    exit_code = 3
+
+    def __init__(self, message: str, equation: int = -1, mode: Any = None) -> None:
+        super().__init__(message)
+        self.equation = equation
+        self.mode = mode
+
+
+class ConvergenceError(CorotaError):
+    """An increment could not be converged; what converged before is kept.
+
+    Attributes
+    ----------
+    reason : str
+        Class of the failure in one line.
+    results : Results or None
+        Everything up to the last converged increment.
+    """
+
+    exit_code = 4
+
+    def __init__(self, reason: str, results: Results | None = None) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.results = results
+
+
+class ResourceError(CorotaError):
+    """Not enough memory, disk or another resource."""
+
+    exit_code = 5
+
+
+class FileError(CorotaError):
+    """A file that cannot be read or written."""
+
+    exit_code = 6
+
+
+class Interrupted(CorotaError):
+    """Stopped by the user at the end of an increment."""
+
+    exit_code = 7

@@ -1,0 +1,114 @@
+"""An analysis as a stream of plain records: JSON lines for logs, monitors and pipes."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import json
+import math
+import time
+from typing import TYPE_CHECKING, Any
+
+from corota.results import Silent
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from corota.model import Model
+    from corota.results import Frame, Iteration, Results
+    from corota.steps import Step
+
+
+def json_line(record: dict[str, Any]) -> str:
+    """One line of JSON; a number that is not finite becomes ``null``."""
+    return json.dumps(_plain(record), allow_nan=False, separators=(",", ":")) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, bool | int | str) or value is None:
+        return value
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return str(value)
+    return number if math.isfinite(number) else None
+
+
+class Events(Silent):
+    """Turns what happens into records.
+
+    Parameters
+    ----------
+    emit : callable
+        Takes each record, a dict with the key ``event``.
+    """
+
+    def __init__(self, emit: Callable[[dict[str, Any]], None]) -> None:
+        self._emit = emit
+        self._begin = time.perf_counter()
+        self._labels: Any = None
+        self._cuts: dict[tuple[int, int], int] = {}
+
+    def start(self, model: Model, steps: list[Step]) -> None:
+        from corota import __version__
+
+        self._labels = model.mesh.node_labels
+        self._emit(
+            {
+                "event": "start", "version": __version__, "job": model.name,
+                "nodes": model.mesh.n_nodes, "cells": model.mesh.n_cells, "steps": len(steps),
+                "notes": model.notes,
+            }
+        )  # fmt: skip
+
+    def step(self, number: int, step: Step) -> None:
+        self._emit(
+            {
+                "event": "step", "step": number, "name": step.name, "procedure": step.procedure,
+                "nlgeom": step.nlgeom, "period": step.period,
+            }
+        )  # fmt: skip
+
+    def iteration(self, info: Iteration) -> None:
+        node = int(self._labels[info.worst_node]) if info.worst_node >= 0 else None
+        self._emit(
+            {
+                "event": "iteration", "step": info.step, "increment": info.increment,
+                "attempt": info.attempt, "iteration": info.iteration, "residual": info.residual,
+                "moment residual": info.moment_residual, "correction": info.correction,
+                "worst node": node, "worst dof": info.worst_dof + 1, "note": info.note,
+            }
+        )  # fmt: skip
+
+    def increment(self, frame: Frame) -> None:
+        attempts = self._cuts.get((frame.step, frame.increment), 0) + 1
+        self._emit(
+            {
+                "event": "increment", "step": frame.step, "increment": frame.increment,
+                "attempts": attempts if frame.increment else 0, "time": frame.time,
+                "step time": frame.step_time, "load factor": frame.factor,
+                "elapsed": time.perf_counter() - self._begin, **frame.scalars,
+            }
+        )  # fmt: skip
+
+    def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None:
+        self._cuts[step, increment] = attempt
+        self._emit(
+            {
+                "event": "cut back", "step": step, "increment": increment, "attempt": attempt,
+                "reason": reason, "dt": dt,
+            }
+        )  # fmt: skip
+
+    def end(self, results: Results, error: Exception | None) -> None:
+        record: dict[str, Any] = {
+            "event": "end", "status": "failed" if error else "done",
+            "elapsed": time.perf_counter() - self._begin,
+            "profile": results.info.get("profile", {}), "notes": results.notes,
+        }  # fmt: skip
+        if error:
+            record |= {"error": type(error).__name__, "message": str(error)}
+        self._emit(record)

@@ -1,0 +1,103 @@
+"""The one table of readers and writers of models, by the end of the file's name."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from corota.errors import UnsupportedError
+from corota.io.gmsh import read_gmsh
+from corota.io.inp_read import read_deck
+from corota.io.inp_write_model import write_deck
+from corota.io.meshio_bridge import read_meshio
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Mapping
+
+    from corota.mesh.data import Mesh
+    from corota.model import Model
+
+
+def _deck_mesh(path: str | os.PathLike[str]) -> Mesh:
+    model = read_deck(path)
+    model.mesh.notes += model.notes
+    return model.mesh
+
+
+#: Readers of models.
+MODEL_READERS: dict[str, Callable[..., Model]] = {".inp": read_deck}
+#: Writers of models.
+MODEL_WRITERS: dict[str, Callable[..., Path]] = {".inp": write_deck}
+#: Readers of meshes; for other names meshio is asked.
+MESH_READERS: dict[str, Callable[..., Mesh]] = {".msh": read_gmsh, ".inp": _deck_mesh}
+
+
+def read(
+    path: str | os.PathLike[str],
+    *,
+    element_map: Mapping[str, str] | None = None,
+    lenient: bool = False,
+    allow_include: bool = False,
+) -> Model:
+    """Read a model from a deck.
+
+    Parameters
+    ----------
+    path : path-like
+        A CalculiX or Abaqus deck, ``.inp``.
+    element_map : mapping of str to str, optional
+        Element names to replace, such as ``{"CPS4": "Q4D"}``; the plane state stays.
+    lenient : bool, optional
+        Warn about unknown keywords and parameters instead of refusing them.
+    allow_include : bool, optional
+        Let ``*INCLUDE`` leave the deck's folder.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    DeckError
+        With all the faults of the deck.
+    FileError
+        If a file cannot be read.
+    UnsupportedError
+        If no reader fits the file's name.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in MODEL_READERS:
+        raise UnsupportedError(
+            f"{path}: no reader of models for {suffix or 'a file without an extension'}; "
+            f"known: {', '.join(MODEL_READERS)} (meshes: corota.mesh.read)"
+        )
+    return MODEL_READERS[suffix](
+        path, element_map=element_map, lenient=lenient, allow_include=allow_include
+    )
+
+
+def write(model: Model, path: str | os.PathLike[str]) -> Path:
+    """Write a model in the format that the ending names; return the path.
+
+    Raises
+    ------
+    UnsupportedError
+        If no writer fits the name, or the format cannot hold the model.
+    FileError
+        If the file cannot be written.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in MODEL_WRITERS:
+        raise UnsupportedError(
+            f"{path}: no writer of models for {suffix or 'a file without an extension'}; "
+            f"known: {', '.join(MODEL_WRITERS)}"
+        )
+    return MODEL_WRITERS[suffix](model, path)
+
+
+def read_mesh(path: str | os.PathLike[str]) -> Mesh:
+    """Read a mesh; see :func:`corota.mesh.read`."""
+    suffix = Path(path).suffix.lower()
+    return MESH_READERS.get(suffix, read_meshio)(path)

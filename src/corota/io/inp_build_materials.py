@@ -1,0 +1,58 @@
+"""Materials of a deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.inp_cards_plastic import build_mises
+from corota.materials import Elastic, Orthotropic
+
+if TYPE_CHECKING:
+    from corota.io.inp_deck import Deck, MaterialDraft
+    from corota.materials import Material
+
+
+def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
+    """Material of a draft; ``None`` after an error."""
+    if not draft.law:
+        deck.error(draft.card, draft.card.where, f"material {draft.name} has no *ELASTIC below it")
+        return None
+    if draft.law_card is None:
+        return None
+    try:
+        return _law(draft) if draft.plastic is None else build_mises(deck, draft)
+    except InputError as error:
+        # Constants of a plastic material are judged with its curve, on the card of the curve.
+        plastic = draft.plastic
+        card = draft.law_card if plastic is None else plastic.card or plastic.cyclic_card
+        deck.error(card, error.where or draft.law_where, error.message)
+        return None
+
+
+def _law(draft: MaterialDraft) -> Material:
+    c, where = draft.constants, draft.law_where
+    if draft.law == "ISOTROPIC":
+        return Elastic(c[0], c[1], rho=draft.rho, name=draft.name, where=where)
+    if draft.law == "LAMINA":
+        # A lamina says nothing of the third direction: it is taken as the second one.
+        values = [c[0], c[1], c[1], c[2], c[2], 0.0, c[3]]
+    elif draft.law == "ENGINEERINGCONSTANTS":
+        values = c[:7]
+    else:
+        values = _from_stiffness(draft)
+    return Orthotropic(*values, rho=draft.rho, name=draft.name, where=where)
+
+
+def _from_stiffness(draft: MaterialDraft) -> list[float]:
+    """Engineering constants from D1111, D1122, D2222, D1133, D2233, D3333, D1212."""
+    d11, d12, d22, d13, d23, d33, g12 = draft.constants[:7]
+    stiffness = np.array([[d11, d12, d13], [d12, d22, d23], [d13, d23, d33]])
+    if not np.all(np.linalg.eigvalsh(stiffness) > 0.0):
+        raise InputError("the stiffness is not positive definite", draft.law_where)
+    s = np.linalg.inv(stiffness)
+    e1, e2, e3 = 1.0 / np.diag(s)
+    return [e1, e2, e3, -s[0, 1] * e1, -s[0, 2] * e1, -s[1, 2] * e2, g12]

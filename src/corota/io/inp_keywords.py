@@ -1,0 +1,312 @@
+"""The table of keywords: one function and one entry each."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from corota.io import inp_cards_assembly as assembly
+from corota.io import inp_cards_dynamic as dynamic
+from corota.io import inp_cards_material as material
+from corota.io import inp_cards_mesh as mesh
+from corota.io import inp_cards_output as output
+from corota.io import inp_cards_path as path
+from corota.io import inp_cards_plastic as plastic
+from corota.io import inp_cards_step as step
+from corota.io import inp_cards_tie as tie
+from corota.io.inp_deck import nearest
+from corota.io.inp_lexer import key
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from corota.io.inp_deck import Deck
+    from corota.io.inp_lexer import Card
+
+
+@dataclass(frozen=True, slots=True)
+class Keyword:
+    """What a keyword does, and the parameters that it knows.
+
+    Parameters
+    ----------
+    function : callable
+        Reads the card into the deck.
+    parameters : str
+        Names that are used, blank-separated, themselves without blanks.
+    ignored : str
+        Names that are accepted and have no effect here; each is noted.
+    place : {"model", "step", "any"}
+        Where the card may stand.
+    """
+
+    function: Callable[[Deck, Card], None]
+    parameters: str = ""
+    ignored: str = ""
+    place: str = "any"
+
+
+def heading(deck: Deck, card: Card) -> None:
+    """``*HEADING``: free text."""
+    deck.heading += [row.text.strip() for row in card.rows()]
+
+
+_PRINT = "NSET ELSET TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
+_FILE = "NSET ELSET FREQUENCY FREQUENCYF TIMEPOINTS"
+_FILE_IGNORED = (
+    "GLOBAL OUTPUT LASTITERATIONS CONTACTELEMENTS OUTPUTALL POSITION DIRECTIONS SECTIONFORCES "
+    "VARIABLE SUMMARY"
+)
+
+KEYWORDS: dict[str, Keyword] = {
+    "HEADING": Keyword(heading, ignored="UNITS"),
+    "NODE": Keyword(mesh.node, "NSET", place="model"),
+    "ELEMENT": Keyword(mesh.element, "TYPE ELSET", place="model"),
+    "NSET": Keyword(mesh.nset, "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"),
+    "ELSET": Keyword(mesh.elset, "ELSET GENERATE INSTANCE INTERNAL", place="model"),
+    "SURFACE": Keyword(mesh.surface, "NAME TYPE INTERNAL", place="model"),
+    "MATERIAL": Keyword(material.material, "NAME", place="model"),
+    "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
+    "DENSITY": Keyword(material.density, place="model"),
+    "PLASTIC": Keyword(
+        plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"
+    ),
+    "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
+    "SOLIDSECTION": Keyword(
+        material.solid_section, "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION",
+        "CONTROLS", place="model",
+    ),
+    "SHELLSECTION": Keyword(
+        material.shell_section, "ELSET MATERIAL ORIENTATION LOCALSTRAIN", "OFFSET", place="model"
+    ),
+    "ORIENTATION": Keyword(material.orientation, "NAME SYSTEM", "DEFINITION", place="model"),
+    "AMPLITUDE": Keyword(step.amplitude, "NAME TIME SHIFTX SHIFTY DEFINITION VALUE"),
+    "TIMEPOINTS": Keyword(step.time_points, "NAME TIME GENERATE"),
+    "STEP": Keyword(step.step, "NLGEOM INC AMPLITUDE PERTURBATION", "NAME UNSYMM"),
+    "ENDSTEP": Keyword(step.end_step),
+    "STATIC": Keyword(path.static, "DIRECT RIKS", "SOLVER TIMERESET"),
+    "BUCKLE": Keyword(path.buckle, "", "SOLVER EIGENSOLVER"),
+    "CONTROLS": Keyword(path.controls, "PARAMETERS RESET", "ANALYSIS TYPE"),
+    "DYNAMIC": Keyword(
+        dynamic.dynamic, "ALPHA DIRECT EXPLICIT", "SOLVER RELATIVETOABSOLUTE APPLICATION NOHAF"
+    ),
+    "FREQUENCY": Keyword(dynamic.frequency, "", "SOLVER STORAGE EIGENSOLVER NORMALIZATION"),
+    "MODALDYNAMIC": Keyword(dynamic.modal_dynamic, "", "SOLVER DIRECT"),
+    "STEADYSTATEDYNAMICS": Keyword(dynamic.steady_state, "", "SOLVER"),
+    "MODALDAMPING": Keyword(dynamic.modal_damping, "RAYLEIGH", "MODAL"),
+    "DAMPING": Keyword(dynamic.damping, "ALPHA BETA", place="model"),
+    "INITIALCONDITIONS": Keyword(dynamic.initial_conditions, "TYPE", place="model"),
+    "EQUATION": Keyword(tie.equation, place="model"),
+    "MPC": Keyword(tie.mpc, place="model"),
+    "RIGIDBODY": Keyword(tie.rigid_body, "NSET ELSET REFNODE ROTNODE", place="model"),
+    "COUPLING": Keyword(tie.coupling, "REFNODE SURFACE", "CONSTRAINTNAME", place="model"),
+    "KINEMATIC": Keyword(tie.kinematic, place="model"),
+    "DISTRIBUTING": Keyword(tie.distributing, place="model"),
+    "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
+    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE", "LOADCASE"),
+    "CLOAD": Keyword(step.cload, "OP AMPLITUDE", "LOADCASE"),
+    "DLOAD": Keyword(step.dload, "OP AMPLITUDE", "LOADCASE"),
+    "DSLOAD": Keyword(step.dsload, "OP AMPLITUDE FOLLOWER", "LOADCASE"),
+    "NODEPRINT": Keyword(output.node_print, _PRINT, "GLOBAL SUMMARY"),
+    "ELPRINT": Keyword(output.el_print, _PRINT, "GLOBAL POSITION SUMMARY"),
+    "NODEFILE": Keyword(output.node_file, _FILE, _FILE_IGNORED),
+    "NODEOUTPUT": Keyword(output.node_file, _FILE, _FILE_IGNORED),
+    "ELFILE": Keyword(output.el_file, _FILE, _FILE_IGNORED),
+    "ELEMENTOUTPUT": Keyword(output.el_file, _FILE, _FILE_IGNORED),
+    "OUTPUT": Keyword(
+        output.output, "FREQUENCY FREQUENCYF VARIABLE",
+        "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS",
+    ),
+    "PART": Keyword(assembly.part, "NAME", place="model"),
+    "ENDPART": Keyword(assembly.end_part, place="model"),
+    "ASSEMBLY": Keyword(assembly.assembly, "NAME", place="model"),
+    "ENDASSEMBLY": Keyword(assembly.end_assembly, place="model"),
+    "INSTANCE": Keyword(assembly.instance, "NAME PART", place="model"),
+    "ENDINSTANCE": Keyword(assembly.end_instance, place="model"),
+}  # fmt: skip
+
+#: Cards without effect here; each is listed in ``Model.notes``.
+IGNORED: dict[str, str] = {
+    "PREPRINT": "it controls the echo of the input",
+    "RESTART": "restart files are not written by this version",
+    "MONITOR": "progress shows every increment",
+    "ENERGYPRINT": "energies are in the history",
+    "ENERGYOUTPUT": "energies are in the history",
+    "ENERGYFILE": "energies are in the history",
+    "SECTIONCONTROLS": "no hourglass control is needed",
+    "NOANALYSIS": "use the command check",
+    "PRINT": "it controls the message file",
+    "FILEFORMAT": "it controls the result file of another program",
+    "USERSUBROUTINE": "no user subroutine is called",
+}
+
+_CONTACT = "contact is not part of this version; model the parts as one"
+_MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
+_HEAT = "temperature is not part of this version"
+_PLASTIC = "the material laws are *ELASTIC and *PLASTIC; use these"
+_PROCEDURE = "this procedure is not part of this version"
+_LINE = "only planar solids are part of this version; use CPS* or CPE* elements"
+
+#: Cards that change the answer and are refused by name.
+UNSUPPORTED: dict[str, str] = {
+    **dict.fromkeys(
+        (
+            "CONTACTPAIR", "CONTACT", "CONTACTINCLUSIONS", "CONTACTFILE", "CONTACTPRINT",
+            "CONTACTOUTPUT", "SURFACEINTERACTION", "SURFACEBEHAVIOR", "FRICTION", "TIE", "GAP",
+            "CLEARANCE", "CONTACTDAMPING", "CHANGEFRICTION", "CHANGECONTACTTYPE", "MODELCHANGE",
+            "CHANGESURFACEBEHAVIOR", "SURFACESMOOTHING", "CONTACTPROPERTYASSIGNMENT",
+            "CONTACTINITIALIZATIONDATA", "CONTACTCONTROLS",
+        ),
+        _CONTACT,
+    ),
+    **dict.fromkeys(
+        (
+            "DISTRIBUTINGCOUPLING", "EMBEDDEDELEMENT", "CYCLICSYMMETRYMODEL",
+        ),
+        _MPC,
+    ),
+    **dict.fromkeys(
+        (
+            "TEMPERATURE", "EXPANSION", "CONDUCTIVITY", "SPECIFICHEAT", "HEATTRANSFER", "CFLUX",
+            "DFLUX", "FILM", "RADIATE", "COUPLEDTEMPERATURE-DISPLACEMENT", "PHYSICALCONSTANTS",
+            "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
+        ),
+        _HEAT,
+    ),
+    **dict.fromkeys(
+        (
+            "HYPERELASTIC", "HYPERFOAM", "CREEP", "RATEDEPENDENT",
+            "DEPVAR", "USERMATERIAL", "DEFORMATIONPLASTICITY", "MOHRCOULOMB", "CHANGEPLASTIC",
+            "VISCOELASTIC", "DAMAGEINITIATION",
+        ),
+        _PLASTIC,
+    ),
+    **dict.fromkeys(
+        (
+            "VISCO", "COMPLEXFREQUENCY", "GREEN", "SENSITIVITY", "CRACKPROPAGATION",
+        ),
+        _PROCEDURE,
+    ),
+    **dict.fromkeys(
+        (
+            "BEAMSECTION", "BEAMGENERALSECTION", "MEMBRANESECTION", "FLUIDSECTION", "SPRING",
+            "DASHPOT", "MASS", "USERELEMENT", "USERSECTION", "ROTARYINERTIA", "TRUSSSECTION",
+        ),
+        _LINE,
+    ),
+    "NODALTHICKNESS": "give the thickness by *SOLID SECTION",
+    "SUBMODEL": "submodels are not part of this version",
+    "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
+    "SECTIONPRINT": "section forces are not part of this version; print RF on a node set",
+    "CHANGESOLIDSECTION": "sections cannot change between steps",
+    "CHANGEMATERIAL": "materials cannot change between steps",
+    "DISTRIBUTION": "values given by element are not part of this version",
+    "NCOPY": "give the nodes by *NODE",
+    "NGEN": "give the nodes by *NODE",
+    "NFILL": "give the nodes by *NODE",
+    "ELGEN": "give the elements by *ELEMENT",
+    "ELCOPY": "give the elements by *ELEMENT",
+    "SYSTEM": "give the coordinates in global axes",
+    "NORMAL": "planar elements have no normals of their own",
+    "PARAMETER": "write the numbers themselves",
+    "VALUESATINFINITY": "it belongs to fluid dynamics",
+}  # fmt: skip
+
+#: Parameters that change the answer and are refused by name.
+REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
+    ("STATIC", "STABILIZE"): "stabilisation changes the answer and is not offered",
+    ("STATIC", "TOTALTIMEATSTART"): "the total time starts at zero",
+    ("BOUNDARY", "FIXED"): "prescribe the value instead",
+    ("BOUNDARY", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("BOUNDARY", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("BOUNDARY", "SUBMODEL"): "submodels are not part of this version",
+    ("CLOAD", "FOLLOWER"): "nodal forces keep their direction",
+    ("CLOAD", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("CLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("CLOAD", "SUBMODEL"): "submodels are not part of this version",
+    ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
+    ("AMPLITUDE", "SMOOTH"): "give more points in the table",
+    ("NODE", "SYSTEM"): "give the coordinates in global axes",
+    ("SOLIDSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
+    ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
+    ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
+    ("SHELLSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
+    ("ELASTIC", "DEPENDENCIES"): "constants that depend on fields are not part of this version",
+}
+
+
+def interpret(deck: Deck, card: Card) -> None:
+    """Read one card into the deck."""
+    entry = KEYWORDS.get(card.keyword)
+    if entry is None:
+        _unknown(deck, card)
+        return
+    known = set(entry.parameters.split())
+    ignored = set(entry.ignored.split())
+    for name, parameter in card.parameters.items():
+        if name in known:
+            continue
+        if name in ignored:
+            deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
+            continue
+        place = type(card.where)(card.where.file, card.where.line, parameter.column)
+        reason = REFUSED_PARAMETERS.get((card.keyword, name))
+        if reason:
+            deck.error(card, place, f"{parameter.name} is not supported", hint=reason)
+        elif deck.lenient:
+            deck.warning(card, place, f"unknown parameter {parameter.name} is ignored")
+        else:
+            hint = nearest(name, known | ignored)
+            deck.error(card, place, f"unknown parameter {parameter.name}", hint=hint)
+    if entry.place == "model" and deck.step is not None:
+        deck.error(
+            card,
+            card.where,
+            f"{card.spelled} inside a step",
+            hint="model data stand before the first *STEP",
+        )
+        return
+    if deck.instance is not None and card.keyword != "ENDINSTANCE":
+        deck.error(
+            card,
+            card.where,
+            f"{card.spelled} inside an instance",
+            hint="put the data into the part; sections and sets stand there too",
+        )
+        return
+    entry.function(deck, card)
+
+
+def _unknown(deck: Deck, card: Card) -> None:
+    if card.keyword in IGNORED:
+        deck.note(f"{card.where}: {card.spelled} is ignored: {IGNORED[card.keyword]}")
+        return
+    if card.keyword in UNSUPPORTED:
+        deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
+        return
+    hint = nearest(card.keyword, [*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"])
+    if deck.lenient:
+        deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
+    else:
+        deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
+
+
+def _pretty(hint: str) -> str:
+    """Hint with the usual spelling: ``*END STEP`` for ``ENDSTEP``."""
+    for plain in (*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"):
+        if hint == f"did you mean {plain}?":
+            return f"did you mean *{SPELLED.get(plain, plain)}?"
+    return hint
+
+
+SPELLED = {
+    key(name): name
+    for name in (
+        "SOLID SECTION", "SHELL SECTION", "TIME POINTS", "END STEP", "NODE PRINT", "EL PRINT",
+        "NODE FILE", "NODE OUTPUT", "EL FILE", "ELEMENT OUTPUT", "END PART", "END ASSEMBLY",
+        "END INSTANCE", "CONTACT PAIR", "BEAM SECTION", "RIGID BODY", "SURFACE INTERACTION",
+        "SURFACE BEHAVIOR", "INITIAL CONDITIONS", "SECTION PRINT", "NODAL THICKNESS",
+    )
+}  # fmt: skip

@@ -1,0 +1,68 @@
+"""Results as one compressed NumPy archive."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import contextlib
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.io.finite import check_frame
+from corota.io.twin import full
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from corota.results import Results
+
+
+def write_npz(results: Results, path: Path) -> None:
+    """Write all frames: arrays ``time``, ``U`` (frames, nodes, 2), ``S_0`` (frames, n, p, 4), ...
+
+    The number after a point variable counts the blocks; ``cells_0`` holds their cells.
+
+    Raises
+    ------
+    FileError
+        If the disk refuses.
+    """
+    frames, mesh = results.frames, results.mesh
+    for frame in frames:
+        check_frame(frame)
+    data: dict[str, Any] = {
+        "X": mesh.points,
+        "node_labels": mesh.node_labels,
+        "cell_labels": mesh.cell_labels,
+        "step": np.array([f.step for f in frames]),
+        "increment": np.array([f.increment for f in frames]),
+        "time": results.times,
+        "load_factor": np.array([f.factor for f in frames]),
+    }
+    for name in ("U", "UR", "RF", "F"):
+        data[name] = np.stack([getattr(f, name) for f in frames])
+    for name in ("V", "A"):
+        if any(getattr(f, name) is not None for f in frames):
+            zero = np.zeros_like(frames[0].RF)
+            rows = [getattr(f, name) for f in frames]
+            data[name] = np.stack([zero if r is None else r for r in rows])
+    for number, cells in enumerate(mesh.cells):
+        data[f"{cells.kind}_{number}"] = cells.nodes
+    for number, block in enumerate(frames[-1].fields):
+        data[f"cells_{number}"] = block.cells
+        data[f"points_{number}"] = np.stack([f.fields[number].points for f in frames if f.fields])
+        for name in block.values:
+            have = [f.fields[number].values[name] for f in frames if f.fields]
+            data[f"{name}_{number}"] = np.stack(have)
+    for name in frames[-1].scalars:
+        data[name.replace(" ", "_")] = np.array([f.scalars.get(name, 0.0) for f in frames])
+    hidden = path.with_name(f".{path.name}.next")
+    try:
+        with open(hidden, "wb") as file:
+            np.savez_compressed(file, **data)
+        os.replace(hidden, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            hidden.unlink(missing_ok=True)
+        raise full(error, path) from None

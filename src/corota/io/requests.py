@@ -1,0 +1,83 @@
+"""Which output requests hold in a step, and which are due at an increment."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from corota.model import Model
+    from corota.results import Frame
+    from corota.steps import Output, Step
+
+#: Two times closer than this share of the step's period are the same.
+SAME_TIME = 1e-9
+
+
+def in_force(steps: Sequence[Step], number: int) -> list[Output]:
+    """Requests that hold in a step (from 1), earlier ones first.
+
+    As in CalculiX: a card kind that the step does not use keeps the requests of the step before;
+    one that it uses replaces them.
+    """
+    held: list[Output] = []
+    for step in steps[:number]:
+        new = {o.kind for o in step.outputs}
+        held = [o for o in held if o.kind not in new] + list(step.outputs)
+    return held
+
+
+def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
+    """Whether a request is answered at a frame, be it the last of its step or not.
+
+    The last one always answers (:func:`left_over`); increment 0, the state before the first
+    step, never does.
+    """
+    if frame.increment == 0:
+        return False
+    if output.time_points:
+        times = np.asarray(model.time_points[output.time_points], dtype=np.float64)
+        near = np.abs(times - frame.step_time) <= SAME_TIME * step.period
+        return bool(near.any())
+    return output.frequency > 0 and frame.increment % output.frequency == 0
+
+
+def due_now(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
+    """Requests that a frame answers as soon as it is there."""
+    if not 1 <= frame.step <= len(steps):
+        return []
+    step = steps[frame.step - 1]
+    return [o for o in in_force(steps, frame.step) if due(o, frame, step, model)]
+
+
+def left_over(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
+    """Requests that a frame answers only because it turned out to be the last of its step."""
+    if frame.increment == 0:
+        return []
+    done = due_now(model, steps, frame)
+    return [o for o in in_force(steps, frame.step) if o not in done]
+
+
+def wants_file(model: Model, steps: Sequence[Step], frame: Frame) -> bool:
+    """Whether a frame goes into the result file at once.
+
+    Every frame does, unless ``*NODE FILE`` or ``*EL FILE`` requests thin them out.
+    """
+    if frame.increment == 0 or not any(map(_of_file, in_force(steps, frame.step))):
+        return True
+    return any(map(_of_file, due_now(model, steps, frame)))
+
+
+def _of_file(output: Output) -> bool:
+    return output.kind in ("node file", "el file")
+
+
+def last_of_steps(frames: Sequence[Frame]) -> list[bool]:
+    """For each frame, whether it is the last of its step."""
+    return [
+        i + 1 == len(frames) or frames[i + 1].step != frame.step for i, frame in enumerate(frames)
+    ]

@@ -1,0 +1,205 @@
+"""A file that is complete at every moment: two copies, written in turn, swapped by renaming."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+from pathlib import Path
+from typing import IO
+
+from corota.errors import FileError
+
+
+def full(error: OSError, path: Path) -> FileError:
+    """Say which file could not be written, and why."""
+    reason = error.strerror or str(error)
+    return FileError(f"{path}: cannot write: {reason}")
+
+
+class TwinFile:
+    """File-like object whose visible name always denotes a complete state.
+
+    Writes are held in memory until :meth:`commit`. A commit brings the hidden copy up to date
+    (the writes of this commit and of the one before) and exchanges the names by atomic renaming.
+    So whoever opens the visible name, or finds it after the process was killed at any moment,
+    sees the state of one commit. The price is that everything is written twice.
+
+    Parameters
+    ----------
+    path : Path
+        The visible name; not touched before the first commit.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.hidden = path.with_name(f".{path.name}.next")
+        self._spare = path.with_name(f".{path.name}.last")
+        self._at = 0
+        self._size = 0
+        self._pending: list[tuple[int, bytes]] = []
+        self._behind: list[tuple[int, bytes]] = []
+        self._shown = False
+        try:
+            self.hidden.unlink(missing_ok=True)
+            self.hidden.touch()
+        except OSError as error:
+            raise full(error, path) from None
+
+    # What HDF5 asks of a file-like object.
+    def seek(self, offset: int, whence: int = 0) -> int:
+        self._at = offset + (0, self._at, self._size)[whence]
+        return self._at
+
+    def tell(self) -> int:
+        return self._at
+
+    def write(self, data: bytes | memoryview) -> int:
+        held = bytes(data)
+        self._pending.append((self._at, held))
+        self._at += len(held)
+        self._size = max(self._size, self._at)
+        return len(held)
+
+    def read(self, size: int) -> bytes:
+        held = bytearray(size)
+        return bytes(held[: self.readinto(held)])
+
+    def readinto(self, buffer: bytearray | memoryview) -> int:
+        view = memoryview(buffer).cast("B")
+        start, end = self._at, min(self._at + len(view), self._size)
+        view[:] = bytes(len(view))
+        if self._shown:
+            with open(self.path, "rb") as file:
+                file.seek(start)
+                file.readinto(view)
+        for offset, data in self._pending:
+            first, last = max(start, offset), min(end, offset + len(data))
+            if first < last:
+                view[first - start : last - start] = data[first - offset : last - offset]
+        self._at = end
+        return end - start
+
+    def truncate(self, size: int | None = None) -> int:
+        self._size = self._at if size is None else size
+        return self._size
+
+    def flush(self) -> None:
+        """Nothing: only a commit reaches the disk."""
+
+    def commit(self) -> None:
+        """Make the state so far the visible one.
+
+        Raises
+        ------
+        FileError
+            If the disk refuses; the visible file keeps the state of the commit before.
+        """
+        if not self._pending and self._shown:
+            return
+        try:
+            with open(self.hidden, "r+b") as file:
+                self._apply(file, self._behind)
+                self._apply(file, self._pending)
+                file.truncate(self._size)
+        except OSError as error:
+            raise full(error, self.path) from None
+        self._behind, self._pending = self._pending, []
+        try:
+            self._swap()
+        except OSError as error:
+            raise full(error, self.path) from None
+
+    def _apply(self, file: IO[bytes], writes: list[tuple[int, bytes]]) -> None:
+        for offset, data in writes:
+            file.seek(offset)
+            file.write(data)
+
+    def _swap(self) -> None:
+        if not self._shown:
+            os.replace(self.hidden, self.path)
+            shutil.copyfile(self.path, self.hidden)
+            self._behind = []
+            self._shown = True
+            return
+        try:
+            self._spare.unlink(missing_ok=True)
+            os.link(self.path, self._spare)
+        except OSError:  # a file system without hard links: the copy costs more, not safety
+            os.replace(self.hidden, self.path)
+            shutil.copyfile(self.path, self.hidden)
+            self._behind = []
+            return
+        os.replace(self.hidden, self.path)
+        os.replace(self._spare, self.hidden)
+
+    def close(self) -> None:
+        """Remove the hidden copy; what was not committed is lost."""
+        for name in (self.hidden, self._spare):
+            with contextlib.suppress(OSError):
+                name.unlink(missing_ok=True)
+
+
+class TextFile:
+    """A text file that grows by whole pieces.
+
+    A piece that the disk refuses is cut off again, so the file never ends within one.
+
+    Parameters
+    ----------
+    path : Path
+    keep : bool
+        Go on at the end of an existing file instead of emptying it.
+    """
+
+    def __init__(self, path: Path, keep: bool = False) -> None:
+        self.path = path
+        try:
+            mode = "r+b" if keep else "w+b"
+            self._file = open(path, mode, buffering=0)  # noqa: SIM115 (closed by close)
+            self._file.seek(0, os.SEEK_END)
+        except OSError as error:
+            raise full(error, path) from None
+
+    def append(self, text: str) -> None:
+        """Write a piece and hand it to the system at once.
+
+        Raises
+        ------
+        FileError
+            If the disk refuses.
+        """
+        data = memoryview(text.encode())
+        start = self._file.tell()
+        try:
+            while data:
+                data = data[self._file.write(data) :]
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self._file.truncate(start)
+                self._file.seek(start)
+            raise full(error, self.path) from None
+
+    def close(self) -> None:
+        """Close the file."""
+        with contextlib.suppress(OSError):
+            self._file.close()
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a small text file at once: temporary name, then renaming.
+
+    Raises
+    ------
+    FileError
+        If the disk refuses; an earlier file of that name stays.
+    """
+    hidden = path.with_name(f".{path.name}.next")
+    try:
+        hidden.write_text(text, encoding="utf-8", newline="\n")
+        os.replace(hidden, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            hidden.unlink(missing_ok=True)
+        raise full(error, path) from None

@@ -1,0 +1,143 @@
+"""Table of result formats: one entry each, found by the ending of the file name."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from os import PathLike
+
+    from corota.mesh import Mesh
+    from corota.results import Results
+
+
+def _vtkhdf(results: Results, path: Path) -> None:
+    from corota.io.vtkhdf import VtkhdfWriter
+
+    writer = VtkhdfWriter(path, results.model)
+    for frame in results.frames:
+        writer.add(frame)
+    writer.close(results.info)
+
+
+def _vtu(results: Results, path: Path) -> None:
+    from corota.io.vtu import write_vtu
+
+    write_vtu(results, path)
+
+
+def _pvd(results: Results, path: Path) -> None:
+    from corota.io.vtu import write_pvd
+
+    write_pvd(results, path)
+
+
+def _npz(results: Results, path: Path) -> None:
+    from corota.io.npz import write_npz
+
+    write_npz(results, path)
+
+
+def _csv(results: Results, path: Path) -> None:
+    from corota.io.history import Histories, csv_text
+    from corota.io.twin import replace_text
+
+    histories = Histories(results.model, results.model.steps)
+    replace_text(path, csv_text([histories.row(f) for f in results.frames]))
+
+
+def _dat(results: Results, path: Path) -> None:
+    from corota.io.dat import check_requests, dat_blocks
+    from corota.io.requests import due_now, last_of_steps, left_over
+    from corota.io.twin import replace_text
+
+    model = results.model
+    check_requests(model.steps)
+    text = []
+    for frame, last in zip(results.frames, last_of_steps(results.frames), strict=True):
+        asked = due_now(model, model.steps, frame)
+        asked += left_over(model, model.steps, frame) if last else []
+        text.append(dat_blocks(model, asked, frame))
+    replace_text(path, "".join(text))
+
+
+def _sta(results: Results, path: Path) -> None:
+    from corota.io.sta import STA_HEAD, sta_line
+    from corota.io.twin import replace_text
+
+    lines, before = [STA_HEAD], (0, 0.0)
+    for frame in results.frames:
+        dt = frame.step_time - (before[1] if frame.step == before[0] else 0.0)
+        before = (frame.step, frame.step_time)
+        if frame.increment:
+            lines.append(sta_line(frame, int(frame.scalars.get("attempts", 1)), dt))
+    replace_text(path, "".join(lines))
+
+
+#: Ending of the file name to its writer.
+WRITERS: dict[str, Callable[[Results, Path], None]] = {
+    ".vtkhdf": _vtkhdf,
+    ".hdf": _vtkhdf,
+    ".pvd": _pvd,
+    ".vtu": _vtu,
+    ".npz": _npz,
+    ".csv": _csv,
+    ".dat": _dat,
+    ".sta": _sta,
+}
+
+
+def _deck(mesh: Mesh, path: Path) -> None:
+    from corota.io.inp_write import write_deck_mesh
+
+    write_deck_mesh(mesh, path)
+
+
+#: Ending of the file name to the writer of meshes.
+MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {".inp": _deck}
+
+
+def write_mesh(mesh: Mesh, path: str | PathLike[str]) -> Path:
+    """Write a mesh with its sets in the format that the ending names; return the path.
+
+    Raises
+    ------
+    InputError
+        If the ending is unknown.
+    FileError
+        If the file cannot be written.
+    """
+    target = Path(path)
+    writer = MESH_WRITERS.get(target.suffix.lower())
+    if writer is None:
+        known = ", ".join(MESH_WRITERS)
+        raise InputError(f"{target}: unknown mesh format {target.suffix!r}; use one of {known}")
+    writer(mesh, target)
+    return target
+
+
+def write(results: Results, path: str | PathLike[str]) -> Path:
+    """Write results in the format that the ending names; return the path.
+
+    Raises
+    ------
+    InputError
+        If the ending is unknown or there is nothing to write.
+    FileError
+        If the file cannot be written.
+    """
+    target = Path(path)
+    writer = WRITERS.get(target.suffix.lower())
+    if writer is None:
+        raise InputError(
+            f"{target}: unknown result format {target.suffix!r}; use one of {', '.join(WRITERS)}"
+        )
+    if not results.frames:
+        raise InputError(f"{target}: there are no frames to write")
+    writer(results, target)
+    return target

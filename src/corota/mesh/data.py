@@ -1,0 +1,219 @@
+"""Planar meshes: points, cells by kind, named sets of nodes, cells and edges."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Ints = NDArray[np.int64]
+    Floats = NDArray[np.float64]
+
+#: Local node numbers of the edges of each cell kind: (first, last[, middle]).
+#: Corners counter-clockwise, then mid-sides 1-2, 2-3, ..., then the centre.
+EDGES: dict[str, tuple[tuple[int, ...], ...]] = {
+    "tri3": ((0, 1), (1, 2), (2, 0)),
+    "tri6": ((0, 1, 3), (1, 2, 4), (2, 0, 5)),
+    "quad4": ((0, 1), (1, 2), (2, 3), (3, 0)),
+    "quad8": ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7)),
+    "quad9": ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7)),
+    "line2": (),
+    "line3": (),
+    "point1": (),
+}
+
+#: Number of nodes of each cell kind.
+N_NODES = {
+    "tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8, "quad9": 9,
+    "line2": 2, "line3": 3, "point1": 1,
+}  # fmt: skip
+
+
+@dataclass
+class Cells:
+    """Cells of one kind.
+
+    Parameters
+    ----------
+    kind : str
+        A key of :data:`EDGES`.
+    nodes : ndarray of int, shape (n_cells, n_nodes)
+        Indices into the points, from 0.
+    labels : ndarray of int, shape (n_cells,)
+        The user's element numbers.
+    """
+
+    kind: str
+    nodes: Ints
+    labels: Ints
+
+    def __len__(self) -> int:
+        return len(self.nodes)
+
+
+@dataclass
+class Mesh:
+    """Points and cells with the user's numbers and named sets.
+
+    A cell has one global index: blocks are numbered one after the other.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_nodes, 2)
+        Reference coordinates [length].
+    cells : list of Cells
+    node_labels : ndarray of int, shape (n_nodes,)
+        The user's node numbers.
+    node_sets : dict of str to ndarray of int
+        Node indices, in the user's order.
+    cell_sets : dict of str to ndarray of int
+        Global cell indices.
+    edge_sets : dict of str to ndarray of int, shape (n, 2)
+        Pairs of global cell index and local edge (from 0).
+    notes : list of str
+        What a reader repaired or left out.
+    """
+
+    points: Floats
+    cells: list[Cells]
+    node_labels: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    node_sets: dict[str, Ints] = field(default_factory=dict)
+    cell_sets: dict[str, Ints] = field(default_factory=dict)
+    edge_sets: dict[str, Ints] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.points = np.ascontiguousarray(self.points, dtype=np.float64)
+        if self.points.ndim != 2 or self.points.shape[1] != 2:
+            raise InputError(f"points must have shape (n, 2), not {self.points.shape}")
+        if not np.isfinite(self.points).all():
+            bad = int(np.flatnonzero(~np.isfinite(self.points).all(axis=1))[0])
+            raise InputError(f"point {bad} is not finite: {self.points[bad]}")
+        if len(self.points) and np.abs(self.points).max() > 1e100:
+            raise InputError("a coordinate exceeds 1e100")
+        if len(self.node_labels) == 0:
+            self.node_labels = np.arange(1, self.n_nodes + 1)
+
+    @property
+    def n_nodes(self) -> int:
+        return len(self.points)
+
+    @property
+    def n_cells(self) -> int:
+        return sum(len(c) for c in self.cells)
+
+    @property
+    def offsets(self) -> Ints:
+        """Global index of the first cell of each block, and the total; shape (n_blocks + 1,)."""
+        return np.concatenate([[0], np.cumsum([len(c) for c in self.cells])]).astype(np.int64)
+
+    @property
+    def cell_labels(self) -> Ints:
+        """User's element numbers by global cell index, shape (n_cells,)."""
+        if not self.cells:
+            return np.zeros(0, np.int64)
+        return np.concatenate([c.labels for c in self.cells])
+
+    def locate(self, cell: int) -> tuple[int, int]:
+        """Block number and row in the block of a global cell index."""
+        block = int(np.searchsorted(self.offsets, cell, side="right")) - 1
+        return block, cell - int(self.offsets[block])
+
+    def edge_nodes(self, edges: ArrayLike) -> list[Ints]:
+        """Node indices of edges: for each, (first, last[, middle]).
+
+        Parameters
+        ----------
+        edges : array_like of int, shape (n, 2)
+            Pairs of global cell index and local edge.
+        """
+        found = []
+        for cell, side in np.asarray(edges, dtype=np.int64):
+            block, row = self.locate(int(cell))
+            cells = self.cells[block]
+            found.append(cells.nodes[row, list(EDGES[cells.kind][int(side)])])
+        return found
+
+    def boundary_edges(self) -> Ints:
+        """Edges that belong to one cell only, shape (n, 2)."""
+        pairs, keys = [], []
+        for offset, cells in zip(self.offsets, self.cells, strict=False):
+            for side, local in enumerate(EDGES[cells.kind]):
+                ends = np.sort(cells.nodes[:, local[:2]], axis=1)
+                keys.append(ends[:, 0] * np.int64(self.n_nodes) + ends[:, 1])
+                rows = np.arange(len(cells), dtype=np.int64) + offset
+                pairs.append(np.stack([rows, np.full(len(cells), side, np.int64)], axis=1))
+        if not keys:
+            return np.zeros((0, 2), np.int64)
+        key = np.concatenate(keys)
+        _, first, count = np.unique(key, return_index=True, return_counts=True)
+        return np.asarray(np.concatenate(pairs)[np.sort(first[count == 1])])
+
+    def edges_between(self, ends: ArrayLike) -> Ints:
+        """Find the cell edges with given end nodes.
+
+        Parameters
+        ----------
+        ends : array_like of int, shape (n, 2)
+            Node indices, in any direction.
+
+        Returns
+        -------
+        ndarray of int, shape (n, 2)
+            Global cell index and local edge; of two cells the first one; -1 where no cell has
+            such an edge.
+        """
+        keys, pairs = [np.zeros(0, np.int64)], [np.zeros((0, 2), np.int64)]
+        for offset, cells in zip(self.offsets, self.cells, strict=False):
+            rows = np.arange(len(cells), dtype=np.int64) + offset
+            for side, local in enumerate(EDGES[cells.kind]):
+                keys.append(self._edge_key(cells.nodes[:, local[:2]]))
+                pairs.append(np.stack([rows, np.full(len(cells), side, np.int64)], axis=1))
+        every = np.concatenate(keys)
+        order = np.argsort(every, kind="stable")
+        every = every[order]
+        wanted = self._edge_key(np.asarray(ends, dtype=np.int64).reshape(-1, 2))
+        found = np.full((len(wanted), 2), -1, np.int64)
+        if len(every):
+            at = np.minimum(np.searchsorted(every, wanted), len(every) - 1)
+            hit = every[at] == wanted
+            found[hit] = np.concatenate(pairs)[order[at[hit]]]
+        return found
+
+    def _edge_key(self, ends: Ints) -> Ints:
+        ends = np.sort(ends, axis=1)
+        return np.asarray(ends[:, 0] * np.int64(self.n_nodes) + ends[:, 1])
+
+    def nodes_of(self, name: str) -> Ints:
+        """Node indices of a node, edge or cell set (first found in that order)."""
+        if name in self.node_sets:
+            return self.node_sets[name]
+        if name in self.edge_sets:
+            return self.edge_set_nodes(self.edge_sets[name])
+        if name in self.cell_sets:
+            rows, offsets = self.cell_sets[name], self.offsets
+            parts = [np.zeros(0, np.int64)]
+            for number, cells in enumerate(self.cells):
+                inside = (rows >= offsets[number]) & (rows < offsets[number + 1])
+                parts.append(cells.nodes[rows[inside] - offsets[number]].ravel())
+            return np.asarray(np.unique(np.concatenate(parts)))
+        names = [*self.node_sets, *self.edge_sets, *self.cell_sets]
+        raise InputError(f"no set named {name!r}; the mesh has: {', '.join(names) or 'none'}")
+
+    def edge_set_nodes(self, edges: Ints) -> Ints:
+        """Node indices of edges (n, 2), each once, in ascending order."""
+        parts, offsets = [np.zeros(0, np.int64)], self.offsets
+        for number, cells in enumerate(self.cells):
+            for side, local in enumerate(EDGES[cells.kind]):
+                here = edges[:, 1] == side
+                here &= (edges[:, 0] >= offsets[number]) & (edges[:, 0] < offsets[number + 1])
+                rows = edges[here, 0] - offsets[number]
+                parts.append(cells.nodes[np.ix_(rows, local)].ravel())
+        return np.asarray(np.unique(np.concatenate(parts)))

@@ -1,0 +1,38 @@
+"""Reading a mesh from a file."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import os
+
+    from corota.mesh.data import Mesh
+
+
+def read(path: str | os.PathLike[str]) -> Mesh:
+    """Read a mesh.
+
+    Gmsh's ``.msh`` (2.2 and 4.1, text and binary) and decks ``.inp`` are read here; other
+    formats by meshio, if it is installed. Physical groups become sets: of cells for surfaces,
+    of edges and nodes for curves, of nodes for points.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    InputError
+        With file and line, for a file that is not understood.
+    FileError
+        If the file cannot be read.
+    """
+    from corota.io.formats import read_mesh
+
+    return read_mesh(path)

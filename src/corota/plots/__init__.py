@@ -1,0 +1,13 @@
+"""Pictures: contours on the deformed shape, curves, the model, animations.
+
+All need matplotlib (``pip install corota[plot]``). Each function returns the figure; with ``path``
+it is written too, as PNG, SVG or PDF by the ending.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from corota.plots.animation import animate
+from corota.plots.contour import contour
+from corota.plots.curves import curve
+from corota.plots.model import model
+
+__all__ = ["animate", "contour", "curve", "model"]

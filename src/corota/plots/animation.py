@@ -1,0 +1,106 @@
+"""All frames of an analysis as a moving picture."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import contextlib
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota import fields as vf
+from corota.io.twin import full
+from corota.plots.contour import Drawing, frame_title, label_bar, paint
+from corota.plots.figure import extent_size, look, new_figure, picture_path
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from corota.results import Results
+
+#: More frames than this are thinned evenly.
+MOST_FRAMES = 120
+
+
+def animate(
+    results: Results,
+    name: str = "MISES",
+    *,
+    path: str | PathLike[str],
+    scale: float = 1.0,
+    per_cell: bool = False,
+    edges: bool | None = None,
+    seconds: float = 4.0,
+    dpi: float = 100.0,
+) -> Path:
+    """Write all frames as a GIF, with one color scale and one window for all.
+
+    Parameters
+    ----------
+    results : Results
+    name : str
+        Variable.
+    path : path-like
+        Ends with ``.gif``.
+    scale : float
+        Factor of the displacements.
+    per_cell : bool
+        Averages of the cells.
+    edges : bool, optional
+    seconds : float
+        Length of one pass.
+    dpi : float
+
+    Returns
+    -------
+    Path
+    """
+    target = picture_path(path, (".gif",))
+    name = vf.match_name(name, results.variables())
+    drawing = Drawing(results, name, per_cell)
+    count = len(results.frames)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).round().astype(int))
+    ranges = [drawing.range(int(i)) for i in chosen]
+    limits = (min(r[0] for r in ranges), max(r[1] for r in ranges))
+    points = results.mesh.points
+    low, high = points.min(axis=0), points.max(axis=0)
+    for i in chosen:
+        moved = points + scale * results.frame(int(i)).U
+        low, high = np.minimum(low, moved.min(axis=0)), np.maximum(high, moved.max(axis=0))
+    with look() as mpl:
+        from matplotlib.animation import FuncAnimation, PillowWriter
+
+        width, height, below = extent_size(low, high)
+        figure = new_figure(width, height, shown=False)
+        ax = figure.add_subplot()
+        pad = 0.04 * float((high - low).max())
+
+        def show(i: int) -> list[Any]:
+            ax.clear()
+            painted = paint(ax, mpl, drawing, i, scale, edges, True, limits)
+            ax.set_xlim(low[0] - pad, high[0] + pad)
+            ax.set_ylim(low[1] - pad, high[1] + pad)
+            ax.set_title(frame_title(results, i, scale), loc="left")
+            return [painted]
+
+        painted = show(int(chosen[0]))[0]
+        bar = figure.colorbar(
+            painted, ax=ax, location="bottom" if below else "right",
+            shrink=0.75 if below else 0.8, aspect=38 if below else 28, pad=0.04,
+        )  # fmt: skip
+        label_bar(bar, name, per_cell, limits)
+        figure.canvas.draw()
+        figure.set_layout_engine("none")  # else the axes would move with the titles
+        rate = max(2, min(25, round(len(chosen) / seconds)))
+        moving = FuncAnimation(figure, show, frames=[int(i) for i in chosen], blit=False)
+        hidden = target.with_name(f".{target.stem}.next.gif")
+        try:
+            moving.save(hidden, writer=PillowWriter(fps=rate), dpi=dpi)
+            os.replace(hidden, target)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                hidden.unlink(missing_ok=True)
+            raise full(error, target) from None
+    return target

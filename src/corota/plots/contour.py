@@ -1,0 +1,279 @@
+"""A variable in colors on the deformed shape, with the undeformed outline."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota import fields as vf
+from corota.errors import InputError
+from corota.plots.figure import INK, PALE, extent_size, look, new_figure, save
+from corota.plots.plastic import draw_boundary
+from corota.plots.surface import Surface, edge_lines, outline, surface
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from corota.results import Results
+
+    Floats = NDArray[np.float64]
+
+#: Meshes with fewer cells show their edges unless asked otherwise.
+EDGES_UP_TO = 1500
+#: Bands of color between the smallest and the largest value.
+BANDS = 16
+#: More triangles than this are drawn as pixels, also in SVG and PDF.
+PIXELS_FROM = 60000
+
+
+@dataclass
+class Drawing:
+    """What of a model stays the same from frame to frame.
+
+    Parameters
+    ----------
+    results : Results
+    name : str
+        Variable as :mod:`corota.fields` spells it.
+    per_cell : bool
+        One color a cell, from its average.
+    """
+
+    results: Results
+    name: str
+    per_cell: bool
+
+    def __post_init__(self) -> None:
+        results = self.results
+        self.groups = results.sections()
+        planar = np.zeros(results.mesh.n_cells, dtype=bool)
+        for offset, cells in zip(results.mesh.offsets, results.mesh.cells, strict=False):
+            planar[offset : offset + len(cells)] = cells.kind.startswith(("tri", "quad"))
+        jumps = not self.per_cell and self.name not in vf.NODAL
+        self.parts: list[tuple[int | None, Surface]] = [
+            (int(g) if jumps else None, surface(results.mesh, (self.groups == g) & planar))
+            for g in np.unique(self.groups[planar])
+        ]
+
+    def draw(self, frame: int) -> list[tuple[Surface, Floats]]:
+        """Values for each part: at its drawn points, or at its triangles if per cell."""
+        if self.per_cell:
+            cells = self.results.cells(self.name, frame)
+            return [(part, cells[part.owner]) for _, part in self.parts]
+        return [
+            (part, part.values(self.results.nodal(self.name, frame, section=group)))
+            for group, part in self.parts
+        ]
+
+    def range(self, frame: int) -> tuple[float, float]:
+        """Smallest and largest drawn value."""
+        values = [v for _, v in self.draw(frame) if len(v)]
+        return min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+
+
+def color_scale(mpl: Any, low: float, high: float) -> tuple[Any, Floats]:
+    """Color map and levels: diverging about zero for values of both signs, else pale for low."""
+    size = max(abs(low), abs(high))
+    if high - low <= 1e-9 * size or size == 0.0:
+        pad = 0.5 * size or 1.0
+        low, high = low - pad, high + pad
+    if low < -0.02 * size and high > 0.02 * size:
+        levels = np.linspace(-size, size, BANDS + 1)
+        colors = mpl.colormaps["RdBu_r"]
+        used = levels[(levels >= low - 2 * size / BANDS) & (levels <= high + 2 * size / BANDS)]
+        return colors, used if len(used) > 2 else levels
+    return mpl.colormaps["YlOrRd"], np.linspace(low, high, BANDS + 1)
+
+
+def contour(
+    results: Results,
+    name: str = "MISES",
+    *,
+    frame: int = -1,
+    scale: float = 1.0,
+    deformed: bool = True,
+    per_cell: bool = False,
+    edges: bool | None = None,
+    undeformed: bool = True,
+    limits: tuple[float, float] | None = None,
+    title: str | None = None,
+    path: str | PathLike[str] | None = None,
+    ax: Any = None,
+    dpi: float = 150.0,
+) -> Any:
+    """Draw a variable on the deformed shape; with ``PEEQ`` the elastic-plastic boundary too.
+
+    Parameters
+    ----------
+    results : Results
+    name : str
+        Variable, in any case: ``MISES``, ``S11``, ``SP1``, ``U2``, ...
+    frame : int
+        The last by default.
+    scale : float
+        Factor of the drawn displacements; ``deformed=False`` is 0.
+    per_cell : bool
+        Averages of the cells instead of nodal averages. Nodal averages never mix sections.
+    edges : bool, optional
+        Draw the cells' edges; by default in meshes of up to 1,500 cells.
+    undeformed : bool
+        Draw the undeformed outline.
+    limits : (float, float), optional
+        Of the colors.
+    title : str, optional
+    path : path-like, optional
+        Write PNG, SVG or PDF there.
+    ax : matplotlib axes, optional
+        Draw into these.
+    dpi : float
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If there is no such variable or frame.
+    ResourceError
+        If matplotlib is missing.
+    """
+    scale = scale if deformed else 0.0
+    state = results.frame(frame)
+    name = vf.match_name(name, results.variables(frame))
+    if per_cell and name in vf.NODAL:
+        raise InputError(f"{name} lives at nodes; averages over elements are for stress and strain")
+    drawing = Drawing(results, name, per_cell)
+    with look() as mpl:
+        positions = results.mesh.points + scale * state.U
+        every = np.concatenate([results.mesh.points, positions]) if undeformed else positions
+        low, high = every.min(axis=0), every.max(axis=0)
+        below = extent_size(low, high)[2]
+        if ax is None:
+            width, height, below = extent_size(low, high)
+            figure = new_figure(width, height, shown=path is None)
+            ax = figure.add_subplot()
+        else:
+            figure = ax.figure
+        painted = paint(ax, mpl, drawing, frame, scale, edges, undeformed, limits)
+        if name == "PEEQ":
+            draw_boundary(ax, results, frame, scale)
+        bar = figure.colorbar(
+            painted, ax=ax, location="bottom" if below else "right",
+            shrink=0.75 if below else 0.8, aspect=38 if below else 28, pad=0.04,
+        )  # fmt: skip
+        label_bar(bar, name, per_cell, drawing.range(frame))
+        pad = 0.04 * float((high - low).max())
+        ax.set_xlim(low[0] - pad, high[0] + pad)
+        ax.set_ylim(low[1] - pad, high[1] + pad)
+        ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
+        if path is not None:
+            save(figure, path, dpi)
+    return figure
+
+
+def label_bar(bar: Any, name: str, per_cell: bool, limits: tuple[float, float]) -> None:
+    """Name a color bar, tell the smallest and largest value, keep the ticks few."""
+    from matplotlib.ticker import MaxNLocator
+
+    meaning = vf.MEANING.get(name, "")
+    how = ", element averages" if per_cell else "" if name in vf.NODAL else ", averaged at nodes"
+    label = f"{name}: {meaning}{how}" if meaning else name + how
+    size = max(abs(v) for v in limits)
+    low, high = (0.0 if abs(v) < 1e-6 * size else v for v in limits)
+    bar.set_label(f"{label}; {low:.5g} ... {high:.5g}")
+    bar.outline.set_linewidth(0.5)
+    bar.locator = MaxNLocator(7)
+    bar.formatter.set_powerlimits((-3, 4))
+    bar.update_ticks()
+    bar.ax.minorticks_off()
+    bar.ax.tick_params(width=0.5, length=2.5)
+
+
+def frame_title(results: Results, frame: int, scale: float) -> str:
+    """Job, step, time and scale of the displacements."""
+    state = results.frame(frame)
+    shape = "undeformed shape" if scale == 0.0 else f"displacements times {scale:g}"
+    return (
+        f"{results.model.name}: step {state.step}, increment {state.increment}, "
+        f"time {state.time:.6g}, load factor {state.factor:.4g}; {shape}"
+    )
+
+
+def paint(
+    ax: Any,
+    mpl: Any,
+    drawing: Drawing,
+    frame: int,
+    scale: float,
+    edges: bool | None,
+    undeformed: bool,
+    limits: tuple[float, float] | None,
+) -> Any:
+    """Fill axes with one frame; return what a color bar needs."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import BoundaryNorm
+
+    results = drawing.results
+    mesh = results.mesh
+    positions = mesh.points + scale * results.frame(frame).U
+    low, high = limits or drawing.range(frame)
+    colors, levels = color_scale(mpl, low, high)
+    if colors.name == "RdBu_r":
+        size = max(abs(low), abs(high))
+        norm = BoundaryNorm(np.linspace(-size, size, BANDS + 1), colors.N)
+    else:
+        norm = BoundaryNorm(levels, colors.N)
+    for part, values in drawing.draw(frame):
+        if not len(part.triangles):
+            continue
+        x, y = part.values(positions).T
+        pixels = len(part.triangles) > PIXELS_FROM
+        if drawing.per_cell:
+            ax.tripcolor(
+                x, y, part.triangles, facecolors=values, cmap=colors, norm=norm,
+                rasterized=pixels, antialiased=False,
+            )  # fmt: skip
+        else:
+            drawn = ax.tricontourf(
+                x, y, part.triangles, np.clip(values, levels[0], levels[-1]), levels=levels,
+                cmap=colors, norm=norm, antialiased=False,
+            )  # fmt: skip
+            drawn.set_rasterized(pixels)
+            drawn.set_edgecolor("face")
+            drawn.set_linewidth(0.15)
+    show = mesh.n_cells <= EDGES_UP_TO if edges is None else edges
+    if show:
+        width = 0.35 if mesh.n_cells < 400 else 0.2
+        lines = edge_lines(mesh, positions)
+        ax.add_collection(LineCollection(lines, colors=INK, linewidths=width, alpha=0.45))
+    if undeformed and scale != 0.0:
+        lines = outline(mesh, mesh.points)
+        ax.add_collection(
+            LineCollection(lines, colors=PALE, linewidths=0.8, linestyles=(0, (4, 3)), zorder=0.5)
+        )
+    ax.add_collection(LineCollection(outline(mesh, positions), colors=INK, linewidths=0.8))
+    ax.set_aspect("equal")
+    ax.set_xlabel("x")
+    ax.set_ylabel("y")
+    ax.tick_params(length=2.5)
+    painted = ScalarMappable(
+        norm=BoundaryNorm(levels, _between(colors, norm, levels).N),
+        cmap=_between(colors, norm, levels),
+    )
+    painted.set_array([])
+    return painted
+
+
+def _between(colors: Any, norm: Any, levels: Floats) -> Any:
+    """Color map of the bands between levels only."""
+    from matplotlib.colors import ListedColormap
+
+    middle = 0.5 * (levels[1:] + levels[:-1])
+    return ListedColormap(colors(norm(middle)))

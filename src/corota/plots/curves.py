@@ -1,0 +1,95 @@
+"""Curves of one history against another."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.fields import MEANING
+from corota.plots.figure import INK, PALE, look, new_figure, save
+from corota.plots.path import draw_path, has_stability
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from corota.histories import History
+
+#: Quantities that belong on the upright axis whatever is asked first.
+_UPRIGHT = ("load factor", "RF", "F1", "F2", "M3", "RM3")
+
+
+def curve(
+    y: History | Sequence[History],
+    x: History,
+    *,
+    path: str | PathLike[str] | None = None,
+    ax: Any = None,
+    dpi: float = 150.0,
+) -> Any:
+    """Draw histories against another.
+
+    A single history against the load factor or a force is drawn the engineers' way: the load
+    upright, the displacement along. Of an equilibrium path the stable branches are solid, the
+    unstable ones dashed, and limit and bifurcation points are marked.
+
+    Parameters
+    ----------
+    y : History or sequence of History
+    x : History
+    path : path-like, optional
+        Write PNG, SVG or PDF there.
+    ax : matplotlib axes, optional
+    dpi : float
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    many = list(y) if isinstance(y, Sequence) else [y]
+    if len(many) == 1 and x.name.startswith(_UPRIGHT) and not many[0].name.startswith(_UPRIGHT):
+        many, x = [x], many[0]
+    with look():
+        if ax is None:
+            figure = new_figure(5.2, 3.7, shown=path is None)
+            ax = figure.add_subplot()
+        else:
+            figure = ax.figure
+        across = np.asarray(x.values)
+        marked = len(across) <= 60
+        as_path = len(many) == 1 and has_stability(x.results)
+        if as_path:
+            draw_path(ax, across, np.asarray(many[0].values), x.results)
+        for one in [] if as_path else many:
+            ax.plot(
+                across, one.values, marker="o" if marked else "", markersize=3.2,
+                markerfacecolor="white", markeredgewidth=0.9, linewidth=1.4, label=one.name,
+                clip_on=False, zorder=3,
+            )  # fmt: skip
+        ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
+        ax.axvline(0.0, color=PALE, linewidth=0.6, zorder=1)
+        ax.grid(True, color="#e6e9ee", linewidth=0.6)
+        ax.set_axisbelow(True)
+        ax.set_xlabel(axis_label(x.name))
+        if len(many) == 1:
+            ax.set_ylabel(axis_label(many[0].name))
+        else:
+            ax.legend()
+        ax.margins(0.03)
+        ax.tick_params(length=2.5, colors=INK)
+        ax.ticklabel_format(style="sci", scilimits=(-3, 4))
+        ax.set_title(x.results.model.name, loc="left")
+        if path is not None:
+            save(figure, path, dpi)
+    return figure
+
+
+def axis_label(name: str) -> str:
+    """Name of a history with its meaning."""
+    variable, _, place = name.partition(" at ")
+    meaning = MEANING.get(variable)
+    if not meaning:
+        return name
+    return f"{variable}: {meaning}" + (f", at {place}" if place else "")

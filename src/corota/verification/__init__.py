@@ -1,0 +1,3 @@
+"""Reference problems with their sources and values."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,171 @@
+"""A model written as a deck reads back to the same model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from decks import read
+from seeds import SEEDS
+
+import corota as ct
+from corota.io.formats import write
+from corota.model import BodyForce, EdgeLoad
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+def sections(model: ct.Model) -> list[tuple[object, ...]]:
+    """Sections by cell, so that names of invented sets do not matter."""
+    found = []
+    for s in model.sections:
+        cells = s.cells
+        if isinstance(cells, str):
+            cells = model.mesh.cell_sets.get(cells, np.arange(model.mesh.n_cells))
+        constants = tuple(np.round(s.material.parameters(), 10))
+        for label in model.mesh.cell_labels[cells]:
+            found.append(
+                (label, s.element, constants, s.material.rho, s.thickness, s.plane,
+                 s.local_strain, round(s.orientation, 12))
+            )  # fmt: skip
+    return sorted(found)
+
+
+def conditions(model: ct.Model, items: list[object]) -> list[tuple[object, ...]]:
+    """Supports and loads by node, edge or cell number."""
+    mesh, found = model.mesh, []
+    for item in items:
+        if isinstance(item, EdgeLoad):
+            edges = mesh.edge_sets[item.edges] if isinstance(item.edges, str) else item.edges
+            where = sorted((int(mesh.cell_labels[c]), int(e)) for c, e in edges)
+            kind: object = (item.kind, tuple(np.round(item.value, 9)))
+        elif isinstance(item, BodyForce):
+            cells = mesh.cell_sets.get(item.cells) if isinstance(item.cells, str) else item.cells
+            cells = np.arange(mesh.n_cells) if cells is None else cells
+            where = sorted(mesh.cell_labels[cells].tolist())
+            kind = (item.kind, tuple(np.round(item.value, 9)))
+        else:
+            nodes = mesh.nodes_of(item.nodes) if isinstance(item.nodes, str) else item.nodes  # type: ignore[attr-defined]
+            for label in mesh.node_labels[nodes].tolist():
+                found.append((label, item.dof, item.value, item.amplitude.upper()))  # type: ignore[attr-defined]
+            continue
+        found.append((tuple(where), kind, item.amplitude.upper()))
+    return sorted(found, key=str)
+
+
+def same(a: ct.Model, b: ct.Model) -> None:
+    assert np.array_equal(a.mesh.points, b.mesh.points)
+    assert np.array_equal(a.mesh.node_labels, b.mesh.node_labels)
+    assert [c.kind for c in a.mesh.cells] == [c.kind for c in b.mesh.cells]
+    for mine, theirs in zip(a.mesh.cells, b.mesh.cells, strict=True):
+        assert np.array_equal(mine.nodes, theirs.nodes)
+        assert np.array_equal(mine.labels, theirs.labels)
+    for name, nodes in a.mesh.node_sets.items():
+        assert np.array_equal(b.mesh.node_sets[name.replace(" ", "_")], nodes)
+    assert sections(a) == sections(b)
+    assert conditions(a, a.supports) == conditions(b, b.supports)  # type: ignore[arg-type]
+    assert len(a.steps) == len(b.steps)
+    for one, two in zip(a.steps, b.steps, strict=True):
+        assert conditions(a, one.supports) == conditions(b, two.supports)  # type: ignore[arg-type]
+        assert conditions(a, one.loads) == conditions(b, two.loads)  # type: ignore[arg-type]
+        for name in (
+            "nlgeom", "period", "first_increment", "smallest_increment", "largest_increment",
+            "fixed_increments", "max_increments", "new_supports", "new_loads", "ramp",
+            "tolerance", "max_iterations",
+        ):  # fmt: skip
+            assert getattr(one, name) == getattr(two, name)
+        for old, new in zip(one.outputs, two.outputs, strict=True):
+            assert (old.kind, old.variables, old.frequency, old.totals) == (
+                new.kind, new.variables, new.frequency, new.totals,
+            )  # fmt: skip
+    assert {k.upper() for k in a.amplitudes} == {k.upper() for k in b.amplitudes}
+
+
+@pytest.mark.parametrize("number", range(len(SEEDS)))
+def test_decks_survive_a_round_trip(tmp_path: Path, number: int) -> None:
+    model = read(tmp_path, SEEDS[number])
+    same(model, ct.read(write(model, tmp_path / "again.inp")))
+
+
+def test_a_python_model_survives_a_round_trip(tmp_path: Path) -> None:
+    mesh = ct.mesh.distort(ct.mesh.rectangle(4.0, 1.0, 4, 2, "quad8"), 0.1)
+    mesh.node_sets["left side"] = mesh.node_sets.pop("left")
+    model = ct.Model(mesh)
+    wood = ct.Orthotropic(10.0, 4.0, 3.0, 0.3, 0.2, 0.1, 2.0, rho=0.5)
+    model.section([0, 1], element="Q8", material=wood, plane="strain", orientation=0.7)
+    model.section(
+        [2, 3, 4, 5, 6, 7], element="Q8R", material=ct.Elastic(1.0, 0.2), local_strain="modified"
+    )
+    model.fix("left side")
+    model.fix([7], x=None, y=0.25)
+    model.pressure("top", 3.0)
+    model.traction(mesh.edge_sets["right"][:1], x=1.0, y=-2.0)
+    model.force("bottom", y=-1.0)
+    model.gravity(y=-9.81, cells=[0, 1])
+    model.steps = [
+        ct.Static(increments=4, tolerance=1e-11, max_iterations=7),
+        ct.Static(nlgeom=False, new_loads=True),
+    ]
+    again = ct.read(write(model, tmp_path / "model.inp"))
+    # The model's loads act in every step; a deck says them in the first, and after OP=NEW.
+    model.steps[0].loads = model.loads + model.steps[0].loads
+    model.steps[1].loads = model.loads + model.steps[1].loads
+    same(model, again)
+
+
+def test_a_total_force_on_edges_is_written_as_a_traction(tmp_path: Path) -> None:
+    mesh = ct.mesh.rectangle(4.0, 1.0, 4, 2)
+    del mesh.node_sets["right"]
+    model = ct.Model(mesh)
+    model.section("all", element="Q4", material=ct.Elastic(1.0), thickness=0.5)
+    model.force("right", x=3.0, y=4.0)
+    model.fix("left")
+    again = ct.read(write(model, tmp_path / "model.inp"))
+    load = again.steps[0].loads[0]
+    assert isinstance(load, EdgeLoad)
+    assert load.value == pytest.approx((6.0, 8.0))
+
+
+def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 2))
+    with pytest.raises(ct.UnsupportedError, match="no writer"):
+        write(model, tmp_path / "model.bdf")
+    model.steps = [ct.steps.Step()]
+    with pytest.raises(ct.UnsupportedError, match="step 1"):
+        write(model, tmp_path / "model.inp")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda m: m.velocity("all", x=1.0), "initial velocities"),
+        (lambda m: m.point_mass([3], 1.0), "point masses"),
+        (lambda m: m.dashpot(1, c=1.0, second=2), "dashpots"),
+        (lambda m: m.equation((1, "x", 1.0), (2, "x", -1.0)), "equations and couplings"),
+        (lambda m: m.rigid("right", 2), "equations and couplings"),
+        (lambda m: m.local_axes([1], angle=0.5), "local axes"),
+        (lambda m: setattr(m.sections[0], "mean_dilatation", True), "section 1: mean_dilatation"),
+        (lambda m: m.steps.append(ct.Static(path=ct.ArcLength(factor=1.0))), "step 1: path"),
+        (lambda m: m.steps.append(ct.Static(at_limit="follow")), "step 1: at_limit"),
+        (lambda m: m.steps.append(ct.Static(plastic_increment=0.01)), "step 1: plastic_increment"),
+        (lambda m: m.steps.append(ct.Static(tolerance=1e-6)), "step 1: a tolerance of 1e-06"),
+        (lambda m: m.steps.append(ct.Buckle()), "step 1: Buckle"),
+        (
+            lambda m: setattr(m.sections[0], "material", ct.Mises(1.0, 0.3, yield_stress=1.0)),
+            "material of type Mises",
+        ),
+    ],
+)
+def test_nothing_is_left_out_in_silence(
+    tmp_path: Path, change: Callable[[ct.Model], object], words: str
+) -> None:
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 2))
+    model.section("all", element="Q4", material=ct.Elastic(1.0), plane="strain")
+    change(model)
+    with pytest.raises(ct.UnsupportedError, match=words):
+        write(model, tmp_path / "model.inp")
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,40 @@
+"""The page of keywords names every keyword that is read or passed over."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from corota.io.inp_cards_output import WRITTEN
+from corota.io.inp_elements import ALIASES, ELEMENTS, LINES, OWN
+from corota.io.inp_keywords import IGNORED, KEYWORDS, UNSUPPORTED
+from corota.io.inp_lexer import key
+
+PAGE = (Path(__file__).parents[2] / "docs" / "keywords.md").read_text(encoding="utf-8")
+NAMED = {key(name) for name in re.findall(r"`\*([A-Z][A-Z ]*)", PAGE)}
+CODE = {word for text in re.findall(r"`([^`]*)`", PAGE) for word in re.split(r"[ ,]+", text)}
+
+
+@pytest.mark.parametrize("keyword", [*KEYWORDS, *IGNORED])
+def test_every_keyword_is_on_the_page(keyword: str) -> None:
+    assert keyword in NAMED
+
+
+def test_the_page_names_no_keyword_that_the_reader_does_not_know() -> None:
+    assert {*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"} >= NAMED
+
+
+def test_no_keyword_is_in_two_tables() -> None:
+    assert not set(KEYWORDS) & set(IGNORED)
+    assert not (set(KEYWORDS) | set(IGNORED)) & set(UNSUPPORTED)
+
+
+def test_elements_and_variables_are_on_the_page() -> None:
+    assert set(LINES) | set(OWN) <= CODE
+    for name in ELEMENTS:
+        assert name in CODE or name[3:] in ALIASES
+    for names in WRITTEN.values():
+        assert set(names) <= CODE

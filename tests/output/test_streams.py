@@ -1,0 +1,137 @@
+"""Standard streams, signals and disks that refuse: the run goes on or ends cleanly."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import json
+import os
+import pty
+import resource
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from corota.io.stored import read_results
+
+DECK = Path(__file__).parent / "deck.inp"
+CALL = [sys.executable, "-m", "corota"]
+
+
+def on_terminal(arguments, env):
+    """Output of a command whose standard output is a terminal."""
+    main, side = pty.openpty()
+    run = subprocess.Popen([*CALL, *arguments], stdout=side, stderr=side, env=env)
+    os.close(side)
+    seen = b""
+    while True:
+        try:
+            piece = os.read(main, 65536)
+        except OSError:
+            break
+        if not piece:
+            break
+        seen += piece
+    os.close(main)
+    return run.wait(timeout=60), seen.decode()
+
+
+@pytest.mark.parametrize("limit", [10, 200, 3000, 40000, 120000])
+def test_full_disk_is_6_names_the_file_and_leaves_no_broken_one(tmp_path, limit, call):
+    """A limit on the size of files stands for a disk that is full at some moment."""
+
+    def small():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    done = call("run", DECK, "-o", tmp_path, "-q", preexec_fn=small)
+    assert done.returncode == 6, (done.returncode, done.stderr)
+    assert f"{tmp_path}/deck." in done.stderr
+    assert "cannot write" in done.stderr
+    if (tmp_path / "deck.vtkhdf").exists():
+        with read_results(tmp_path / "deck.vtkhdf") as results:
+            assert len(results.frames) >= 1
+    for name in ("deck.sta", "deck.csv", "deck.cvg", "deck.jsonl"):
+        if (tmp_path / name).exists():
+            assert (tmp_path / name).read_text()[-1:] in ("\n", "")
+
+
+def test_reader_that_goes_away_does_not_stop_the_run(tmp_path):
+    with subprocess.Popen(
+        [*CALL, "run", str(DECK), "-o", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as run:
+        run.stdout.close()
+        error = run.stderr.read()
+        assert run.wait(timeout=60) == 0
+    assert error == b""
+    with read_results(tmp_path / "deck.vtkhdf") as results:
+        assert results.frames[-1].factor == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-"])
+def test_closed_streams_do_not_stop_the_run(tmp_path, closed):
+    line = f"{' '.join(CALL)} run {DECK} -o {tmp_path} {closed}"
+    assert subprocess.run(line, shell=True, check=False, timeout=60).returncode == 0
+    assert (tmp_path / "deck.vtkhdf").exists()
+
+
+def test_full_standard_output_is_6_but_the_files_are_there(tmp_path, call):
+    with open("/dev/full", "w") as full:
+        done = call(
+            "run", DECK, "-o", tmp_path, stdout=full, stderr=subprocess.PIPE, capture_output=False
+        )
+    assert done.returncode == 6
+    assert "standard output: cannot write" in done.stderr
+    assert (tmp_path / "deck.vtkhdf").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signal_ends_the_run_with_7_and_all_increments_on_disk(tmp_path, number, deck):
+    path = deck(
+        tmp_path / "long.inp",
+        ("INC=50", "INC=100000"),
+        ("0.25,1.,1e-5,0.25", "1e-4,1.,1e-6,1e-4"),
+    )
+    with subprocess.Popen(
+        [*CALL, "run", str(path), "-o", str(tmp_path), "--json"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as run:
+        done = 0
+        while done < 5:
+            record = json.loads(run.stdout.readline())
+            done = record["increment"] if record["event"] == "increment" else done
+        run.send_signal(number)
+        # Not communicate(): it would miss what readline() has already taken into its buffer.
+        output, error = run.stdout.read(), run.stderr.read()
+        run.wait(timeout=60)
+    assert run.returncode == 7, error
+    assert "Traceback" not in error
+    records = [json.loads(line) for line in output.splitlines()]
+    last = max((r["increment"] for r in records if r["event"] == "increment"), default=done)
+    with read_results(tmp_path / "long.vtkhdf") as results:
+        assert results.frames[-1].increment == last
+
+
+def test_terminal_shows_a_live_line(tmp_path, deck):
+    path = deck(
+        tmp_path / "a.inp", ("INC=50", "INC=500"), ("0.25,1.,1e-5,0.25", "0.005,1.,1e-5,0.005")
+    )
+    arguments = ["run", str(path), "-o", str(tmp_path)]
+    env = {**os.environ, "TERM": "xterm", "PYTHONIOENCODING": "utf-8"}
+    env.pop("NO_COLOR", None)
+    code, text = on_terminal(arguments, env)
+    assert code == 0
+    assert "\r\x1b[2K step 1/1 " in text
+    assert "left " in text
+    assert "\x1b[32mDone\x1b[0m" in text
+    assert " step    inc" not in text
+    code, plain = on_terminal(arguments, {**env, "NO_COLOR": "1"})
+    assert "\x1b[32m" not in plain
+    code, dumb = on_terminal(arguments, {**env, "TERM": "dumb"})
+    assert "\x1b" not in dumb
+    assert " step    inc" in dumb

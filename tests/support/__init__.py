@@ -1,0 +1,3 @@
+"""What the tests share; ``tests`` is on the path."""
+
+# SPDX-License-Identifier: BSD-3-Clause
