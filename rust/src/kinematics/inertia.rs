@@ -188,6 +188,86 @@ impl<T: Real, const N: usize> Mass<T, N> {
     }
 }
 
+/// How the other nodes carry the mass of an element's `light` nodes: row per node. The affine
+/// extrapolation of least norm where the others allow one, so that total mass, momentum and,
+/// as far as it goes, the motion of a rigid body stay; else their mean.
+pub fn carriers<const N: usize>(x: &Nodal<f64, N, 2>, light: &[bool; N]) -> [[f64; N]; N] {
+    let count = light.iter().filter(|&&l| !l).count() as f64;
+    let mut rows = [[0.0; N]; N];
+    let mut mean = [0.0; 2];
+    for n in (0..N).filter(|&n| !light[n]) {
+        mean = [mean[0] + x[n][0] / count, mean[1] + x[n][1] / count];
+    }
+    let from_mean = |n: usize| [x[n][0] - mean[0], x[n][1] - mean[1]];
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for n in (0..N).filter(|&n| !light[n]) {
+        let r = from_mean(n);
+        xx += r[0] * r[0];
+        xy += r[0] * r[1];
+        yy += r[1] * r[1];
+    }
+    // Principal directions of the carriers; one without extent extrapolates nothing.
+    let (half, radius) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
+    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+    let (sin, cos) = angle.sin_cos();
+    let axes = [(half + radius, [cos, sin]), (half - radius, [-sin, cos])];
+    for s in 0..N {
+        if !light[s] {
+            rows[s][s] = 1.0;
+            continue;
+        }
+        let reach = from_mean(s);
+        for n in (0..N).filter(|&n| !light[n]) {
+            rows[s][n] = 1.0 / count;
+            let r = from_mean(n);
+            for (size, d) in axes {
+                if size > 1e-2 * half {
+                    let along = |v: [f64; 2]| v[0] * d[0] + v[1] * d[1];
+                    rows[s][n] += along(reach) * along(r) / size;
+                }
+            }
+        }
+    }
+    rows
+}
+
+impl<const N: usize> Mass<f64, N> {
+    /// Take the mass of `light` nodes away and let the other nodes of the element carry it
+    /// (mass redistribution: Khenous, Laborde & Renard 2008). An element of light nodes alone
+    /// keeps its mass. It is a matrix of the kinetic energy as before, so every conservation
+    /// law that held still does.
+    pub fn carry(&mut self, x: &Nodal<f64, N, 2>, light: &[bool; N], lumped: bool) {
+        if light.iter().all(|&l| l) || !light.iter().any(|&l| l) {
+            return;
+        }
+        let p = carriers(x, light);
+        if lumped {
+            let count = light.iter().filter(|&&l| !l).count() as f64;
+            for s in (0..N).filter(|&s| light[s]) {
+                let share = self.nn[s][s] / count;
+                self.nn[s][s] = 0.0;
+                for n in (0..N).filter(|&n| !light[n]) {
+                    self.nn[n][n] += share;
+                }
+            }
+            return;
+        }
+        let (nn, ne) = (self.nn, self.ne);
+        self.nn = [[0.0; N]; N];
+        self.ne = [[0.0; N]; N];
+        for a in 0..N {
+            for b in 0..N {
+                for s in 0..N {
+                    self.ne[a][b] += p[s][a] * ne[s][b];
+                    for t in 0..N {
+                        self.nn[a][b] += p[s][a] * nn[s][t] * p[t][b];
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Frame of an element as the inertia sees it.
 pub struct Spin<T, const N: usize> {
     /// `S eta / D` and `eta`.

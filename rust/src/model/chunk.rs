@@ -91,6 +91,8 @@ pub trait Chunk: Send + Sync {
     );
     /// Set the initial strains from those of the block, `[n, p, 4]`.
     fn set_initial(&mut self, values: &[f64]);
+    /// Let other nodes of the elements carry the mass of these, given by node; empty for none.
+    fn set_light(&mut self, light: &[bool]);
     /// Make the trial history of the last evaluation, if there was one, the committed one.
     fn commit(&mut self);
     /// Strains at the points with the committed or the trial internal modes, written to the
@@ -126,6 +128,8 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     pub(super) rates: Vec<f64>,
     /// Initial strain, `[p, 4]` strided; empty for none.
     pub(super) initial: Vec<f64>,
+    /// Nodes of each element that carry no mass; empty for none.
+    pub(super) light: Vec<[bool; N]>,
     element: PhantomData<E>,
 }
 
@@ -168,6 +172,7 @@ where
             rates_old: vec![0.0; rates],
             rates: vec![0.0; rates],
             initial: Vec::new(),
+            light: Vec::new(),
             element: PhantomData,
         }
     }
@@ -416,6 +421,12 @@ where
     ) {
         self.add_momenta(context, v, kind, carried, sums);
     }
+    fn set_light(&mut self, light: &[bool]) {
+        let of = |nodes: &[u32; N]| nodes.map(|n| light[n as usize]);
+        self.light =
+            if light.is_empty() { Vec::new() } else { self.nodes.iter().map(of).collect() };
+    }
+
     fn set_initial(&mut self, values: &[f64]) {
         let rows = 4 * self.shared.section.points.len();
         self.initial.clear();

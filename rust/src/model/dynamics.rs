@@ -50,11 +50,14 @@ where
         out
     }
 
-    fn mass(&self, x: &Nodal<f64, N, 2>, kind: MassKind) -> Mass<f64, N> {
+    fn mass(&self, e: usize, x: &Nodal<f64, N, 2>, kind: MassKind) -> Mass<f64, N> {
         let s = &self.shared;
         let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, s.rho * s.section.thickness, kind);
         if E::LINE && M == 3 && s.section.thickness > 0.0 {
             mass.turn_with(s.section.profile[1] / s.section.thickness);
+        }
+        if let Some(light) = self.light.get(e) {
+            mass.carry(x, light, kind == MassKind::Lumped);
         }
         mass
     }
@@ -62,7 +65,7 @@ where
     pub(super) fn add_inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
         for e in 0..self.nodes.len() {
             let (x, u) = self.gather::<f64>(e, context);
-            let mass = self.mass(&x, motion.kind);
+            let mass = self.mass(e, &x, motion.kind);
             let a = self.of_dofs(e, motion.a, context);
             let (f, k) = if motion.kind == MassKind::Consistent && M == 3 && !E::LINE {
                 let v = self.of_dofs(e, motion.v, context);
@@ -97,7 +100,7 @@ where
         let members = usize::from(shared.section.law.n_state() > 0);
         for e in 0..self.nodes.len() {
             let (x, u1) = self.gather::<f64>(e, context);
-            let mass = self.mass(&x, between.kind);
+            let mass = self.mass(e, &x, between.kind);
             let (u0, v0) =
                 (self.of_dofs(e, between.u0, context), self.of_dofs(e, between.v0, context));
             let mut rates = [[0.0; 2]; N];
@@ -155,7 +158,7 @@ where
         }
         for e in 0..self.nodes.len() {
             let (x, u) = self.gather::<f64>(e, context);
-            let mass = self.mass(&x, MassKind::Consistent);
+            let mass = self.mass(e, &x, MassKind::Consistent);
             let v = self.of_dofs(e, v, context);
             let y = bulge_rates(&Spin::new(&x, &u, &mass.s), &u, &v);
             self.rates_old[2 * N * e..2 * N * (e + 1)].copy_from_slice(y.as_flattened());
@@ -173,7 +176,7 @@ where
     ) {
         for e in 0..self.nodes.len() {
             let (x, u) = self.gather::<f64>(e, context);
-            let mass = self.mass(&x, kind);
+            let mass = self.mass(e, &x, kind);
             let v = self.of_dofs(e, v, context);
             let coupled = kind == MassKind::Consistent && M == 3 && !E::LINE;
             let mut y = [[0.0; 2]; N];

@@ -290,6 +290,17 @@ impl Problem {
         Ok(())
     }
 
+    /// Let other nodes of their elements carry the mass of these, given by node; empty for none.
+    pub fn set_light(&mut self, light: &[bool]) -> Result<(), String> {
+        if !light.is_empty() && light.len() != self.x.len() {
+            return Err("flags do not fit the nodes".into());
+        }
+        for chunk in self.colours.iter_mut().flatten() {
+            chunk.set_light(light);
+        }
+        Ok(())
+    }
+
     /// Make the trial histories of the last evaluation the committed ones.
     pub fn commit(&mut self) {
         for chunk in self.colours.iter_mut().flatten() {

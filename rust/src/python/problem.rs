@@ -232,6 +232,11 @@ impl PyProblem {
         self.inner.set_initial(block, values.as_slice()?).map_err(value_error)
     }
 
+    /// Let other nodes of their elements carry the mass of these, flags by node; empty for none.
+    fn set_light(&mut self, light: PyReadonlyArray1<'_, bool>) -> PyResult<()> {
+        self.inner.set_light(light.as_slice()?).map_err(value_error)
+    }
+
     /// Make the trial history the committed one.
     fn commit(&mut self, py: Python<'_>) {
         let inner = &mut self.inner;

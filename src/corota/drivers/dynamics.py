@@ -107,6 +107,7 @@ def dynamic_step(
             )
             continue
         system.commit()
+        inertia.settle(now, motion.end, target - control.time)
         book.accept(motion, target)
         now = motion.end
         state.u, state.v, state.a = now.u, now.v, now.a
@@ -188,9 +189,10 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
     internal, external = at.internal, at.external
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
     # The consistent mass of drilling elements has none for a uniform drilling rotation, which
-    # follows quasi-statically; a trace of the stiffness decides it.
+    # follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness
+    # decides it.
     mass = inertia.tangent(u)
-    if system.is_rotation.any():
+    if system.is_rotation.any() or inertia.light.any():
         trace = step.period if not step.fixed_increments else step.first_increment
         mass += (TRACE * trace) ** 2 * at.values
     at.values[:] = mass

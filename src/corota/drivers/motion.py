@@ -52,16 +52,38 @@ class Inertia:
     ----------
     system : System
     kind : {"consistent", "constant", "lumped"}
+    light : ndarray of bool, shape (n_nodes,), optional
+        Nodes whose mass the other nodes of their elements carry.
+
+    Attributes
+    ----------
+    light : ndarray of bool, shape (n_dofs,)
+        Displacements without mass.
     """
 
-    def __init__(self, system: System, kind: str) -> None:
+    def __init__(self, system: System, kind: str, light: NDArray[np.bool_] | None = None) -> None:
         self.system, self.kind = system, kind
         self.attached = Attachments(system)
+        flags = np.zeros(0, bool) if light is None else np.ascontiguousarray(light)
+        system.core.set_light(flags)
+        self.light = np.zeros(system.n_dofs, bool)
+        if light is not None:
+            self.light = light[system.node_of_dof] & ~system.is_rotation
+            self.light &= self.attached.mass == 0.0
         coupled = kind == "consistent" and bool(system.is_rotation.any())
         zero = np.zeros(system.n_dofs)
         self.matrix: Floats | None = None
         if not coupled:
             self.matrix = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
+
+    def settle(self, begin: Moving, end: Moving, dt: float) -> None:
+        """Give displacements without mass the mean velocity of the increment, in place.
+
+        They follow quasi-statically; what the scheme carries on for them is noise.
+        """
+        if self.light.any():
+            end.v[self.light] = (end.u - begin.u)[self.light] / dt
+            end.a[self.light] = 0.0
 
     def force(self, u: Floats, v: Floats, a: Floats) -> Floats:
         """Inertia force [force]."""

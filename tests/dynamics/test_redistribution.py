@@ -1,0 +1,75 @@
+"""Mass redistribution: other nodes of the elements carry the mass of nodes in contact."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.drivers import dynamics
+from corota.drivers.motion import Inertia
+from corota.drivers.solvers import Faer
+from corota.drivers.system import System
+
+CELLS = {"OPT": "tri3", "T3": "tri3", "Q8": "quad8", "Q9": "quad9"}
+SIDES = (4.0, 1.0)
+
+
+def flying(element: str, spin: float = 2.0) -> ct.Model:
+    mesh = ct.mesh.rectangle(*SIDES, nx=8, ny=3, cell=CELLS.get(element, "quad4"))
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1e4, nu=0.3, rho=1.5)
+    model.section("all", element=element, material=material, local_strain="modified")
+    model.velocity(x=0.5, y=1.0, spin=spin, about=(1.0, 0.2))
+    return model
+
+
+def lower(model: ct.Model) -> np.ndarray:
+    return np.abs(model.mesh.points[:, 1]) < 1e-9
+
+
+@pytest.mark.parametrize("mass", ["consistent", "constant", "lumped"])
+@pytest.mark.parametrize("element", ["T3", "Q4I", "Q8", "Q9", "OPT", "Q4D"])
+def test_light_nodes_have_no_mass_and_none_is_lost(element, mass):
+    model = flying(element)
+    system = System(model, Faer())
+    light = lower(model)
+    inertia = Inertia(system, mass, light)
+    u, v = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
+    x = system.component == 0
+    v[x] = 1.0
+    kinetic, momentum, _, _, total = inertia.momenta(u, v, False)
+    whole = 1.5 * SIDES[0] * SIDES[1]
+    assert total == pytest.approx(whole, rel=1e-13)
+    assert momentum == pytest.approx(whole, rel=1e-13)
+    assert kinetic == pytest.approx(0.5 * whole, rel=1e-13)
+    weightless = inertia.force(u, np.zeros_like(v), np.where(inertia.light, 1.0, 0.0))
+    assert np.abs(weightless).max() < 1e-14
+    assert inertia.light.sum() == 2 * light.sum()
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q8", "Q9"])
+def test_affine_motion_is_carried_where_inner_nodes_allow_it(element):
+    """Extrapolation of a spin: exact with inner nodes at two distances, along the edge always."""
+    model = flying(element)
+    system = System(model, Faer())
+    energy = []
+    for light in (None, lower(model)):
+        inertia = Inertia(system, "consistent", light)
+        v = dynamics.initial_velocity(system)
+        energy.append(inertia.momenta(np.zeros(system.n_dofs), v, False)[0])
+    assert energy[1] == pytest.approx(energy[0], rel=1e-3 if element != "Q4" else 2e-2)
+
+
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "OPT", "Q4D"])
+def test_conserving_scheme_conserves_with_light_nodes(element, monkeypatch):
+    monkeypatch.setattr(
+        dynamics, "Inertia", lambda system, kind: Inertia(system, kind, lower(system.model))
+    )
+    step = ct.Dynamic(period=0.6, increments=30, scheme="energy_momentum")
+    frames = ct.solve(flying(element), step, fields=False).frames[1:]
+    of = {name: np.array([f.scalars[name] for f in frames]) for name in frames[0].scalars}
+    assert np.abs(of["energy balance"]).max() < 1e-10 * of["kinetic energy"][0]
+    for name in ("momentum x", "momentum y", "angular momentum"):
+        assert np.ptp(of[name]) < 1e-10 * np.abs(of[name][0]), name
