@@ -100,12 +100,3 @@ def test_equation_without_pivot() -> None:
         Equation([(0, 0, np.nan)])
     with pytest.raises(ct.InputError, match="at least one term"):
         Equation([])
-
-
-@pytest.mark.parametrize("step", [ct.Dynamic(), ct.Frequency()])
-def test_steps_of_motion_refuse_constraints(step: ct.Step) -> None:
-    model, reference = beam()
-    model.rigid("right", reference)
-    model.fix("left")
-    with pytest.raises(ct.UnsupportedError, match="takes no constraints"):
-        ct.solve(model, step)

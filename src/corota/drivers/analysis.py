@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Procedures that eliminate constraints.
-WITH_CONSTRAINTS = ("static", "buckle")
 #: Local strain above which the linear one of ``simplified`` is no longer a good measure.
 LARGE_STRAIN = 0.05
 
@@ -169,12 +167,6 @@ class Analysis:
         if step.procedure not in PROCEDURES:
             raise UnsupportedError(
                 f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
-            )
-        if system.ties is not None and step.procedure not in WITH_CONSTRAINTS:
-            raise UnsupportedError(
-                f"a {step.procedure} step takes no constraints or local axes; model the parts "
-                "that they join, or use static and buckling steps",
-                step.where,
             )
         self.observers.step(number, step)
         turning = system.turning

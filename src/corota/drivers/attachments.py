@@ -35,7 +35,7 @@ class Attachments:
     Raises
     ------
     ModelError
-        If a node carries no element, or local axes meet dashpots between nodes.
+        If a node carries no element and no constraint.
     """
 
     def __init__(self, system: System) -> None:
@@ -81,8 +81,6 @@ class Attachments:
         flat = np.column_stack([self._dofs(ends[:, e], i, "dashpot") for e in (0, 1)
                                 for i in (0, 1)]).reshape(-1, 4)  # fmt: skip
         self.dofs = flat
-        if system.model.axes and len(pairs):
-            raise ModelError("dashpots between nodes and local axes do not go together")
         rows, columns = np.indices((4, 4)).reshape(2, -1)
         self.pair = (rows, columns)
         self.triplets = (flat[:, rows].ravel(), flat[:, columns].ravel())
@@ -107,18 +105,20 @@ class Attachments:
         -------
         force : ndarray, shape (n_dofs,)
         triplets : tuple of ndarray or None
-            Rows, columns and values of the dashpots between nodes.
+            Rows, columns and values of the dashpots between nodes, in global axes.
         """
+        system = self.system
+        u, v = system.in_space(u), system.in_space(v)
         force: Floats = self.ground * v
         values[self.diagonal] += weight * self.ground
         if not len(self.c):
-            return force, None
+            return system.at_nodes(force), None
         axis = self._axes(u)
         rate = np.einsum("ki,ki->k", axis, v[self.dofs])
         np.add.at(force, self.dofs, (self.c * rate)[:, None] * axis)
         rows, columns = self.pair
         outer = weight * self.c[:, None] * axis[:, rows] * axis[:, columns]
-        return force, (*self.triplets, outer.ravel())
+        return system.at_nodes(force), (*self.triplets, outer.ravel())
 
     def _axes(self, u: Floats) -> Floats:
         """Directions of the dashpots, minus at the first end; shape (n, 4)."""

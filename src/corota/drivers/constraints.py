@@ -67,12 +67,15 @@ class Link:
         Dependent dofs by independent ones.
     direct : sparse array, shape (n_dependent, n_dofs)
         Dependent dofs by their masters, before substitution.
+    curvature : float
+        Weight of the second derivatives in the reduced matrix: 0 where it is no tangent.
     """
 
     ties: Ties
     u: Floats
     g: Any
     direct: Any
+    curvature: float = 1.0
 
     def gather(self, force: Floats) -> Floats:
         """``G^T`` of forces, in all dofs; zero at dependent ones. Shape as `force`."""
@@ -98,7 +101,7 @@ class Link:
     def bend(self, residual: Floats) -> Floats:
         """Entries of ``sum_s r_s d2 g_s`` where the relations bend, in the map's order."""
         ties = self.ties
-        force = residual[ties.dependent]
+        force = self.curvature * residual[ties.dependent]
         own = force
         for _ in range(ties.depth):
             own = force + self.direct[:, ties.dependent].T @ own
@@ -247,18 +250,33 @@ class Ties:
 
     def set_turning(self, turning: bool) -> None:
         """Let rotations be finite, or infinitesimal."""
-        for relation in self.bending:
-            relation.turning = turning  # type: ignore[attr-defined]
+        for relation in self.relations:
+            relation.turning = turning
 
     def complete(self, u: Floats) -> None:
         """Set the dependent dofs of `u` to what the others make them, in place."""
         for relation in self.relations:
             u[relation.dependent] = relation.values(u)
 
+    def complete_rates(self, u: Floats, v: Floats, a: Floats | None = None) -> None:
+        """Set velocities and accelerations of the dependent dofs at `u`, in place."""
+        v[self.inert] = 0.0
+        for relation in self.relations:
+            j = relation.jacobian(u)
+            v[relation.dependent] = j @ v[relation.masters]
+            if a is not None:
+                a[relation.dependent] = j @ a[relation.masters] + relation.curve(u, v)
+
     def link(self, u: Floats) -> Link:
         """Linearise at `u`."""
         g, direct = self._substituted(lambda r: r.jacobian(u))
         return Link(self, u, g, direct)
+
+    def secant(self, begin: Floats, end: Floats) -> Link:
+        """The exact discrete derivatives between two states, for the energy-momentum scheme."""
+        g, direct = self._substituted(lambda r: r.secant(begin, end))
+        # Forces at the middle: half of what a change at the end bends.
+        return Link(self, end, g, direct, 0.5)
 
     def _substituted(self, jacobian: Any) -> tuple[Any, Any]:
         import scipy.sparse as sp

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,6 +36,8 @@ AIM = 0.7
 TRACE = 1e-3
 #: Increments that a wave of a load needs at least, and those that follow it well.
 LEAST_PER_WAVE, PER_WAVE = 4.0, 20.0
+#: Initial velocities may break constraints by this share of the largest.
+UNEQUAL = 1e-9
 #: It shrinks or grows at most by these factors.
 LEAST, MOST = 0.25, 1.5
 
@@ -183,6 +186,9 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
     support_a = _start_supports(system, step, state)
     at = system.evaluate(state.u, 0.0)
     u, v = state.u, state.v
+    if system.ties is not None:
+        # Dependent dofs accelerate as they turn, before their masters do.
+        system.ties.complete_rates(u, v, zero)
     force = inertia.force(u, v, zero)
     stiffness = at.values.copy() if step.rayleigh[1] else None
     damping = inertia.damping(at, u, v, 0.0, step.rayleigh, stiffness)
@@ -197,10 +203,13 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
         mass += (TRACE * trace) ** 2 * at.values
     at.values[:] = mass
     at.internal, at.load_stiffness = internal + force + damping, None
-    a, _ = system.predict(at, support_a)
+    link = at.link
+    if link is not None:
+        at.link = replace(link, curvature=0.0)
+    a = zero + system.predict(at, support_a)[0]
     state.a = a
-    system.core.start_motion(u, v)
-    return Moving(u, v, a, internal, external, inertia.force(u, v, a), damping)
+    system.core.start_motion(system.in_space(u), system.in_space(v))
+    return Moving(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
 
 
 def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
@@ -236,7 +245,32 @@ def initial_velocity(system: System) -> Floats:
         out[nodes, 0] = vx - spin * (points[nodes, 1] - y0)
         out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
         out[nodes, 2] = spin
-    return system.from_nodes(out)
+    v = system.from_nodes(out)
+    if system.ties is not None:
+        _follow_constraints(system, v)
+    return v
+
+
+def _follow_constraints(system: System, v: Floats) -> None:
+    """Give dependent dofs the velocity that follows from the others, in place.
+
+    Raises
+    ------
+    ModelError
+        If another one was given.
+    """
+    assert system.ties is not None
+    given = v.copy()
+    system.ties.complete_rates(np.zeros_like(v), v)
+    off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
+    if off.any():
+        dof = int(np.flatnonzero(off)[0])
+        raise ModelError(
+            f"the initial velocity of {system.describe(dof)}, {given[dof]:g}, breaks the "
+            f"constraint that determines it, which gives {v[dof]:g}: give the velocity to the "
+            "nodes it depends on too (a reference node has a rotation, dof 6 in decks)",
+            next((item.where for item in system.model.velocities if item.where), None),
+        )
 
 
 def _motion(
@@ -284,17 +318,18 @@ class Balance:
         if isinstance(motion, ConservingMotion):
             d = motion.increment(end.u)
             internal, external, damping = end.internal, end.external, end.damping
-            inertia = end.inertia
+            reaction = end.reaction()
         else:
             d = end.u - begin.u
-            internal, external, damping, inertia = (
+            internal, external, damping = (
                 0.5 * (getattr(begin, name) + getattr(end, name))
-                for name in ("internal", "external", "damping", "inertia")
+                for name in ("internal", "external", "damping")
             )
+            reaction = 0.5 * (begin.reaction() + end.reaction())
         self.internal += float(internal @ d)
         self.damping += float(damping @ d)
         # Supports that move do the work of the reaction.
-        reaction = np.where(held, internal + damping + inertia - external, 0.0)
+        reaction = np.where(held, reaction, 0.0)
         self.external += float((external + reaction) @ d)
         self.now = end
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import ConvergenceError, InputError, Interrupted, ModelError
+from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, UnsupportedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,6 +74,8 @@ def explicit_step(
     ------
     InputError
         If there is damping, which this scheme leaves out.
+    UnsupportedError
+        If there are constraints.
     ModelError
         If the asked increment is not stable; the message gives the stable one.
     ConvergenceError
@@ -85,6 +87,12 @@ def explicit_step(
         raise InputError(
             "central differences take no damping: use an implicit scheme, or remove dashpots and "
             "rayleigh",
+            step.where,
+        )
+    if system.ties is not None:
+        raise UnsupportedError(
+            "central differences take no constraints and no local axes: eliminated dofs couple "
+            "the masses of others, and the mass is no diagonal any more; use an implicit scheme",
             step.where,
         )
     mass = diagonal(system)

@@ -58,7 +58,8 @@ def frequency_step(
     from corota.drivers.dynamics import check_density
 
     check_density(system)
-    mass = Inertia(system, step.mass).tangent(state.u)
+    inertia = Inertia(system, step.mass)
+    mass = inertia.tangent(state.u)
     base = system.evaluate(state.u, 0.0)
     softening = spin_softening(system)
     if softening:
@@ -71,10 +72,10 @@ def frequency_step(
     )
     scalars = {f"frequency {k}": float(f) for k, f in enumerate(frequencies, start=1)}
     # Share of the mass that moves with each mode along x and y.
-    total = system.core.momenta(state.u, np.zeros(system.n_dofs), step.mass, False)[4]
+    total = inertia.momenta(state.u, np.zeros(system.n_dofs), False)[4]
     for axis in (0, 1):
-        rigid = np.where(system.component == axis, 1.0, 0.0)
-        share = (shapes.T @ system.core.multiply(mass, rigid)) ** 2 / total
+        rigid = system.at_nodes(np.where(system.component == axis, 1.0, 0.0))
+        share = (shapes.T @ system.product(mass, rigid)) ** 2 / total
         for k, value in enumerate(share, start=1):
             scalars[f"effective mass {'xy'[axis]} {k}"] = float(value)
     state.at = system.evaluate(state.u, 0.0)
@@ -119,12 +120,13 @@ def lowest(
         )
 
     n = system.n_dofs
-    free = np.flatnonzero(~held)
+    free = np.flatnonzero(~_held(system, held))
     if len(free) <= DENSE or 4 * count > len(free):
-        return _dense(system, base, mass, count, free)
+        return _dense(system, base, mass, count)
 
+    # With constraints, vectors are those of all dofs that keep to them.
     def weigh(x: Floats) -> Floats:
-        out: Floats = system.core.multiply(mass, np.where(held, 0.0, x.ravel()))
+        out = system.product(mass, np.where(held, 0.0, x.ravel()))
         out[held] = 0.0
         return out
 
@@ -146,15 +148,19 @@ def lowest(
     return values[order], shapes[:, order]
 
 
-def _dense(
-    system: System, base: Evaluation, mass: Floats, count: int, free: NDArray[np.int64]
-) -> tuple[Floats, Floats]:
+def _dense(system: System, base: Evaluation, mass: Floats, count: int) -> tuple[Floats, Floats]:
     """Small systems, or most of a spectrum, by the dense solver."""
-    n = system.n_dofs
-    shape = (n, n)
+    link, pair = base.link, (base.values, mass)
+    indices, indptr = system.indices, system.indptr
+    if link is not None:
+        zero = np.zeros(system.n_dofs)
+        pair = (link.reduce(base.values, base.residual), link.reduce(mass, zero))
+        indices, indptr = link.ties.places.indices, link.ties.places.indptr
+    n = len(indptr) - 1
+    free = np.flatnonzero(~_held(system, system.conditions.held))
     k, m = (
-        csc_array((values, system.indices, system.indptr), shape=shape)[free][:, free].toarray()
-        for values in (base.values, mass)
+        csc_array((values, indices, indptr), shape=(n, n))[free][:, free].toarray()
+        for values in pair
     )
     # Rotations that only their differences give inertia leave the mass singular: so the
     # stiffness, shifted to be definite, takes its place.
@@ -167,7 +173,12 @@ def _dense(
     theta, shapes = theta[moving][::-1], shapes[:, moving][:, ::-1]
     out = np.zeros((n, len(theta)))
     out[free] = shapes / np.sqrt(theta)
-    return 1.0 / theta - shift, out
+    return 1.0 / theta - shift, out if link is None else system.expand(link, out)
+
+
+def _held(system: System, held: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """What holds of the dofs, for the unknowns that constraints leave."""
+    return held if system.ties is None else held[system.ties.free]
 
 
 __all__ = ["frequency_step", "lowest", "spin_softening"]

@@ -18,6 +18,7 @@ from corota.drivers.system import Evaluation, failure
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.drivers.constraints import Link
     from corota.drivers.newton import Judgement
     from corota.drivers.schemes import Scheme
     from corota.drivers.system import System
@@ -34,6 +35,8 @@ class Moving:
     u, v, a : ndarray, shape (n_dofs,)
     internal, external, inertia, damping : ndarray, shape (n_dofs,)
         Forces at `u`, each with the sign of the residual's first term but `external`.
+    link : Link or None
+        What the constraints make of these forces.
     """
 
     u: Floats
@@ -43,6 +46,15 @@ class Moving:
     external: Floats
     inertia: Floats
     damping: Floats
+    link: Link | None = None
+
+    def gathered(self, force: Floats) -> Floats:
+        """A force with what dependent dofs pass on to their masters."""
+        return force if self.link is None else self.link.gather(force)
+
+    def reaction(self) -> Floats:
+        """What supports and nothing else must carry, at held dofs."""
+        return self.gathered(self.internal + self.damping + self.inertia - self.external)
 
 
 class Inertia:
@@ -88,8 +100,7 @@ class Inertia:
     def force(self, u: Floats, v: Floats, a: Floats) -> Floats:
         """Inertia force [force]."""
         if self.matrix is not None:
-            product: Floats = self.system.core.multiply(self.matrix, a)
-            return product
+            return self.system.product(self.matrix, a)
         return self._evaluate(u, v, a, (0.0, 0.0, 0.0), False)[0]
 
     def add(
@@ -121,15 +132,17 @@ class Inertia:
         force, scale = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
         values = np.zeros(len(system.indices) if tangent else 0)
         with system.timed("assemble"):
-            system.core.inertia(u, v, a, self.kind, list(weights), force, scale, values)
+            x, rate, growth = (system.in_space(x) for x in (u, v, a))
+            system.core.inertia(x, rate, growth, self.kind, list(weights), force, scale, values)
         own = self.attached.mass * a
         if tangent:
             values[self.attached.diagonal] += weights[2] * self.attached.mass
-        return force + own, scale + np.abs(own), values
+        return system.at_nodes(force) + own, scale + np.abs(own), values
 
     def momenta(self, u: Floats, v: Floats, carried: bool) -> Floats:
         """Kinetic energy, linear and angular momentum and mass, shape (5,)."""
-        core = np.array(self.system.core.momenta(u, v, self.kind, carried))
+        x, rate = (self.system.in_space(x) for x in (u, v))
+        core = np.array(self.system.core.momenta(x, rate, self.kind, carried))
         return core + self.attached.momenta(u, v) if self.attached.mass.any() else core
 
     def damping(
@@ -142,10 +155,10 @@ class Inertia:
         force = np.zeros_like(v)
         if per_mass:
             mass = self.tangent(u)
-            force += per_mass * self.system.core.multiply(mass, v)
+            force += per_mass * self.system.product(mass, v)
             values += weight * per_mass * mass
         if per_stiffness and stiffness is not None:
-            force += per_stiffness * self.system.core.multiply(stiffness, v)
+            force += per_stiffness * self.system.product(stiffness, v)
             values += weight * per_stiffness * stiffness
         if self.attached.dampers:
             damped, triplets = self.attached.damp(u, v, values, weight)
@@ -191,17 +204,24 @@ class NewmarkMotion:
         self.start, self.dt = start, dt
         self.rayleigh, self.stiffness = rayleigh, stiffness
         self.end = start
+        # Forces of the start on the independent dofs: dependent ones have turned by the end.
+        self.begun = start.gathered(start.internal + start.damping)
+        self.begun_inertia = start.gathered(start.inertia)
+        self.begun_external = start.gathered(start.external)
 
     def _rates(self, u: Floats) -> tuple[Floats, Floats]:
         s, dt, b = self.scheme, self.dt, self.start
         a = (u - b.u - dt * b.v) / (s.beta * dt * dt) - (0.5 / s.beta - 1.0) * b.a
-        return b.v + dt * ((1.0 - s.gamma) * b.a + s.gamma * a), a
+        v = b.v + dt * ((1.0 - s.gamma) * b.a + s.gamma * a)
+        if self.system.ties is not None:
+            self.system.ties.complete_rates(u, v, a)
+        return v, a
 
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and effective tangent of the equation of motion."""
-        s, b, dt = self.scheme, self.start, self.dt
-        v, a = self._rates(u)
+        s, dt = self.scheme, self.dt
         at = self.system.evaluate(u, step_time)
+        v, a = self._rates(u)
         internal, external = at.internal, at.external
         c_v, c_a = s.gamma / (s.beta * dt), 1.0 / (s.beta * dt * dt)
         share = 1.0 - s.alpha_f
@@ -212,14 +232,14 @@ class NewmarkMotion:
         m = 1.0 - s.alpha_m
         force = self.inertia.add(at, u, v, a, (m, m * c_v, m * c_a))
         damping = self.inertia.damping(at, u, v, share * c_v, self.rayleigh, self.stiffness)
-        self.end = Moving(u, v, a, internal, external, force, damping)
+        self.end = Moving(u, v, a, internal, external, force, damping, at.link)
         at.internal = (
             share * (internal + damping)
-            + s.alpha_f * (b.internal + b.damping)
+            + s.alpha_f * self.begun
             + m * force
-            + s.alpha_m * b.inertia
+            + s.alpha_m * self.begun_inertia
         )
-        at.external = share * external + s.alpha_f * b.external
+        at.external = share * external + s.alpha_f * self.begun_external
         return at
 
     def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
@@ -266,14 +286,18 @@ class ConservingMotion:
         n = system.n_dofs
         force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
         values = np.empty(len(system.indices))
+        if system.ties is not None:
+            system.ties.complete(u)
+        x1, x0, v0 = (system.in_space(x) for x in (u, b.u, b.v))
         try:
             with system.timed("assemble"):
                 system.core.conserving(
-                    u, b.u, b.v, dt, self.inertia.kind, system.turning,
+                    x1, x0, v0, dt, self.inertia.kind, system.turning,
                     force, internal, scale, values,
                 )  # fmt: skip
         except RuntimeError as error:
             raise failure(system._labels(error.args[1])) from None
+        force, internal = system.at_nodes(force), system.at_nodes(internal)
         middle = 0.5 * (u + b.u)
         external, stiffness = system.conditions.external(step_time - 0.5 * dt, middle)
         if stiffness is not None:
@@ -284,11 +308,12 @@ class ConservingMotion:
         attached = self.inertia.attached
         force += attached.mass * (v - b.v) / dt
         values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
-        at = Evaluation(force, external, scale, values, stiffness)
+        link = None if system.ties is None else system.ties.secant(b.u, u)
+        at = Evaluation(force, external, scale, values, stiffness, link)
         damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
         at.internal = force + damping
         self.end = Moving(
-            u, v, 2.0 / dt * (v - b.v) - b.a, internal, external, force - internal, damping
+            u, v, 2.0 / dt * (v - b.v) - b.a, internal, external, force - internal, damping, link
         )
         return at
 

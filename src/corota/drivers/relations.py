@@ -41,6 +41,8 @@ class Relation:
 
     #: Whether the dependents are linear in the masters.
     linear = True
+    #: Whether rotations are finite.
+    turning = True
 
     def values(self, u: Floats) -> Floats:
         """Dependents at `u`, shape (d,)."""
@@ -54,13 +56,39 @@ class Relation:
         """Second derivative of ``force . dependents`` by the masters, shape (m, m)."""
         return np.zeros((len(self.masters), len(self.masters)))
 
+    def curve(self, u: Floats, v: Floats) -> Floats:
+        """Acceleration of the dependents while the masters move on evenly at `v`, shape (d,)."""
+        return np.zeros(len(self.dependent))
+
+    def secant(self, begin: Floats, end: Floats) -> Floats:
+        """Changes of the dependents by those of the masters, exact, shape (d, m).
+
+        The change of a rotation is ``2 tan(dphi / 2)``, as in the energy-momentum scheme.
+        """
+        return self.jacobian(end)
+
+
+def _tangents(change: Floats) -> Floats:
+    """``2 tan(dphi / 2) / dphi``."""
+    half = 0.5 * change
+    return np.where(half == 0.0, 1.0, np.tan(half) / np.where(half == 0.0, 1.0, half))
+
 
 @dataclass
 class LinearRelation(Relation):
-    """``dependent = row . masters + constant``: an equation solved for its first term."""
+    """``dependent = row . masters + constant``: an equation solved for its first term.
+
+    Parameters
+    ----------
+    row : ndarray, shape (m,)
+    constant : float
+    rotates : ndarray of bool, shape (1 + m,)
+        Whether the dependent, and each master, is a rotation.
+    """
 
     row: Floats
     constant: float
+    rotates: NDArray[np.bool_]
 
     def values(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
@@ -69,6 +97,15 @@ class LinearRelation(Relation):
     def jacobian(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
         return self.row[None, :]
+
+    def secant(self, begin: Floats, end: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not (self.turning and self.rotates.any()):
+            return self.row[None, :]
+        dofs = np.concatenate([self.dependent, self.masters])
+        scale = np.where(self.rotates, _tangents((end - begin)[dofs]), 1.0)
+        out: Floats = (scale[0] * self.row / scale[1:])[None, :]
+        return out
 
 
 def _skew(v: Floats) -> Floats:
@@ -124,7 +161,17 @@ class Follow(Relation):
 
     def jacobian(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
-        lever = _skew(_turned(self.arm, u[self.masters[2]] if self.turning else 0.0))
+        return self._by(_turned(self.arm, u[self.masters[2]] if self.turning else 0.0))
+
+    def secant(self, begin: Floats, end: Floats) -> Floats:
+        """See :class:`Relation`; ``R1 - R0 = 2 tan(dphi / 2) S (R0 + R1) / 2``."""
+        if not self.turning:
+            return self.jacobian(end)
+        phi = self.masters[2]
+        return self._by(0.5 * (_turned(self.arm, begin[phi]) + _turned(self.arm, end[phi])))
+
+    def _by(self, arm: Floats) -> Floats:
+        lever = _skew(arm)
         out = np.empty((len(self.dependent), 3))
         out[:, :2] = self.axis[:, :2] @ self.axes
         out[:, 2] = (self.axis[:, :2] * lever).sum(axis=1) + self.axis[:, 2]
@@ -136,6 +183,14 @@ class Follow(Relation):
         if self.turning:
             arm = _turned(self.arm, u[self.masters[2]])
             out[2, 2] = -float(force @ (self.axis[:, :2] * arm).sum(axis=1))
+        return out
+
+    def curve(self, u: Floats, v: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not self.turning:
+            return np.zeros(len(self.dependent))
+        phi = self.masters[2]
+        out: Floats = -(v[phi] ** 2) * (self.axis[:, :2] * _turned(self.arm, u[phi])).sum(axis=1)
         return out
 
 
@@ -211,6 +266,24 @@ class Mean(Relation):
     def jacobian(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
         gamma, _, offset = self._gradients(u)
+        return self._by(gamma, offset)
+
+    def secant(self, begin: Floats, end: Floats) -> Floats:
+        """See :class:`Relation`; the rotation by the mean of both rotation matrices."""
+        if not self.turning:
+            return self.jacobian(end)
+        (move0, turn0, _), (move1, turn1, _) = self._fit(begin), self._fit(end)
+
+        def mean(v: Floats) -> Floats:
+            return 0.5 * (_turned(v, turn0) + _turned(v, turn1))
+
+        eta = self.weight[:, None] * mean(self.arm)
+        middle = self.arm + 0.5 * (move0 + move1)
+        middle -= self.weight @ middle
+        gamma = np.einsum("nji,nj->ni", self.axes, _skew(eta) / (eta * middle).sum()).ravel()
+        return self._by(gamma, mean(self.offset[None])[0])
+
+    def _by(self, gamma: Floats, offset: Floats) -> Floats:
         mean = np.einsum("n,nij->inj", self.weight, self.axes).reshape(2, -1)
         swing = self.axis[:, :2] @ np.array([-offset[1], offset[0]]) + self.axis[:, 2]
         out: Floats = self.axis[:, :2] @ mean + np.outer(swing, gamma)
@@ -226,4 +299,15 @@ class Mean(Relation):
         mixed = np.outer(gamma, eps)
         out: Floats = -couple * (mixed + mixed.T)
         out -= (push[:2] @ offset) * np.outer(gamma, gamma)
+        return out
+
+    def curve(self, u: Floats, v: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not self.turning:
+            return np.zeros(len(self.dependent))
+        gamma, eps, offset = self._gradients(u)
+        rate = gamma @ v[self.masters]
+        growth = -2.0 * rate * (eps @ v[self.masters])
+        swing = growth * np.array([-offset[1], offset[0]]) - rate**2 * offset
+        out: Floats = self.axis[:, :2] @ swing + growth * self.axis[:, 2]
         return out

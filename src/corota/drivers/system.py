@@ -230,6 +230,11 @@ class System:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
         return at.residual if at.link is None else at.link.gather(at.residual)
 
+    def product(self, values: Floats, x: Floats) -> Floats:
+        """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
+        out: Floats = self.at_nodes(self.core.multiply(values, self.in_space(x)))
+        return out
+
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of held dofs per unit of load factor, shapes (n_dofs,)."""
         return self.conditions.rate(u)
@@ -385,10 +390,10 @@ class System:
         with self.timed("solve"):
             x = self._last.solve(rhs)
         x[held] = 0.0
-        return x if self._link is None else self._moved(self._link, x)
+        return x if self._link is None else self.expand(self._link, x)
 
-    def _moved(self, link: Link, x: Floats) -> Floats:
-        """Changes of all dofs from those of the unknowns."""
+    def expand(self, link: Link, x: Floats) -> Floats:
+        """Changes of all dofs from those of the unknowns that constraints leave."""
         out = np.zeros((self.n_dofs, *x.shape[1:]), order="F")
         out[link.ties.free] = x
         return link.move(out)
@@ -405,7 +410,7 @@ class System:
         if unsymmetric is not None:
             matrix = link.reduce_full(unsymmetric, at.residual)
             x = self._solve_unsymmetric(matrix, force, moved, held, node)
-            return self._moved(link, x), -1
+            return self.expand(link, x), -1
         with self.timed("constraints"):
             values = link.reduce(at.values, at.residual)
             for column, move in zip(_columns(force), _columns(moved), strict=True):
@@ -426,7 +431,7 @@ class System:
         except SingularError as error:
             raise self.singular(error) from None
         x[held] = moved[held]
-        return self._moved(link, x), (inertia[1] if inertia is not None else -1)
+        return self.expand(link, x), (inertia[1] if inertia is not None else -1)
 
     def singular(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
@@ -434,7 +439,7 @@ class System:
         if self.ties is not None and 0 <= equation < len(self.ties.free):
             equation = int(self.ties.free[equation])
             if mode is not None and self._link is not None:
-                mode = self._moved(self._link, np.asarray(mode))
+                mode = self.expand(self._link, np.asarray(mode))
         if not 0 <= equation < self.n_dofs:
             return SingularError(str(error), equation, mode)
         where = self.describe(equation)

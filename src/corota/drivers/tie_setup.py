@@ -103,8 +103,14 @@ class Builder:
 
     def name(self, dof: int) -> str:
         """A dof by the user's label."""
-        node = int(np.searchsorted(self.start, dof, side="right")) - 1
-        return f"node {self.model.mesh.node_labels[node]} {NAMES[dof - self.start[node]]}"
+        label = self.model.mesh.node_labels[self._node(dof)]
+        return f"node {label} {NAMES[self._component(dof)]}"
+
+    def _node(self, dof: int) -> int:
+        return int(np.searchsorted(self.start, dof, side="right")) - 1
+
+    def _component(self, dof: int) -> int:
+        return int(dof - self.start[self._node(dof)])
 
     def _sorted(self, relations: list[Relation], owner: dict[int, Relation]) -> list[Relation]:
         done: dict[int, int] = {}  # 1: under way, 2: placed
@@ -160,6 +166,7 @@ class Builder:
         return LinearRelation(
             np.array([dependent]), np.array(masters, np.int64),
             f"the equation for {self.name(dependent)}", item.where, row, item.rhs / pivot,
+            np.array([self._component(d) == 2 for d in total]),
         )  # fmt: skip
 
     def _axes_of(self, node: int) -> Floats:
