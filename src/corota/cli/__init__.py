@@ -1,4 +1,4 @@
-"""Command line: ``corota run|check|plot|info|convert``; heavy imports wait until needed."""
+"""Command line: ``corota run|check|plot|info|convert|verify``; heavy imports wait until needed."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

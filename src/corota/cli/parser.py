@@ -102,6 +102,13 @@ def make_parser() -> Parser:
     convert.add_argument("source")
     convert.add_argument("target", help="the ending names the format")
     _reading(convert)
+
+    verify = command("verify", "Measure the problems of the verification catalogue.")
+    verify.add_argument("names", nargs="*", metavar="NAME", help="names or patterns; else all")
+    verify.add_argument("--list", action="store_true", help="name the problems and measure none")
+    verify.add_argument("--full", action="store_true", help="convergence studies too; minutes")
+    verify.add_argument("--pages", metavar="DIR", help="write a page a problem (plotting extra)")
+    verify.add_argument("--jobs", type=_count, metavar="N", help="processes; else all cores")
     return parser
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from corota import mesh as meshes
 from corota.materials_plastic import Mises
 from corota.model import Model
+from corota.verification.models import DRILLING, ELEMENTS, cell
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,12 +19,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
 
 #: Cell kind that each element needs.
-CELL: dict[str, Any] = {
-    "T3": "tri3", "T6": "tri6", "Q4": "quad4", "Q4I": "quad4", "Q8": "quad8", "Q8R": "quad8",
-    "Q9": "quad9", "OPT": "tri3", "Q4D": "quad4",
-}  # fmt: skip
-#: Elements with drilling rotations.
-DRILLING = ("OPT", "Q4D")
+CELL: dict[str, Any] = {name: cell(name) for name in ELEMENTS}
 
 
 def find(mesh: Mesh, axis: int, value: float) -> NDArray[np.int64]:

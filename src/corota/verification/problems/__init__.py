@@ -1,0 +1,3 @@
+"""One problem a module: its docstring describes it, its ``PROBLEM`` measures it."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,143 @@
+"""Runs verification problems in parallel processes."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import os
+import time
+import warnings
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from typing import TYPE_CHECKING
+
+from corota.verification.catalogue import Study, Value, problems
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from corota.verification.catalogue import Problem
+
+
+@dataclass
+class Outcome:
+    """What came of one problem.
+
+    Parameters
+    ----------
+    name : str
+    values : list of Value
+    seconds : float
+        Of the measurement.
+    error : str
+        Why there are no values.
+    study : Study, optional
+    """
+
+    name: str
+    values: list[Value] = field(default_factory=list)
+    seconds: float = 0.0
+    error: str = ""
+    study: Study | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether there are values and all are within their tolerances."""
+        return not self.error and bool(self.values) and all(v.ok for v in self.values)
+
+
+def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
+    """Measure one problem in this process.
+
+    Parameters
+    ----------
+    name : str
+    full : bool
+        Run its convergence study too.
+    pages : str
+        Folder that its page is written to, with the plotting extra.
+    """
+    problem = problems()[name]
+    outcome = Outcome(name)
+    start = time.perf_counter()
+    try:
+        with warnings.catch_warnings():
+            # That strain gets large, say: it is meant to.
+            warnings.simplefilter("ignore")
+            outcome.values = [_plain(value) for value in problem.measure()]
+            outcome.seconds = time.perf_counter() - start
+            if full and problem.study is not None:
+                outcome.study = problem.study()
+            if pages:
+                from corota.verification.pages import write_page
+
+                write_page(problem, outcome, pages)
+    except Exception as error:
+        outcome.error = f"{type(error).__name__}: {error}"
+        outcome.seconds = outcome.seconds or time.perf_counter() - start
+    return outcome
+
+
+def _plain(value: Value) -> Value:
+    """Value with Python's own numbers, which travel and print alike everywhere."""
+    return Value(
+        value.quantity, float(value.reference), float(value.measured), float(value.tolerance),
+        value.kind,
+    )  # fmt: skip
+
+
+def run(
+    chosen: Sequence[Problem],
+    done: Callable[[Outcome], None],
+    *,
+    full: bool = False,
+    pages: str = "",
+    jobs: int = 0,
+) -> list[Outcome]:
+    """Measure problems in parallel, the longest first; outcomes in the order of `chosen`.
+
+    Parameters
+    ----------
+    chosen : sequence of Problem
+    done : callable
+        Told each outcome as it comes.
+    full, pages
+        As for :func:`measure`.
+    jobs : int
+        Processes; all cores by default.
+    """
+    jobs = min(jobs or _cores(), len(chosen)) or 1
+    outcomes: dict[str, Outcome] = {}
+    _single_threaded()
+    pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"))
+    try:
+        waiting: dict[Future[Outcome], str] = {
+            pool.submit(measure, p.name, full, pages): p.name
+            for p in sorted(chosen, key=lambda p: -p.seconds)
+        }
+        while waiting:
+            ready, _ = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in ready:
+                name = waiting.pop(future)
+                try:
+                    outcome = future.result()
+                except BrokenProcessPool:
+                    outcome = Outcome(name, error="its process ended before it did")
+                outcomes[name] = outcome
+                done(outcome)
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return [outcomes[p.name] for p in chosen]
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _single_threaded() -> None:
+    """Tell the linear algebra libraries of the processes that will start."""
+    for name in ("OMP", "OPENBLAS", "MKL", "RAYON"):
+        os.environ.setdefault(f"{name}_NUM_THREADS", "1")
