@@ -154,4 +154,59 @@ class InitialVelocity:
     where: Location | None = field(default=None, compare=False, repr=False)
 
 
-Load = NodalForce | EdgeLoad | BodyForce
+@dataclass
+class Temperature:
+    """A prescribed temperature of nodes.
+
+    Parameters
+    ----------
+    nodes : str or array_like of int
+        Node, edge or cell set ("" for all), or node indices.
+    value : float or array_like
+        One temperature, or one for each node; reached at the end of the step, along the
+        amplitude or a ramp from what was there before.
+    """
+
+    nodes: str | Ints
+    value: float | NDArray[np.float64]
+    amplitude: str = ""
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass
+class InitialTemperature:
+    """Temperature of nodes at which there is no thermal strain; 0 where none is given.
+
+    Parameters
+    ----------
+    nodes : str or array_like of int
+        Node, edge or cell set ("" for all), or node indices.
+    value : float or array_like
+        One temperature, or one for each node.
+    """
+
+    nodes: str | Ints
+    value: float | NDArray[np.float64]
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass
+class InitialStress:
+    """Stress of cells in the reference, before any displacement.
+
+    Parameters
+    ----------
+    cells : str or array_like of int
+        Cell set ("" for all), or global cell indices.
+    value : tuple of float or array_like
+        xx, yy, zz, xy in global axes [force/length^2]; each a number, or an array with one
+        value for each cell (n, 1) or for each quadrature point (n, p). Of trusses and beams xx
+        is the stress along the axis.
+    """
+
+    cells: str | Ints
+    value: tuple[float | NDArray[np.float64], ...]
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+
+Load = NodalForce | EdgeLoad | BodyForce | Temperature

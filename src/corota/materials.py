@@ -7,15 +7,93 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from corota.errors import InputError
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
     from corota.errors import Location
+
+
+def isotropic_compliance(E: float, nu: float) -> NDArray[np.float64]:
+    """Compliance of isotropic elasticity, rows xx, yy, zz, xy, shape (4, 4)."""
+    s = np.full((4, 4), -nu / E)
+    np.fill_diagonal(s, 1.0 / E)
+    s[3, :] = s[:, 3] = 0.0
+    s[3, 3] = 2.0 * (1.0 + nu) / E
+    return s
 
 
 def _positive(value: float, name: str, where: Location | None) -> None:
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"{name} must be a positive number, not {value}", where)
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Thermal expansion, constant or a table over the temperature.
+
+    The thermal strain is ``alpha(T) (T - zero) - alpha(T0) (T0 - zero)`` with the temperature
+    ``T`` and the initial one ``T0``: coefficients of tables are means from ``zero`` on.
+
+    Parameters
+    ----------
+    alpha : sequence
+        A coefficient [1/temperature], or three for the material axes 1, 2 and 3; one entry for
+        each temperature of the table.
+    temperature : sequence of float
+        Increasing temperatures of the entries; empty for one entry. Constant outside.
+    zero : float
+        Temperature from which the coefficients count.
+
+    Notes
+    -----
+    As ``*EXPANSION, ZERO=`` of CalculiX and Abaqus.
+    """
+
+    alpha: tuple[float | tuple[float, float, float], ...]
+    temperature: tuple[float, ...] = ()
+    zero: float = 0.0
+
+    @staticmethod
+    def of(value: float | tuple[float, float, float] | Expansion) -> Expansion:
+        """The same as an expansion."""
+        return value if isinstance(value, Expansion) else Expansion((value,))
+
+    def __post_init__(self) -> None:
+        table = np.asarray(self.temperature, dtype=np.float64)
+        try:
+            finite = bool(np.isfinite(self._rows()).all() and np.isfinite(table).all())
+        except (ValueError, TypeError):
+            finite = False
+        if not (finite and np.isfinite(self.zero)):
+            raise InputError(f"one or three finite coefficients are expected, not {self.alpha}")
+        if len(self.alpha) != max(len(table), 1) or (np.diff(table) <= 0.0).any():
+            raise InputError("each coefficient of a table needs a temperature, and they must rise")
+
+    def _rows(self) -> NDArray[np.float64]:
+        rows = np.array([np.broadcast_to(a, 3) for a in self.alpha], dtype=np.float64)
+        return rows.reshape(-1, 3)
+
+    def __bool__(self) -> bool:
+        return bool(self._rows().any())
+
+    def strain(self, temperature: ArrayLike, start: ArrayLike) -> NDArray[np.float64]:
+        """Thermal strain along the material axes, shape (..., 3)."""
+        rows = self._rows()
+
+        def from_zero(at: ArrayLike) -> NDArray[np.float64]:
+            now = np.asarray(at, dtype=np.float64)
+            if len(rows) == 1:
+                alpha = np.broadcast_to(rows[0], (*now.shape, 3))
+            else:
+                columns = [np.interp(now, self.temperature, rows[:, i]) for i in range(3)]
+                alpha = np.stack(columns, axis=-1)
+            return np.asarray(alpha * (now - self.zero)[..., None])
+
+        return from_zero(temperature) - from_zero(start)
 
 
 @dataclass
@@ -26,6 +104,8 @@ class Material:
     ----------
     rho : float
         Mass density [mass/length^3]; 0 means that none was given.
+    expansion : float, tuple of three floats or Expansion
+        Thermal expansion [1/temperature], or that along the material axes.
     name : str
         The user's name.
     where : Location, optional
@@ -33,11 +113,23 @@ class Material:
     """
 
     rho: float = field(default=0.0, kw_only=True)
+    expansion: float | tuple[float, float, float] | Expansion = field(default=0.0, kw_only=True)
     name: str = field(default="", kw_only=True)
     where: Location | None = field(default=None, kw_only=True, compare=False, repr=False)
 
     #: Name under which the core knows the law.
     law = ""
+
+    def compliance(self) -> NDArray[np.float64]:
+        """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).
+
+        Shear is engineering shear.
+        """
+        raise InputError(
+            f"a material of type {type(self).__name__} has no elastic constants for thermal "
+            "strain or initial stress; take them into the function itself",
+            self.where,
+        )
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """Numbers handed to the core, in the order that the law's file documents.
@@ -82,6 +174,9 @@ class Elastic(Material):
             )
         if not (math.isfinite(self.rho) and self.rho >= 0.0):
             raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+
+    def compliance(self) -> NDArray[np.float64]:
+        return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         return [self.E, self.nu]
@@ -141,6 +236,13 @@ class Orthotropic(Material):
             )
         if not (math.isfinite(self.rho) and self.rho >= 0.0):
             raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+
+    def compliance(self) -> NDArray[np.float64]:
+        s = np.diag([1.0 / self.E1, 1.0 / self.E2, 1.0 / self.E3, 1.0 / self.G12])
+        s[0, 1] = s[1, 0] = -self.nu12 / self.E1
+        s[0, 2] = s[2, 0] = -self.nu13 / self.E1
+        s[1, 2] = s[2, 1] = -self.nu23 / self.E2
+        return s
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """``E1, E2, E3, nu12, nu13, nu23, G12``, angle of axis 1 from x [rad]."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.materials import Material, _positive
+from corota.materials import Material, _positive, isotropic_compliance
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -180,6 +180,9 @@ class Mises(Material):
         """Pairs (C, gamma), the linear one first."""
         linear = [(float(self.kinematic), 0.0)] if self.kinematic else []
         return linear + [(float(c), float(gamma)) for c, gamma in self.chaboche]
+
+    def compliance(self) -> Floats:
+        return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """``E, nu, n``, n pairs ``C, gamma``, then the kind of hardening and its numbers."""

@@ -11,6 +11,7 @@ import numpy as np
 from corota.attachments import Dashpot, PointMass
 from corota.constraints import Constraint, Coupling, Equation, LocalAxes
 from corota.errors import InputError, Location
+from corota.initial import InitialFields
 from corota.loads import (
     Amplitude as Amplitude,
 )
@@ -24,6 +25,12 @@ from corota.loads import (
     Fixed as Fixed,
 )
 from corota.loads import (
+    InitialStress as InitialStress,
+)
+from corota.loads import (
+    InitialTemperature as InitialTemperature,
+)
+from corota.loads import (
     InitialVelocity as InitialVelocity,
 )
 from corota.loads import (
@@ -31,6 +38,9 @@ from corota.loads import (
 )
 from corota.loads import (
     NodalForce as NodalForce,
+)
+from corota.loads import (
+    Temperature as Temperature,
 )
 
 if TYPE_CHECKING:
@@ -118,7 +128,7 @@ class Section:
             )
 
 
-class Model:
+class Model(InitialFields):
     """Mesh, sections, materials, supports, loads and steps.
 
     Parameters
@@ -139,6 +149,8 @@ class Model:
         Used by :func:`corota.solve` when no step is given.
     velocities : list of InitialVelocity
         Of the start of the first dynamic step.
+    initial_temperatures : list of InitialTemperature
+    initial_stresses : list of InitialStress
     point_masses : list of PointMass
     dashpots : list of Dashpot
     constraints : list of Constraint
@@ -161,6 +173,8 @@ class Model:
         self.supports: list[Fixed] = []
         self.loads: list[Load] = []
         self.velocities: list[InitialVelocity] = []
+        self.initial_temperatures: list[InitialTemperature] = []
+        self.initial_stresses: list[InitialStress] = []
         self.point_masses: list[PointMass] = []
         self.dashpots: list[Dashpot] = []
         self.constraints: list[Constraint] = []

@@ -13,28 +13,12 @@ import corota as ct
 from corota import elements
 from corota.drivers.solvers import SOLVERS
 from corota.drivers.system import System
-from corota.mesh import Mesh
 from corota.mesh.data import Cells
 from corota.model import Section
+from support.lines import chain, lines
 
 MATERIAL = ct.Elastic(E=1000.0, nu=0.25)
 PROFILES = {"BEAM": (3.0, 0.7, 0.5), "SPRING1R": (3.0, 2.0, 2.0), "SPRING2R": (3.0, 2.0, 2.0)}
-
-
-def lines(points: list[tuple[float, float]], *cells: tuple[str, list[list[int]]]) -> Mesh:
-    """A mesh of lines and points."""
-    blocks, label = [], 1
-    for kind, nodes in cells:
-        array = np.array(nodes)
-        blocks.append(Cells(kind, array, np.arange(label, label + len(array))))
-        label += len(array)
-    return Mesh(np.array(points), blocks, np.arange(1, len(points) + 1))
-
-
-def chain(n: int, length: float) -> Mesh:
-    """A straight line of n cells."""
-    points = [(length * i / n, 0.0) for i in range(n + 1)]
-    return lines(points, ("line2", [[i, i + 1] for i in range(n)]))
 
 
 @pytest.mark.parametrize("shear_area", [0.0, 0.08])

@@ -83,7 +83,7 @@ def test_factors_are_those_of_the_dense_pencil():
     force, move, loads = _perturbation(system, ct.Buckle(), 1, u)
     values = system.evaluate(u, 0.0).values
     response, _ = system.correct(system.evaluate(u, 0.0), force, move)
-    change = _derivative(system, u, values, response, force, loads)
+    change = _derivative(system, u, values, response, loads)
     free = np.flatnonzero(~system.conditions.held)
     n = system.n_dofs
 

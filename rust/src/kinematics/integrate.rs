@@ -57,8 +57,9 @@ pub struct History<'a> {
     pub old: &'a [f64],
     pub new: &'a mut [f64],
     pub alpha: &'a mut [f64],
-    /// Initial strain: by point rows xx, yy, xy and what the driver adds through the
-    /// thickness; empty where there is none.
+    /// Initial strain: by point rows xx, yy, xy and, through the thickness, a strain in plane
+    /// stress or a stress in plane strain (see [`crate::materials::Material::spherical`]);
+    /// empty where there is none.
     pub initial: &'a [f64],
     pub stride: usize,
 }
@@ -81,6 +82,31 @@ impl History<'_> {
             }
         }
         strain
+    }
+    /// Part of the initial stress through the thickness that acts in the plane.
+    #[inline(always)]
+    fn spherical<T: Real, const N: usize>(&self, p: usize, section: &Section<N>) -> T {
+        if section.plane == Plane::Strain && section.law.spherical() {
+            self.initial_strain(p, 3)
+        } else {
+            T::zero()
+        }
+    }
+    /// Largest initial strain of the element.
+    #[inline(always)]
+    fn largest<T: Real, const N: usize>(&self, section: &Section<N>) -> T {
+        let mut size = T::zero();
+        if self.initial.is_empty() {
+            return size;
+        }
+        let softness = 1.0 / section.law.moduli()[0][0];
+        for p in 0..section.points.len() {
+            for row in 0..3 {
+                size = size.max(self.initial_strain::<T>(p, row).abs());
+            }
+            size = size.max(self.spherical::<T, N>(p, section).scale(softness).abs());
+        }
+        size
     }
     #[inline(always)]
     fn point(&mut self, p: usize, members: usize) -> PointState<'_> {
@@ -181,7 +207,12 @@ where
             bar.apply(&mut h);
         }
         let strain = history.elastic(p, section.strain.strain(&h));
-        let answer = section.law.update(strain, &mut history.point(p, members));
+        let mut answer = section.law.update(strain, &mut history.point(p, members));
+        if !history.initial.is_empty() {
+            let pressure = history.spherical::<T, N>(p, section);
+            answer.stress[0] += pressure;
+            answer.stress[1] += pressure;
+        }
         // A local gradient that turns the material inside out.
         let det = (h[0] + T::one()) * (h[3] + T::one()) - h[1] * h[2];
         sums.failed = T::or(sums.failed, answer.failed);
@@ -417,6 +448,13 @@ where
     for a in 0..N {
         for i in 0..2 {
             size = size.max(q[a][i].abs());
+        }
+    }
+    // What is held and heated has no displacement to measure the modes with.
+    let strain = history.largest::<T, N>(section);
+    for a in 1..N {
+        for i in 0..2 {
+            size = size.max((x[a][i] - x[0][i]).abs() * strain);
         }
     }
     let tolerance = size.scale(LOCAL_STEP).max(T::real(f64::MIN_POSITIVE));

@@ -9,6 +9,7 @@ use crate::base::small::Mat;
 pub struct Elastic {
     moduli: Mat<f64, 3>,
     plane: Plane,
+    young: f64,
     nu: f64,
 }
 
@@ -28,7 +29,7 @@ impl Material for Elastic {
             Plane::Strain => (e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)), nu / (1.0 - nu)),
         };
         let moduli = [[c, c * d, 0.0], [c * d, c, 0.0], [0.0, 0.0, g]];
-        Ok(Self { moduli, plane, nu })
+        Ok(Self { moduli, plane, young: e, nu })
     }
     fn is_linear(&self) -> bool {
         true
@@ -52,5 +53,8 @@ impl Material for Elastic {
     }
     fn energy(&self, e: [f64; 3], s: [f64; 3], _: &[f64]) -> f64 {
         0.5 * (e[0] * s[0] + e[1] * s[1] + e[2] * s[2])
+    }
+    fn initial_energy(&self, _: [f64; 3], _: f64, initial: f64) -> f64 {
+        0.5 * initial * initial / self.young
     }
 }

@@ -42,6 +42,12 @@ macro_rules! laws {
             pub fn energy(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> f64 {
                 match self { $(Law::$name(m) => m.energy(e, s, state)),+ }
             }
+            pub fn spherical(&self) -> bool {
+                match self { $(Law::$name(m) => m.spherical()),+ }
+            }
+            pub fn initial_energy(&self, s: [f64; 3], normal: f64, initial: f64) -> f64 {
+                match self { $(Law::$name(m) => m.initial_energy(s, normal, initial)),+ }
+            }
             pub fn outputs(&self) -> &'static [&'static str] {
                 match self { $(Law::$name(m) => m.outputs()),+ }
             }

@@ -69,6 +69,16 @@ pub trait Material: Sized {
     fn out_of_plane(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> (f64, f64);
     /// Recoverable energy density.
     fn energy(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> f64;
+    /// Whether an initial stress through the thickness acts in all three directions (so that
+    /// the deviator is left alone); else it stands beside what the law gives.
+    fn spherical(&self) -> bool {
+        false
+    }
+    /// Energy density that an initial stress through the thickness adds to [`Material::energy`];
+    /// `stress` and `normal` are the law's own.
+    fn initial_energy(&self, _stress: [f64; 3], _normal: f64, _initial: f64) -> f64 {
+        0.0
+    }
     /// Named scalars of the state for output.
     fn outputs(&self) -> &'static [&'static str] {
         &[]

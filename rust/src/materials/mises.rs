@@ -360,6 +360,13 @@ impl Material for Mises {
         let inside = s[0] * (e[0] - p[0]) + s[1] * (e[1] - p[1]) + s[2] * (e[2] - p[3]);
         0.5 * (inside - self.normal(s, state) * p[2])
     }
+    fn spherical(&self) -> bool {
+        self.plane == Plane::Strain
+    }
+    fn initial_energy(&self, s: [f64; 3], normal: f64, initial: f64) -> f64 {
+        let thrice = 3.0 * (1.0 - 2.0 * self.nu) / self.young;
+        initial * thrice * ((s[0] + s[1] + normal) / 3.0 + 0.5 * initial)
+    }
     fn outputs(&self) -> &'static [&'static str] {
         &["PEEQ", "YRATIO", "PWORK", "PDISS"]
     }

@@ -11,8 +11,10 @@ use crate::base::small::Mat;
 pub struct Orthotropic {
     moduli: Mat<f64, 3>,
     /// Thickness strain (plane stress) from the stress, or thickness stress (plane strain)
-    /// from the strain.
+    /// from the stress in the plane.
     through: [f64; 3],
+    /// Compliance through the thickness.
+    normal: f64,
     plane: Plane,
 }
 
@@ -63,7 +65,7 @@ impl Material for Orthotropic {
         let through =
             [s13 * c * c + s23 * s * s, s13 * s * s + s23 * c * c, 2.0 * c * s * (s13 - s23)];
         let scale = if plane == Plane::Stress { 1.0 } else { -1.0 / s33 };
-        Ok(Self { moduli, through: through.map(|x| x * scale), plane })
+        Ok(Self { moduli, through: through.map(|x| x * scale), normal: s33, plane })
     }
     fn is_linear(&self) -> bool {
         true
@@ -89,5 +91,8 @@ impl Material for Orthotropic {
     }
     fn energy(&self, e: [f64; 3], s: [f64; 3], _: &[f64]) -> f64 {
         0.5 * (e[0] * s[0] + e[1] * s[1] + e[2] * s[2])
+    }
+    fn initial_energy(&self, _: [f64; 3], _: f64, initial: f64) -> f64 {
+        0.5 * initial * initial * self.normal
     }
 }

@@ -152,12 +152,21 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             let range = p * members..(p + 1) * members;
             let mut state =
                 PointState { old: &old[range.clone()], new: &mut new[range.clone()], stride: 1 };
-            let stress = section.law.update(strain, &mut state).stress;
+            let mut stress = section.law.update(strain, &mut state).stress;
             let state = &new[range];
             let (mut strain_zz, mut stress_zz) = section.law.out_of_plane(strain, stress, state);
+            let mut energy = section.law.energy(strain, stress, state);
             match section.plane {
                 Plane::Stress => strain_zz += offset(3),
-                Plane::Strain => stress_zz += offset(3),
+                Plane::Strain => {
+                    energy += section.law.initial_energy(stress, stress_zz, offset(3));
+                    stress_zz += offset(3);
+                }
+            }
+            let own = stress;
+            if section.plane == Plane::Strain && section.law.spherical() {
+                stress[0] += offset(3);
+                stress[1] += offset(3);
             }
             let stretch = section.strain.stretch(strain_zz);
             let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);
@@ -175,10 +184,10 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             out.stress[4 * at..4 * at + 4].copy_from_slice(&row);
             let row = [e_global[0], e_global[1], strain_zz, 2.0 * e_global[2]];
             out.strain[4 * at..4 * at + 4].copy_from_slice(&row);
-            out.energy[at] = section.law.energy(strain, stress, state);
+            out.energy[at] = energy;
             out.volume[at] = s.weight * section.thickness;
             for (i, values) in out.outputs.iter_mut().enumerate() {
-                values[at] = section.law.output(i, stress, state);
+                values[at] = section.law.output(i, own, state);
             }
             out.thickness[at] = section.thickness * stretch;
             for (i, (kind, values)) in

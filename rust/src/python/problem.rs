@@ -226,8 +226,17 @@ impl PyProblem {
         Ok((m.kinetic, m.linear[0], m.linear[1], m.angular, m.mass))
     }
 
-    /// Set the initial strain of a block, rows xx, yy, xy and the share through the thickness
-    /// by element and point, shape (n, p, 4) flat; empty for none.
+    /// Shape functions of a block at its points, flat (p, nodes).
+    fn shape<'py>(&self, py: Python<'py>, block: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let Some(b) = self.inner.blocks.get(block) else {
+            return Err(value_error("there is no such block"));
+        };
+        Ok(b.shape.clone().into_pyarray(py))
+    }
+
+    /// Set the initial strain of a block by element and point, shape (n, p, 4) flat: rows xx,
+    /// yy, xy; through the thickness a strain in plane stress, a stress in plane strain. Of line
+    /// elements the first row is the axial strain. Empty for none.
     fn set_initial(&mut self, block: usize, values: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         self.inner.set_initial(block, values.as_slice()?).map_err(value_error)
     }

@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.check.parts import cells_of
 from corota.errors import Diagnostic
-from corota.model import BodyForce, EdgeLoad, NodalForce
+from corota.model import BodyForce, EdgeLoad, NodalForce, Temperature
 
 if TYPE_CHECKING:
     from corota.model import Load, Model
@@ -89,12 +89,16 @@ def _unused(model: Model, loads: list[Load]) -> list[Diagnostic]:
     for support in model.supports + [s for step in model.steps for s in step.supports]:
         use(support.nodes)
     for load in loads:
-        if isinstance(load, NodalForce):
+        if isinstance(load, NodalForce | Temperature):
             use(load.nodes)
         elif isinstance(load, EdgeLoad):
             use(load.edges)
         else:
             use(load.cells)
+    for start in model.initial_temperatures:
+        use(start.nodes)
+    for stress in model.initial_stresses:
+        use(stress.cells)
     for step in model.steps:
         for request in step.outputs:
             use(request.where)

@@ -106,7 +106,8 @@ class PathStep:
         period = step.period
         at = system.evaluate(state.u, self.factor * period)
         force, move = system.load_rate(state.u)
-        if not (np.any(force[~system.conditions.held]) or np.any(move)):
+        heats = system.free.largest(system.conditions.heating) > 0.0
+        if not (np.any(force[~system.conditions.held]) or np.any(move) or heats):
             raise ModelError(
                 f"step {self.number} follows a path, but nothing in it grows with the load "
                 "factor: give it a load or a moving support of its own",

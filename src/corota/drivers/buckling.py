@@ -90,8 +90,8 @@ def _solve(system: System, step: Buckle, number: int, state: State) -> tuple[Flo
             "linear buckling needs a stable one; follow its path instead (path=ArcLength(...))",
             step.where,
         )
-    change = _derivative(system, state.u, values, response, force, loads)
-    largest_move = float(np.abs(response[system.counted]).max(initial=0.0))
+    change = _derivative(system, state.u, values, response, loads)
+    largest_move = _moved(system, response, loads)
     held, free = system.conditions.held, _free(system)
     product = system.core.multiply if system.ties is None else system.ties.places.multiply
 
@@ -160,6 +160,9 @@ def _perturbation(
     model = system.model
     own = bool(step.loads) or any(s.value != 0.0 for s in step.supports)
     loads = Conditions(system)
+    # Temperatures are absolute: what heats is the difference from the state.
+    heat = loads.temperature
+    heat.begin[:] = heat.end[:] = system.conditions.temperatures(0.0)
     with_model = number == 1 or not own
     loads.add(
         [*(model.loads if with_model else []), *step.loads],
@@ -169,11 +172,17 @@ def _perturbation(
     force, move = loads.rate(u)
     held = system.conditions.held
     move = np.where(held, move, 0.0)
-    if not (np.any(force[~held]) or np.any(move)):
+    if not (np.any(force[~held]) or np.any(move) or system.free.largest(loads.heating)):
         raise ModelError(
             f"buckling step {number} has no load: give the step or the model one", step.where
         )
     return force, move, loads
+
+
+def _moved(system: System, response: Floats, loads: Conditions) -> float:
+    """Largest displacement of the response, or what thermal strain would move if it could."""
+    moved = float(np.abs(response[system.counted]).max(initial=0.0))
+    return max(moved, system.free.largest(loads.heating) * system.length)
 
 
 def _derivative(
@@ -181,7 +190,6 @@ def _derivative(
     u: Floats,
     values: Floats,
     response: Floats,
-    force: Floats,
     loads: Conditions,
 ) -> Floats:
     """Derivative of the tangent `values` along the response, by entries of the pattern.
@@ -189,14 +197,22 @@ def _derivative(
     Where constraints turn (rigid bodies), the forces in them count too: the residual at the
     neighbours is that under the perturbed load.
     """
-    largest_move = float(np.abs(response[system.counted]).max(initial=0.0))
+    largest_move = _moved(system, response, loads)
     if not np.isfinite(largest_move) or largest_move == 0.0:
         raise ConvergenceError("the perturbing load moves nothing")
     size = DIFFERENCE * system.length / largest_move
 
+    heating = loads.heating if loads.heating.any() else None
+    # Thermal strain is in the internal force of a neighbour already.
+    mechanical = loads.external(loads.period, u)[0] - loads.external(0.0, u)[0]
+
     def neighbour(h: float) -> Floats:
-        at = _symmetric(system, system.evaluate(u + h * response, 0.0))
-        return _unknowns(system, at, at.residual - h * force)
+        system.free.offset = None if heating is None else h * heating
+        try:
+            at = _symmetric(system, system.evaluate(u + h * response, 0.0))
+        finally:
+            system.free.offset = None
+        return _unknowns(system, at, at.residual - h * mechanical)
 
     ahead, behind = neighbour(size), neighbour(-size)
     change: Floats = ahead - behind

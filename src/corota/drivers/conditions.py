@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota import _core, elements
-from corota.errors import ModelError
+from corota.errors import ModelError, UnsupportedError
 from corota.mesh import EDGES
-from corota.model import BodyForce, EdgeLoad, NodalForce
+from corota.model import BodyForce, EdgeLoad, NodalForce, Temperature
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+
+#: Procedures whose state stays as it is.
+LINEAR = ("modal dynamic", "steady state")
 
 
 class Course:
@@ -86,6 +90,9 @@ class Conditions:
         self.timed: dict[int, Floats] = {}
         self.fading = np.zeros(n)
         self.spread: list[Spread] = []
+        #: Temperatures of nodes, absolute.
+        self.temperature = Course(len(system.free.start))
+        self.temperature.begin[:] = self.temperature.end[:] = system.free.start
         self.names = ["", *system.model.amplitudes]
         self.period = 1.0
         self.end_time = 1.0  # step time at which the step ended: a path may end anywhere
@@ -113,6 +120,9 @@ class Conditions:
             for load in self.spread:
                 load.begin = load.end = self._scale(load, end)
                 load.amplitude = 0
+            heat = self.temperature
+            heat.begin = self._values(heat, end)
+            heat.end, heat.amplitude = heat.begin.copy(), np.zeros_like(heat.amplitude)
         held_before = self.held.copy()
         self.support.begin, self.support.end = u.copy(), u.copy()
         self.support.amplitude[:] = 0
@@ -120,6 +130,7 @@ class Conditions:
             self.force.end[:] = 0.0
             for load in self.spread:
                 load.end = 0.0
+            self.temperature.end = self.system.free.start.copy()
         if step.new_supports:
             self.held[:] = False
         model = self.system.model
@@ -132,6 +143,12 @@ class Conditions:
             self.fading[released] = reaction[released]
         self.period, self.time, self.end_time = step.period, time, step.period
         self.ramp = getattr(step, "ramp", True)
+        if step.procedure in LINEAR and self.heating.any():
+            raise UnsupportedError(
+                f"temperatures do not change in a {step.procedure} step; heat in a static or "
+                "dynamic step before",
+                step.where,
+            )
 
     def add(self, loads: list[Load], supports: Iterable[Fixed]) -> None:
         """Add loads and supports that grow from zero, apart from any step."""
@@ -170,13 +187,26 @@ class Conditions:
         rows, columns, values = (np.concatenate(part) for part in zip(*triplets, strict=True))
         return force, (rows, columns, values)
 
+    def temperatures(self, step_time: float) -> Floats:
+        """Temperatures of the nodes, shape (n_nodes,)."""
+        return self._values(self.temperature, step_time)
+
+    @property
+    def heating(self) -> Floats:
+        """Change of temperature per unit of load factor, shape (n_nodes,)."""
+        return self.temperature.end - self.temperature.begin
+
     def rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of external forces and of held dofs per unit of load factor, at `u`.
 
         Loads and supports are linear in the load factor (the share of the period), so the
-        difference over one unit is exact once :meth:`check_proportional` has passed.
+        difference over one unit is exact once :meth:`check_proportional` has passed. Thermal
+        strain acts as the internal force that it takes away.
         """
         force = self.external(self.period, u)[0] - self.external(0.0, u)[0]
+        heating = self.heating
+        if heating.any():
+            force = force - self.system.thermal_rate(u, heating)
         move = np.where(self.held, self.support.end - self.support.begin, 0.0)
         return force, move
 
@@ -190,6 +220,7 @@ class Conditions:
         """
         named = {int(i) for i in np.unique(self.support.amplitude[self.held])}
         named |= set(self.timed) | {load.amplitude for load in self.spread}
+        named |= {int(i) for i in np.unique(self.temperature.amplitude)}
         for index in named - {0}:
             raise ModelError(
                 f"amplitude {self.names[index]!r} in a step that follows a path: its loads "
@@ -199,6 +230,12 @@ class Conditions:
         if not self.ramp:
             raise ModelError(
                 "a step that follows a path needs loads that grow (ramp=True, AMPLITUDE=RAMP)"
+            )
+        laws = {block.section.material.law for block in self.system.blocks}
+        if self.heating.any() and laws - {"elastic", "orthotropic"}:
+            raise ModelError(
+                "temperatures that change in a step that follows a path need elastic material; "
+                "heat in a static step before"
             )
         if np.any(self.fading):
             dof = int(np.flatnonzero(self.fading)[0])
@@ -274,6 +311,9 @@ class Conditions:
         self._replace_forces(forces)
         for item in forces:
             self._add_force(item)
+        for heated in loads:
+            if isinstance(heated, Temperature):
+                self._heat(heated)
         spread = [item for item in loads if isinstance(item, EdgeLoad | BodyForce)]
         named = {self._key(item) for item in spread}
         ramped = {self._key(item) for item in spread if not item.amplitude}
@@ -287,6 +327,19 @@ class Conditions:
         for load in spread:
             self._add_spread(load, fresh)
         self.spread += fresh
+
+    def _heat(self, item: Temperature) -> None:
+        self.system.free.require_expansion(item.where)
+        course, amplitude = self.temperature, self._amplitude(item.amplitude, item.where)
+        every = isinstance(item.nodes, str) and not item.nodes
+        nodes = np.arange(len(course.end)) if every else self._nodes(item.nodes)
+        try:
+            course.end[nodes] = item.value
+        except ValueError:
+            raise ModelError(
+                f"{np.size(item.value)} temperatures for {len(nodes)} nodes", item.where
+            ) from None
+        course.amplitude[nodes] = amplitude
 
     def _force_dofs(self, item: NodalForce) -> Ints:
         nodes = self._nodes(item.nodes)

@@ -289,6 +289,7 @@ class ConservingMotion:
         if system.ties is not None:
             system.ties.complete(u)
         x1, x0, v0 = (system.in_space(x) for x in (u, b.u, b.v))
+        system.heat(step_time - 0.5 * dt)
         try:
             with system.timed("assemble"):
                 system.core.conserving(

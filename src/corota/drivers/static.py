@@ -172,8 +172,8 @@ def _go_along_path(
 
 
 def _at_time(system: System, state: State, time: float) -> Evaluation | None:
-    """The committed evaluation with the loads of another time."""
-    if state.at is None:
+    """The committed evaluation with the loads of another time; None if that heats."""
+    if state.at is None or not system.free.follows(system.conditions.temperatures(time)):
         return None
     external, stiffness = system.conditions.external(time, state.u)
     return replace(state.at, external=external, load_stiffness=stiffness)
@@ -188,9 +188,10 @@ def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: 
     before = state.at
     if before is not None:
         # Forces do work on all dofs, reactions on those that are moved; trapezoidal rule.
-        old, new = _at_time(system, state, state.step_time), outcome.at
-        assert old is not None
-        mean = 0.5 * (old.external + new.external)
+        new = outcome.at
+        external = system.conditions.external(state.step_time, state.u)[0]
+        old = replace(before, external=external)
+        mean = 0.5 * (external + new.external)
         mean[held] += 0.5 * (system.reaction(old) + system.reaction(new))[held]
         state.work += float(mean @ du)
     system.commit()

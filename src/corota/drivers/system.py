@@ -18,6 +18,7 @@ from corota.drivers.cells import blocks_of, check_shapes
 from corota.drivers.conditions import Conditions
 from corota.drivers.constraints import Link, Ties, extra_dofs
 from corota.drivers.newton import ElementFailure, Judgement
+from corota.drivers.thermal import FreeStrains
 from corota.drivers.user_blocks import UserBlocks
 from corota.errors import ModelError, SingularError
 from corota.results import PointFields
@@ -136,6 +137,7 @@ class System:
             raise ModelError(str(error)) from None
         self.core.set_threads(threads)
         self.user = UserBlocks(self.core, self.blocks)
+        self.free = FreeStrains(self.core, model, self.blocks)
         self.n_dofs: int = self.core.n_dofs
         self.start = self.core.dof_start.astype(np.int64)
         self.per_node = np.diff(self.start)
@@ -212,6 +214,7 @@ class System:
         values = np.empty(len(self.indices))
         if self.ties is not None:
             self.ties.complete(u)
+        self.heat(step_time)
         try:
             with self.timed("assemble"):
                 here = self.in_space(u)
@@ -234,6 +237,27 @@ class System:
         """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
         out: Floats = self.at_nodes(self.core.multiply(values, self.in_space(x)))
         return out
+
+    def heat(self, step_time: float) -> None:
+        """Give the elements the thermal strain of a time of the step."""
+        if self.free.expands:
+            self.free.apply(self.conditions.temperatures(step_time))
+
+    def thermal_rate(self, u: Floats, heating: Floats) -> Floats:
+        """Change of the internal force at `u` while the nodes heat up, shape (n_dofs,).
+
+        A central difference about the temperatures that the elements have; exact for constant
+        coefficients of expansion and a linear law.
+        """
+        now, here = self.free.now, self.in_space(u)
+        forces = []
+        for share in (0.5, -0.5):
+            force, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
+            self.free.apply(now + share * heating)
+            self.core.assemble(here, self.turning, force, scale, np.empty(0))
+            forces.append(force)
+        self.free.apply(now)
+        return self.at_nodes(forces[0] - forces[1])
 
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of held dofs per unit of load factor, shapes (n_dofs,)."""

@@ -24,7 +24,10 @@ def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
     if draft.law_card is None:
         return None
     try:
-        return _law(draft) if draft.plastic is None else build_mises(deck, draft)
+        found = _law(draft) if draft.plastic is None else build_mises(deck, draft)
+        if found is not None:
+            found.expansion = draft.expansion
+        return found
     except InputError as error:
         # Constants of a plastic material are judged with its curve, on the card of the curve.
         plastic = draft.plastic

@@ -14,6 +14,7 @@ from corota.io.inp_build_materials import build_material
 from corota.io.inp_build_mesh import MeshBuilder, View, view_of
 from corota.io.inp_build_sets import Elements, Sets
 from corota.io.inp_build_ties import build_ties
+from corota.io.inp_cards_thermal import build_initial, build_temperature
 from corota.io.inp_deck import nearest
 from corota.io.inp_elements import DRILLING, ELEMENTS
 from corota.io.inp_lexer import key
@@ -54,6 +55,7 @@ class ModelBuilder:
                 model.velocities.append(
                     InitialVelocity(nodes, item.value, item.index, item.row.where)
                 )
+        build_initial(deck, model, self._nodes, self._cells_of)
         for draft in deck.steps:
             step = self._step(draft)
             if step is not None:
@@ -68,6 +70,11 @@ class ModelBuilder:
     def _tied(self, tie: TieDraft) -> Elements | None:
         view, card = self.meshes.views[0], tie.card
         return self.sets.elements(view, tie.elset, card.at("ELSET"), card)
+
+    def _cells_of(self, draft: Draft) -> Elements | None:
+        return self.sets.elements(
+            self.meshes.views[0], draft.target, draft.row.at(0), draft.card, draft.row.text
+        )
 
     def _unused(self) -> None:
         deck = self.deck
@@ -286,6 +293,11 @@ class ModelBuilder:
                 self._no_rotation(draft)
                 return None
             return NodalForce(nodes, draft.index, draft.value[0], amplitude, where)
+        if draft.kind == "temperature":
+            nodes = self._nodes(draft)
+            if nodes is None or amplitude is None:
+                return None
+            return build_temperature(draft, nodes, amplitude)
         if draft.kind in ("surface pressure", "surface traction"):
             edges = self._edge_set(draft)
             if edges is None or amplitude is None:

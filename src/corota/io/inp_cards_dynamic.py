@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.io.inp_cards_step import open_step, step_times
+from corota.io.inp_cards_thermal import initial_stress, initial_temperature
 from corota.io.inp_deck import Draft
 from corota.io.inp_lexer import key
 from corota.steps import Dynamic, Frequency, ModalDynamic, SteadyState
@@ -145,7 +146,7 @@ def damping(deck: Deck, card: Card) -> None:
 
 
 def initial_conditions(deck: Deck, card: Card) -> None:
-    """``*INITIAL CONDITIONS, TYPE=VELOCITY``: node or set, dof, value."""
+    """``*INITIAL CONDITIONS, TYPE=``: velocities, temperatures or stresses."""
     if deck.choice(card, "TYPE", INITIAL, "") in INITIAL:
         INITIAL[key(card.value("TYPE"))](deck, card)
     elif not card.has("TYPE"):
@@ -153,6 +154,7 @@ def initial_conditions(deck: Deck, card: Card) -> None:
 
 
 def _velocity(deck: Deck, card: Card) -> None:
+    """Node or set, dof, velocity."""
     for row in card.rows():
         deck.extra_fields(card, row, 3)
         dof = deck.integer(card, row, 1, "the degree of freedom")
@@ -167,4 +169,6 @@ def _velocity(deck: Deck, card: Card) -> None:
 
 
 #: Readers of ``*INITIAL CONDITIONS`` by type.
-INITIAL = {"VELOCITY": _velocity}
+INITIAL = {
+    "VELOCITY": _velocity, "TEMPERATURE": initial_temperature, "STRESS": initial_stress,
+}  # fmt: skip

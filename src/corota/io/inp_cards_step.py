@@ -265,7 +265,8 @@ def _dof(deck: Deck, card: Card, row: Row, index: int) -> int | None:
     if dof is None:
         return None
     if dof == 11:
-        deck.row_error(card, row, index, "temperatures (dof 11) are not part of this version")
+        deck.row_error(card, row, index, "dof 11 belongs to heat conduction",
+                       "give temperatures by *TEMPERATURE")  # fmt: skip
         return None
     if not 1 <= dof <= 6:
         deck.row_error(
@@ -281,7 +282,7 @@ def _dof(deck: Deck, card: Card, row: Row, index: int) -> int | None:
 
 def cload(deck: Deck, card: Card) -> None:
     """``*CLOAD[, OP=][, AMPLITUDE=]``: node or set, dof, value."""
-    now = _loads_of(deck, card)
+    now = loads_of(deck, card)
     if now is None:
         return
     for row in card.rows():
@@ -307,7 +308,7 @@ def cload(deck: Deck, card: Card) -> None:
 
 def dload(deck: Deck, card: Card) -> None:
     """``*DLOAD``: pressure on faces, ``GRAV``, ``CENTRIF``."""
-    now = _loads_of(deck, card)
+    now = loads_of(deck, card)
     if now is None:
         return
     for row in card.rows():
@@ -382,7 +383,7 @@ def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
 
 def dsload(deck: Deck, card: Card) -> None:
     """``*DSLOAD``: surface, ``P``, pressure; or ``TRVEC``, size, direction."""
-    now = _loads_of(deck, card)
+    now = loads_of(deck, card)
     if now is None:
         return
     follower = deck.choice(card, "FOLLOWER", ("YES", "NO"), "YES") == "YES"
@@ -425,7 +426,8 @@ def _op(deck: Deck, card: Card) -> str:
     return deck.choice(card, "OP", ("NEW", "MOD"), "MOD")
 
 
-def _loads_of(deck: Deck, card: Card) -> StepDraft | None:
+def loads_of(deck: Deck, card: Card) -> StepDraft | None:
+    """Return the step that a card of loads belongs to, or None after an error."""
     now = open_step(deck, card)
     if now is not None and _op(deck, card) == "NEW":
         now.new_loads = True

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -14,12 +14,15 @@ from corota.io import inp_numbers
 from corota.io.inp_lexer import Card, Row, key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from corota.io.inp_cards_tie import TieDraft
+    from corota.materials import Expansion
     from corota.mesh.data import Floats, Ints
     from corota.model import Amplitude
     from corota.steps import Output, Step
+
+Number = TypeVar("Number", int, float)
 
 #: Findings kept; the rest is counted only.
 MAX_DIAGNOSTICS = 200
@@ -130,6 +133,7 @@ class MaterialDraft:
     law_card: Card | None = None
     rho: float = 0.0
     plastic: PlasticDraft | None = None
+    expansion: float | Expansion = 0.0
 
 
 @dataclass(slots=True)
@@ -149,6 +153,14 @@ class Draft:
     index: int = -1
     amplitude: str = ""
     silent: bool = False
+
+
+@dataclass(slots=True)
+class InitialDraft:
+    """A line of initial temperature or stress; ``point`` from 1, 0 for all."""
+
+    draft: Draft
+    point: int = 0
 
 
 @dataclass(slots=True)
@@ -216,6 +228,7 @@ class Deck:
     damping: tuple[float, float] = (0.0, 0.0)
     controls: dict[str, float] = field(default_factory=dict)
     velocities: list[Draft] = field(default_factory=list)
+    initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
     rotation_nodes: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -293,22 +306,23 @@ class Deck:
         self, card: Card, row: Row, index: int, what: str, default: float | None = None
     ) -> float | None:
         """Value of a field; an empty one is the default; ``None`` after an error."""
-        text = row.get(index)
-        if not text and default is not None:
-            return default
-        if not text:
-            self.row_error(card, row, index, f"{what} is missing")
-            return None
-        try:
-            return inp_numbers.real(text)
-        except ValueError as error:
-            self.row_error(card, row, index, f"{what}: {error}")
-            return None
+        return self._field(card, row, index, what, default, inp_numbers.real)
 
     def integer(
         self, card: Card, row: Row, index: int, what: str, default: int | None = None
     ) -> int | None:
         """Value of a whole-number field; as :meth:`real`."""
+        return self._field(card, row, index, what, default, inp_numbers.integer)
+
+    def _field(
+        self,
+        card: Card,
+        row: Row,
+        index: int,
+        what: str,
+        default: Number | None,
+        read: Callable[[str], Number],
+    ) -> Number | None:
         text = row.get(index)
         if not text and default is not None:
             return default
@@ -316,32 +330,28 @@ class Deck:
             self.row_error(card, row, index, f"{what} is missing")
             return None
         try:
-            return inp_numbers.integer(text)
+            return read(text)
         except ValueError as error:
             self.row_error(card, row, index, f"{what}: {error}")
             return None
 
     def parameter_number(self, card: Card, name: str, default: float, least: float) -> float:
         """Value of a numeric parameter, at least ``least``."""
-        if not card.has(name):
-            return default
-        try:
-            value = inp_numbers.real(card.value(name))
-            if value < least:
-                raise ValueError(f"{value:g} is less than {least:g}")
-        except ValueError as error:
-            self.error(card, card.at(name), f"{card.parameters[name].name}: {error}")
-            return default
-        return value
+        return self._parameter(card, name, default, least, inp_numbers.real)
 
     def parameter_integer(self, card: Card, name: str, default: int, least: int) -> int:
         """Value of a whole-number parameter, at least ``least``."""
+        return self._parameter(card, name, default, least, inp_numbers.integer)
+
+    def _parameter(
+        self, card: Card, name: str, default: Number, least: Number, read: Callable[[str], Number]
+    ) -> Number:
         if not card.has(name):
             return default
         try:
-            value = inp_numbers.integer(card.value(name))
+            value = read(card.value(name))
             if value < least:
-                raise ValueError(f"{value} is less than {least}")
+                raise ValueError(f"{value:g} is less than {least:g}")
         except ValueError as error:
             self.error(card, card.at(name), f"{card.parameters[name].name}: {error}")
             return default

@@ -14,6 +14,7 @@ from corota.io import inp_cards_output as output
 from corota.io import inp_cards_path as path
 from corota.io import inp_cards_plastic as plastic
 from corota.io import inp_cards_step as step
+from corota.io import inp_cards_thermal as thermal
 from corota.io import inp_cards_tie as tie
 from corota.io.inp_deck import nearest
 from corota.io.inp_lexer import key
@@ -69,6 +70,7 @@ KEYWORDS: dict[str, Keyword] = {
     "MATERIAL": Keyword(material.material, "NAME", place="model"),
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
     "DENSITY": Keyword(material.density, place="model"),
+    "EXPANSION": Keyword(thermal.expansion, "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(
         plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"
     ),
@@ -108,6 +110,7 @@ KEYWORDS: dict[str, Keyword] = {
     "CLOAD": Keyword(step.cload, "OP AMPLITUDE", "LOADCASE"),
     "DLOAD": Keyword(step.dload, "OP AMPLITUDE", "LOADCASE"),
     "DSLOAD": Keyword(step.dsload, "OP AMPLITUDE FOLLOWER", "LOADCASE"),
+    "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
     "NODEPRINT": Keyword(output.node_print, _PRINT, "GLOBAL SUMMARY"),
     "ELPRINT": Keyword(output.el_print, _PRINT, "GLOBAL POSITION SUMMARY"),
     "NODEFILE": Keyword(output.node_file, _FILE, _FILE_IGNORED),
@@ -143,7 +146,7 @@ IGNORED: dict[str, str] = {
 
 _CONTACT = "contact is not part of this version; model the parts as one"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
-_HEAT = "temperature is not part of this version"
+_HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _PLASTIC = "the material laws are *ELASTIC and *PLASTIC; use these"
 _PROCEDURE = "this procedure is not part of this version"
 _LINE = "only planar solids are part of this version; use CPS* or CPE* elements"
@@ -168,7 +171,7 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "TEMPERATURE", "EXPANSION", "CONDUCTIVITY", "SPECIFICHEAT", "HEATTRANSFER", "CFLUX",
+            "CONDUCTIVITY", "SPECIFICHEAT", "HEATTRANSFER", "CFLUX",
             "DFLUX", "FILM", "RADIATE", "COUPLEDTEMPERATURE-DISPLACEMENT", "PHYSICALCONSTANTS",
             "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
         ),
@@ -225,6 +228,12 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("CLOAD", "USER"): "no user subroutine is called; use *AMPLITUDE",
     ("CLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("CLOAD", "SUBMODEL"): "submodels are not part of this version",
+    ("TEMPERATURE", "FILE"): "give the temperatures on data lines",
+    ("TEMPERATURE", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("TEMPERATURE", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("TEMPERATURE", "SUBMODEL"): "submodels are not part of this version",
+    ("EXPANSION", "USER"): "no user subroutine is called; give a table",
+    ("INITIALCONDITIONS", "USER"): "no user subroutine is called; write the values",
     ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
     ("AMPLITUDE", "SMOOTH"): "give more points in the table",

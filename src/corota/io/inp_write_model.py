@@ -14,9 +14,10 @@ import numpy as np
 from corota.check.parts import cells_of
 from corota.errors import InputError, UnsupportedError
 from corota.io.inp_write import TYPES
+from corota.io.inp_write_thermal import expansion_cards, initial_cards, temperatures
 from corota.io.twin import replace_text
 from corota.materials import Elastic, Orthotropic
-from corota.model import BodyForce, EdgeLoad, NodalForce
+from corota.model import BodyForce, EdgeLoad, NodalForce, Temperature
 from corota.steps import Static
 
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ class _Writer:
         # The steps come first here since they may need sets of their own.
         steps = model.steps or ([Static()] if model.loads else [])
         tail = [*self._materials_and_sections(), *self._tables()]
+        tail += initial_cards(self, model)
         tail += _boundary(self, model.supports, False)
         for number, step in enumerate(steps):
             again = number == 0 or step.new_loads
@@ -173,6 +175,7 @@ class _Writer:
                 f"a material of type {type(material).__name__} cannot be written to a deck"
             )
         lines.append(f"*MATERIAL, NAME={name}\n{law}")
+        lines.append(expansion_cards(material))
         if material.rho:
             lines.append(f"*DENSITY\n{_number(material.rho)}\n")
         return name
@@ -245,6 +248,8 @@ class _Writer:
             force = size / self._area(load.edges) if load.total else size
             yield f"*DSLOAD, FOLLOWER=NO{option}\n"
             yield f"{name}, TRVEC, {_number(force)}, {_number(x / size)}, {_number(y / size)}\n"
+        elif isinstance(load, Temperature):
+            yield f"*TEMPERATURE{option}\n" + temperatures(self, load.nodes, load.value)
         elif isinstance(load, BodyForce):
             yield f"*DLOAD{option}\n" + self._body(load)
 
