@@ -65,8 +65,9 @@ format: $(DEPS) ## Format both languages
 	$(BIN)/ruff format .
 	cargo fmt
 
-bench: $(CORE) ## Run the benchmarks (benchmarks/README.md)
-	$(BIN)/python -m benchmarks
+bench: $(CORE) ## Install the peers, run all programs side by side (benchmarks/README.md)
+	$(BIN)/python -m benchmarks.side_by_side
+	$(BIN)/python -m benchmarks.bench_tables
 
 wheel: $(DEPS) ## Build a wheel into dist/ for every Python from 3.10
 	@PYTHON="$(PYTHON)" scripts/check_toolchain.sh

@@ -9,7 +9,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 #: What is not a benchmark by itself.
-HELPERS = {"__init__", "__main__", "common", "cantilever"}
+HELPERS = {"__init__", "__main__", "common", "cantilever", "problems", "decks", "bench_figures"}
 
 
 def names() -> list[str]:

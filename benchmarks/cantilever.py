@@ -1,4 +1,4 @@
-"""Problem P1: a cantilever with a dead shear at its end, as a deck for both programs.
+"""Problem P1: a cantilever with a dead shear at its end.
 
 Length 10, height 1, thickness 0.01, E = 1.2e6, nu = 0.3, plane stress; clamped on the left; 4000
 per unit thickness spread on the right edge; ten equal increments.
@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
 LENGTH, HEIGHT, THICKNESS = 10.0, 1.0, 0.01
@@ -68,43 +66,3 @@ def tip_middle(points: NDArray[np.float64]) -> int:
     above = (points[:, 0] == LENGTH) & (points[:, 1] > HEIGHT / 2 - 1e-9)
     nodes = np.flatnonzero(above)
     return int(nodes[np.argmin(points[nodes, 1])])
-
-
-def n_equations(n: int, order: int = 1) -> int:
-    """Count the displacement components of the mesh."""
-    return 2 * len(grid(n, order)[0])
-
-
-def write_deck(path: Path, n: int, element: str) -> None:
-    """Write the deck; the node set TIPMID holds :func:`tip_middle`.
-
-    Parameters
-    ----------
-    path : Path
-    n : int
-        Elements through the height.
-    element : str
-        ``CPS4`` or ``CPS8``; or a name that only Corota knows.
-    """
-    order = 2 if "8" in element else 1
-    points, cells = grid(n, order)
-    clamp = np.flatnonzero(points[:, 0] == 0.0)
-    lines = ["*NODE, NSET=NALL"]
-    lines += [f"{k + 1}, {x:.9g}, {y:.9g}, 0." for k, (x, y) in enumerate(points.tolist())]
-    lines.append(f"*ELEMENT, TYPE={element}, ELSET=EALL")
-    lines += [
-        f"{k + 1}, " + ", ".join(str(node + 1) for node in cell)
-        for k, cell in enumerate(cells.tolist())
-    ]
-    lines.append("*NSET, NSET=CLAMP")
-    lines += [f"{node + 1}," for node in clamp.tolist()]
-    lines += ["*NSET, NSET=TIPMID", f"{tip_middle(points) + 1},"]
-    lines += ["*MATERIAL, NAME=M", "*ELASTIC", f"{YOUNG:g}, {POISSON:g}"]
-    lines += ["*SOLID SECTION, ELSET=EALL, MATERIAL=M", f"{THICKNESS:g}"]
-    lines += ["*BOUNDARY", "CLAMP, 1, 3"]
-    lines += ["*STEP, NLGEOM, INC=1000", "*STATIC, DIRECT", f"{1.0 / INCREMENTS:g}, 1."]
-    lines.append("*CLOAD")
-    force = SHEAR * THICKNESS
-    lines += [f"{k + 1}, 2, {force * s:.12g}" for k, s in tip_shares(points, order).items()]
-    lines += ["*NODE PRINT, NSET=TIPMID", "U", "*END STEP"]
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import os
 import platform
-import resource
+import shutil
+import signal
 import statistics
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -85,7 +86,7 @@ class Run:
     output: str
     ok: bool
     note: str = ""
-    values: dict[str, float] = field(default_factory=dict)
+    cpu: float = 0.0
 
 
 def process(
@@ -96,6 +97,9 @@ def process(
     limit: float = TIME_LIMIT,
 ) -> Run:
     """Run a program with a number of threads and a time limit.
+
+    Peak memory and processor time come from GNU ``time`` where it is installed: the kernel's own
+    account of a child begins with the memory of its parent.
 
     Parameters
     ----------
@@ -109,9 +113,11 @@ def process(
     """
     names = ("OMP", "OPENBLAS", "MKL", "RAYON", "BLIS")
     environment = dict(os.environ, **{f"{name}_NUM_THREADS": str(threads) for name in names})
+    watch, note = shutil.which("time"), folder / ".time"
+    before = [watch, "-f", "%M %U %S", "-o", note] if watch else []
     start = time.perf_counter()
     with subprocess.Popen(
-        [str(part) for part in command],
+        [str(part) for part in [*before, *command]],
         cwd=folder,
         env=environment,
         stdin=subprocess.DEVNULL,
@@ -119,25 +125,21 @@ def process(
         stderr=subprocess.STDOUT,
         text=True,
         errors="replace",
+        start_new_session=True,
     ) as child:
         try:
             output, _ = child.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
-            child.kill()
+            os.killpg(child.pid, signal.SIGKILL)
             child.communicate()
             return Run(limit, 0.0, "", ok=False, note="over limit")
     seconds = time.perf_counter() - start
-    # The largest child so far: an upper bound that a later, smaller child does not lower.
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
-    note = "" if child.returncode == 0 else f"exit {child.returncode}"
-    return Run(seconds, peak, output, ok=child.returncode == 0, note=note)
-
-
-def median_run(runs: Iterable[Run]) -> Run:
-    """Pick the run with the median time of those that ended well, or the first that did not."""
-    done = list(runs)
-    good = sorted((run for run in done if run.ok), key=lambda run: run.seconds)
-    return good[len(good) // 2] if good else done[0]
+    peak = cpu = float("nan")
+    if note.exists():
+        memory, user, system = note.read_text(encoding="ascii").splitlines()[-1].split()
+        peak, cpu = float(memory) / 1024.0, float(user) + float(system)
+    said = "" if child.returncode == 0 else f"exit {child.returncode}"
+    return Run(seconds, peak, output, ok=child.returncode == 0, note=said, cpu=cpu)
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
