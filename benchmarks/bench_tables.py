@@ -31,6 +31,8 @@ SIZES = ("400", "4k", "40k", "400k", "1M")
 TITLES = {
     "P1": "P1, cantilever with large rotations",
     "P2": "P2, strip with a hole beyond yield",
+    "P3": "P3, two blocks in contact",
+    "P3f": "P3f, with friction 0.3",
     "P4": "P4, cantilever under a load that acts at once",
     "P4x2": "P4x2, twice that load",
 }
@@ -64,20 +66,22 @@ def rows(records: list[Record]) -> list[list[object]]:
     """Rows of one table: programs of a problem, group and number of threads by size."""
     first = bases(records)
     made: list[list[object]] = []
-    for size in SIZES:
+    for size, increments in sorted(
+        {(r["size"], r["increments"]) for r in records}, key=lambda k: (SIZES.index(k[0]), k[1])
+    ):
         for order in (1, 2):
             for program in PROGRAMS:
                 runs = [
                     r for r in records
-                    if (r["size"], r["order"], r["program"], r["element"])
-                    == (size, order, program.name, program.element)
+                    if (r["size"], r["increments"], r["order"], r["program"], r["element"])
+                    == (size, increments, order, program.name, program.element)
                 ]  # fmt: skip
                 if not runs:
                     continue
                 good = [r for r in runs if r["ok"]]
                 if not good:
                     note = runs[0]["note"]
-                    made.append([program.label, runs[0]["dofs"], note, "", "", "", "", "", ""])
+                    made.append([program.label, runs[0]["dofs"], increments, note, *[""] * 5])
                     continue
 
                 def middle(key: str, good: list[Record] = good) -> float:
@@ -86,7 +90,7 @@ def rows(records: list[Record]) -> list[list[object]]:
                 ratios = [each(r) / first[round_of(r)] for r in good if round_of(r) in first]
                 result = ", ".join(f"{v:.6g}" for v in good[0]["result"])
                 made.append([
-                    program.label, good[0]["dofs"], good[0]["increments"],
+                    program.label, good[0]["dofs"], increments,
                     int(middle("iterations")),
                     1e3 * statistics.median(each(r) for r in good),
                     f"{statistics.median(ratios):.2f}",
@@ -135,7 +139,7 @@ def draw(records: list[Record], path: Path) -> None:
 
     from corota.plots.figure import COLORS, look, new_figure, save
 
-    problems = [p for p in ("P1", "P2", "P4") if any(r["problem"] == p for r in records)]
+    problems = [p for p in ("P1", "P2", "P3", "P4") if any(r["problem"] == p for r in records)]
     names = list(dict.fromkeys(p.name for p in PROGRAMS))
     markers = dict(zip(names, "os^Dv<>pX", strict=False))
     with look():

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from benchmarks.problems import Problem
+    from benchmarks.problems import Ints, Problem
 
 
 def write_deck(path: Path, p: Problem) -> None:
@@ -42,6 +42,14 @@ def write_deck(path: Path, p: Problem) -> None:
     # CalculiX's law is one of finite strain: Corota's is told to be.
     strain = ", LOCAL STRAIN=LOGARITHMIC" if p.yield_stress else ""
     lines += [f"*SOLID SECTION, ELSET=EALL, MATERIAL=M{strain}", f"{p.thickness:g}"]
+    if len(p.slave):
+        lines += surface(p, "SLAVE", p.slave) + surface(p, "MASTER", p.master)
+        lines += ["*SURFACE INTERACTION, NAME=TOUCH"]
+        # Linear with fifty times the modulus over the length: CalculiX has no multipliers here.
+        lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{50.0 * p.young:g}"]
+        if p.friction:
+            lines += ["*FRICTION", f"{p.friction:g}, {5.0 * p.young:g}"]
+        lines += ["*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER"]
     lines += ["*BOUNDARY", "HELD1, 1, 1", "HELD2, 2, 2", "*STEP, NLGEOM, INC=100000"]
     share = p.last / p.increments
     if p.name == "P4":
@@ -61,9 +69,20 @@ def write_deck(path: Path, p: Problem) -> None:
         lines.append(loads)
         for node, dof, value in zip(p.load_nodes, p.load_dofs, p.load_values, strict=True):
             lines.append(f"{node + 1}, {dof + 1}, {share * value:.12g}")
-    what = "*NODE PRINT, NSET=WATCH, TOTALS=ONLY\nRF" if p.name == "P2" else None
+    what = "*NODE PRINT, NSET=WATCH, TOTALS=ONLY\nRF" if p.name in ("P2", "P3") else None
     lines += [what or "*NODE PRINT, NSET=WATCH\nU", "*END STEP"]
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def surface(p: Problem, name: str, edges: Ints) -> list[str]:
+    """Cards of a surface of element faces, from the nodes of its edges."""
+    faces = {
+        tuple(sorted((int(cell[k]), int(cell[(k + 1) % 4])))): (number, k + 1)
+        for number, cell in enumerate(p.cells.tolist(), start=1)
+        for k in range(4)
+    }
+    rows = [faces[tuple(sorted(edge))] for edge in edges.tolist()]
+    return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{e}, S{k}" for e, k in rows)]
 
 
 def iterations(sta: Path) -> tuple[int, float]:
@@ -76,7 +95,7 @@ def iterations(sta: Path) -> tuple[int, float]:
 def result(dat: Path, p: Problem) -> list[float]:
     """What the problem asks for, of a ``.dat`` file."""
     rows = [line.split() for line in dat.read_text(encoding="utf-8").splitlines()]
-    if p.name == "P2":
+    if p.name in ("P2", "P3"):
         totals = [r for r in rows if len(r) == 3 and r[0][-1].isdigit()]
         return [float(totals[-1][1])]
     tips = [[float(v) for v in r[1:3]] for r in rows if len(r) == 4 and r[0].isdigit()]

@@ -1,17 +1,18 @@
-"""The benchmark problems P1, P2 and P4 as arrays that every program's driver reads.
+"""The benchmark problems P1 to P4 as arrays that every program's driver reads.
 
 A problem is a mesh of quadrilaterals, one material, held and loaded components and what to look
 at. Written as one ``.npz`` file, so that a driver needs NumPy only and all programs have the same
 nodes. Forces are those of the thickness of the problem.
 
 P1 is a cantilever 10 x 1 that bends to 6.8 under a dead shear, P2 a strip with a hole beyond
-yield, P4 the cantilever under a load that acts at once, P4x2 under twice that load.
+yield, P3 presses a block with a curved face into another (P3f with friction), P4 is the cantilever
+under a load that acts at once (P4x2 under twice that load).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -34,7 +35,7 @@ class Problem:
 
     Parameters
     ----------
-    name : {"P1", "P2", "P4"}
+    name : {"P1", "P2", "P3", "P4"}
     points : ndarray, shape (n, 2)
     cells : ndarray, shape (m, 4 or 8)
         From 0, corners first, counter-clockwise.
@@ -44,9 +45,12 @@ class Problem:
         Nodal forces at full load.
     watch : ndarray
         The node whose displacement is the result (P1, P4), or the nodes whose vertical reactions
-        are summed (P2).
+        are summed (P2, P3).
     increments, last : int
         Equal increments of the whole load, and how many of them are run.
+    slave, master : ndarray, shape (k, 2)
+        Nodes of the edges in contact, the body on the left (P3).
+    friction : float
     young, poisson, density, thickness, yield_stress, slope : float
         ``yield_stress`` 0 is elastic; ``slope`` is the isotropic hardening.
     period : float
@@ -72,6 +76,9 @@ class Problem:
     yield_stress: float = 0.0
     slope: float = 0.0
     period: float = 1.0
+    friction: float = 0.0
+    slave: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int64))
+    master: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int64))
 
     @property
     def n_dofs(self) -> int:
@@ -131,22 +138,67 @@ def strip(n: int, order: int = 1, last: int = 0) -> Problem:
     )  # fmt: skip
 
 
+def blocks(n: int, order: int = 1, last: int = 0, friction: float = 0.0) -> Problem:
+    """P3: a block 1 x 0.5 with a face of radius 8, pressed by 0.02 into a block 2 x 1.
+
+    `n` elements along the curved face, half as many again along the other for the same length.
+    """
+    if order != 1:
+        raise ValueError("P3 has linear elements")
+    s, t, upper = lattice(n, max(1, n // 2))
+    x = s - 0.5
+    low = 9.0 - np.sqrt(64.0 - x**2)
+    top = np.flatnonzero(t == 1.0)
+    bottom = np.flatnonzero(t == 0.0)
+    first = np.stack([x, low + (1.5 - low) * t], axis=1)
+    u, v, lower = lattice(3 * n, max(1, 3 * n // 2))
+    other = np.stack([2.0 * u - 1.0, v], axis=1)
+    base = len(first) + np.flatnonzero(v == 0.0)
+    face = len(first) + np.flatnonzero(v == 1.0)
+    nothing = np.zeros(0, np.int64)
+    return Problem(
+        "P3", np.concatenate([first, other]), np.concatenate([upper, len(first) + lower]),
+        np.concatenate([np.repeat(base, 2), np.repeat(top, 2)]),
+        np.tile([0, 1], len(base) + len(top)),
+        np.concatenate([np.zeros(2 * len(base)), np.tile([0.0, -0.02], len(top))]),
+        nothing, nothing, np.zeros(0), top, 10, last or 10, 210000.0, 0.3, 0.01,
+        friction=friction, slave=np.stack([bottom[:-1], bottom[1:]], axis=1),
+        master=np.stack([face[1:], face[:-1]], axis=1),
+    )  # fmt: skip
+
+
+def lattice(nx: int, ny: int) -> tuple[Floats, Floats, Ints]:
+    """Coordinates from 0 to 1 of the nodes of nx by ny quadrilaterals, and the quadrilaterals."""
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(nx + 1), np.arange(ny + 1), indexing="ij"))
+    corner = (np.arange(nx)[:, None] * (ny + 1) + np.arange(ny)).ravel()
+    cells = np.stack([corner, corner + ny + 1, corner + ny + 2, corner + 1], axis=1)
+    return i / nx, j / ny, cells
+
+
 BUILDERS = {
     "P1": cantilever,
     "P2": strip,
+    "P3": blocks,
+    "P3f": partial(blocks, friction=0.3),
     "P4": transient,
     "P4x2": partial(transient, load=2000.0),
 }
+#: What a program that can do the one can do too.
+LIKE = {"P3f": "P3", "P4x2": "P4"}
 #: Elements across (P1, P4: the height; P2: an eighth of the hole), linear and quadratic.
 SIZES: dict[str, dict[str, tuple[int, int]]] = {
     "P1": {"400": (4, 2), "4k": (14, 8), "40k": (45, 26), "400k": (141, 81), "1M": (223, 129)},
     "P2": {"400": (8, 5), "4k": (26, 15), "40k": (85, 49), "400k": (267, 154), "1M": (422, 244)},
 }
+SIZES["P3"] = {k: (n, n) for k, n in {"400": 6, "4k": 20, "40k": 64}.items()}
+SIZES["P3f"] = SIZES["P3"]
 SIZES["P4"] = SIZES["P4x2"] = SIZES["P1"]
 #: Increments that are run where the whole problem would take the peers hours.
 LAST: dict[str, dict[str, int]] = {
     "P1": {"40k": 1, "400k": 1, "1M": 1},
     "P2": {"40k": 2, "400k": 1, "1M": 1},
+    "P3": {"40k": 2},
+    "P3f": {"40k": 2},
     "P4": {"4k": 20, "40k": 2, "400k": 1, "1M": 1},
     "P4x2": {"40k": 2, "400k": 1, "1M": 1},
 }

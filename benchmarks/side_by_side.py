@@ -10,7 +10,7 @@ groups:
 
 Each run appends a line to ``results/bench/runs.jsonl``; ``python -m benchmarks bench_tables`` makes
 tables and figures of it. Installs the peers first (``benchmarks/peers/install.py``).
-``--problems --sizes --threads --repeats --limit --programs --output``.
+``--problems --sizes --threads --repeats --limit --last --programs --output``.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -30,7 +30,7 @@ from typing import Any
 from benchmarks import decks
 from benchmarks.common import TIME_LIMIT, machine, process
 from benchmarks.peers.install import PEERS, install, interpreter
-from benchmarks.problems import SIZES, Problem, build
+from benchmarks.problems import LIKE, SIZES, Problem, build
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = ROOT / "results" / "bench" / "runs.jsonl"
@@ -69,6 +69,12 @@ PROGRAMS = (
     Program(
         "Corota", "Q4, energy-momentum", "P4", driver="corota", options=("scheme=energy_momentum",)
     ),
+    Program("Corota", "Q4, mortar", "P3", driver="corota"),
+    Program(
+        "Corota", "Q4, node to segment", "P3", driver="corota", options=("method=node_to_segment",)
+    ),
+    Program("Kratos", "TL 4N, ALM mortar", "P3", driver="kratos_contact"),
+    Program("CalculiX", "CPS4, surf. to surf.", "P3", "deck"),
     Program("Kratos", "TotalLagrangian 4N", "P1 P2 P4", driver="kratos"),
     Program("Akantu", "quadrangle 4", "P1 P4", driver="akantu"),
     Program("DOLFINx", "Q1", "P1 P4", driver="dolfinx"),
@@ -86,7 +92,7 @@ PROGRAMS = (
 
 def run_driver(program: Program, p: Problem, folder: Path, threads: int, limit: float) -> Any:
     """One run of a driver of ``benchmarks.peers``."""
-    known = {name.lower().replace("-", "_"): name for name in PEERS}
+    known = {name.lower().replace("-", "_"): name for name in PEERS} | {"kratos_contact": "Kratos"}
     python: Path | None = Path(sys.executable)
     if program.driver in known:
         python = interpreter(known[program.driver])
@@ -137,9 +143,11 @@ def run_deck(program: Program, p: Problem, folder: Path, threads: int, limit: fl
     return record | {"iterations": count, "result": decks.result(dat, p)}
 
 
-def run(program: Program, name: str, size: str, threads: int, limit: float) -> dict[str, Any]:
+def run(
+    program: Program, name: str, size: str, threads: int, limit: float, last: int | None
+) -> dict[str, Any]:
     """One run of a program, as the record that is kept."""
-    p = build(name, size, program.order)
+    p = build(name, size, program.order, last)
     record: dict[str, Any] = {
         "problem": name, "size": size, "dofs": p.n_dofs, "elements": len(p.cells),
         "increments": p.last, "threads": threads, "program": program.name,
@@ -158,6 +166,7 @@ def main() -> int:
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2])
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="longest time of a run [s]")
+    parser.add_argument("--last", type=int, help="increments to run, instead of the default")
     parser.add_argument("--programs", nargs="+", help="only names that begin so")
     parser.add_argument("--output", type=Path, default=RUNS)
     args = parser.parse_args()
@@ -176,7 +185,7 @@ def main() -> int:
                 chosen = [
                     p
                     for p in PROGRAMS
-                    if name.removesuffix("x2") in p.problems.split()
+                    if LIKE.get(name, name) in p.problems.split()
                     and (threads == 1 or not p.serial)
                     and (not args.programs or p.label.startswith(tuple(args.programs)))
                 ]
@@ -186,7 +195,7 @@ def main() -> int:
                         key = (program.label, name, threads)
                         if key in out_of_reach:
                             continue
-                        record = run(program, name, size, threads, args.limit)
+                        record = run(program, name, size, threads, args.limit, args.last)
                         record |= {"session": session, "repeat": repeat, "machine": machine()}
                         with args.output.open("a", encoding="utf-8") as file:
                             file.write(json.dumps(record) + "\n")

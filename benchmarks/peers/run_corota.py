@@ -1,4 +1,4 @@
-"""P1, P2, P4 with Corota. Options: element, strain, scheme, threads."""
+"""P1 to P4 with Corota. Options: element, strain, scheme, method (of contact), threads."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -14,7 +14,7 @@ from benchmarks.problems import Problem
 from corota.mesh import Cells
 
 
-def model_of(p: Problem, element: str, strain: str) -> ct.Model:
+def model_of(p: Problem, element: str, strain: str, method: str = "mortar") -> ct.Model:
     """Corota's model of a problem; those with drilling rotations hold them where clamped."""
     kind = {3: "tri3", 4: "quad4", 8: "quad8"}[p.cells.shape[1]]
     model = ct.Model(ct.Mesh(p.points, [Cells(kind, p.cells, np.arange(1, len(p.cells) + 1))]))
@@ -26,6 +26,9 @@ def model_of(p: Problem, element: str, strain: str) -> ct.Model:
     model.section(
         "all", element=element, material=material, thickness=p.thickness, local_strain=strain
     )
+    if len(p.slave):
+        slave, master = (model.mesh.edges_between(ends) for ends in (p.slave, p.master))
+        model.contact(slave, master, method=method, friction=p.friction)
     for node, dof, value in zip(p.held_nodes, p.held_dofs, p.held_values, strict=True):
         x, y = (value, None) if dof == 0 else (None, value)
         model.fix([node], x=x, y=y)
@@ -37,7 +40,7 @@ def model_of(p: Problem, element: str, strain: str) -> ct.Model:
 def main() -> None:
     p, options = arguments()
     element = options.get("element", "Q4")
-    model = model_of(p, element, options.get("strain", "modified"))
+    model = model_of(p, element, options.get("strain", "modified"), options.get("method", "mortar"))
     share = p.last / p.increments
     step: ct.Static | ct.Dynamic
     if p.name == "P4":
@@ -58,7 +61,7 @@ def main() -> None:
     frame = results.frames[-1]
     if p.name == "P1":
         result = list(frame.U[p.watch[0]])
-    elif p.name == "P2":
+    elif p.name in ("P2", "P3"):
         result = [frame.RF[p.watch, 1].sum()]
     else:
         result = [max(float(f.U[p.watch[0], 1]) for f in results.frames)]

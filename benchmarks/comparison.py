@@ -1,0 +1,187 @@
+"""The paper's comparison: efficiency and accuracy of elements, masses and local strains.
+
+Runs every case of ``benchmarks/studies`` (a module there is a study, one more file is one more)
+on a sequence of meshes, one thread each, and draws the error over the number of dofs and over
+processor time. ``--studies`` and ``--cases`` choose, ``--write`` puts tables and figures into
+``docs/comparison.md``; the page's conclusions are written by hand. Measured values are kept in
+``results/comparison.json``, and only what is asked for is run anew; ``--redraw`` runs nothing.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from benchmarks.common import machine, table
+from benchmarks.studies.case import Case, measure
+
+ROOT = Path(__file__).resolve().parent.parent
+KEPT = ROOT / "results" / "comparison.json"
+PAGE = ROOT / "docs" / "comparison.md"
+IMAGES = ROOT / "docs" / "images"
+#: Color and marker of each element.
+LOOK = {
+    "Q4I": ("#0072B2", "o"), "Q8": ("#56B4E9", "D"), "Q9": ("#009E73", "s"),
+    "OPT": ("#D55E00", "^"), "Q4D": ("#CC79A7", "v"),
+}  # fmt: skip
+
+
+def cases() -> list[Case]:
+    """All cases, in the order of the page."""
+    order = ("statics", "dynamics", "plasticity", "contact", "impact")
+    names = {p.stem for p in (ROOT / "benchmarks" / "studies").glob("*.py")} - {"__init__", "case"}
+    ranked = sorted(names, key=lambda n: (order.index(n) if n in order else len(order), n))
+    return [c for n in ranked for c in import_module(f"benchmarks.studies.{n}").CASES]
+
+
+def run(case: Case) -> list[dict[str, Any]]:
+    """Every element, variant and mesh of a case."""
+    records = []
+    for variant in case.variants:
+        for element in case.elements:
+            for n in case.meshes:
+                records.append(measure(case, element, variant, n))
+                r = records[-1]
+                said = r.get("stopped") or f"{r['error']:.2e}  {r['seconds']:.3f} s"
+                sys.stdout.write(f"{case.name} {variant} {element} {r['dofs']}: {said}\n")
+                sys.stdout.flush()
+    return records
+
+
+def draw(case: Case, records: list[dict[str, Any]], path: Path) -> None:
+    """Error over dofs (above) and over processor time (below), a column for each variant."""
+    from corota.plots.figure import look, new_figure, save
+
+    with look():
+        figure = new_figure(2.35 * len(case.variants) + 0.5, 4.3, shown=False)
+        axes = figure.subplots(2, len(case.variants), sharey=True, squeeze=False)
+        for column, variant in enumerate(case.variants):
+            for row, key in enumerate(("dofs", "seconds")):
+                ax = axes[row][column]
+                for element in case.elements:
+                    found = [
+                        r
+                        for r in records
+                        if (r["element"], r["variant"]) == (element, variant) and "error" in r
+                    ]
+                    color, marker = LOOK[element]
+                    ax.loglog(
+                        [r[key] for r in found], [r["error"] for r in found], marker=marker,
+                        color=color, label=element, markersize=3.5, linewidth=1.1,
+                    )  # fmt: skip
+                ax.grid(True, which="major", alpha=0.3)
+                ax.set_xlabel("dofs" if key == "dofs" else "processor time [s]")
+                if row == 0:
+                    ax.set_title(variant)
+                if column == 0:
+                    ax.set_ylabel(case.quantity)
+        for line in axes:
+            plain_ticks(line)
+        axes[0][-1].legend(fontsize=7)
+        save(figure, path, dpi=100)
+
+
+def plain_ticks(row: Any) -> None:
+    """One range for all axes of a row, and ticks that stay apart where it is short."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low = min(ax.get_xlim()[0] for ax in row)
+    high = max(ax.get_xlim()[1] for ax in row)
+    steps = (1.0, 2.0, 5.0) if high / low < 30.0 else (1.0,)
+    for ax in row:
+        ax.set_xlim(low, high)
+        ax.xaxis.set_major_locator(LogLocator(subs=steps))
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        ax.xaxis.set_minor_formatter(NullFormatter())
+
+
+def cost(records: list[dict[str, Any]], error: float, key: str) -> float:
+    """Dofs or seconds at which a sequence of meshes reaches an error, by logarithmic interpolation.
+
+    NaN if none does, and if the first one does already: then that one's.
+    """
+    found = [r for r in records if "error" in r]
+    for before, after in zip([None, *found], found, strict=False):
+        if after["error"] <= error:
+            if before is None or before["error"] == after["error"]:
+                return float(after[key])
+            share = math.log(before["error"] / error) / math.log(before["error"] / after["error"])
+            return float(before[key] * (after[key] / before[key]) ** share)
+    return math.nan
+
+
+def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> str:
+    """Table of the errors on the finest mesh and of the cost of one per cent."""
+    rows: list[list[object]] = []
+    for variant in case.variants:
+        for element in case.elements:
+            found = [r for r in records if (r["element"], r["variant"]) == (element, variant)]
+            good = [r for r in found if "error" in r]
+            last = found[-1]
+            dofs, seconds = cost(found, error, "dofs"), cost(found, error, "seconds")
+            rows.append([
+                variant, element,
+                f"{good[0]['error']:.1e} ({good[0]['dofs']})" if good else "",
+                f"{last['error']:.1e} ({last['dofs']})" if "error" in last else "stopped",
+                f"{last['iterations']}" if "iterations" in last else "",
+                "not reached" if math.isnan(dofs) else f"{dofs:.0f}",
+                "" if math.isnan(seconds) else f"{seconds:.3f}",
+            ])  # fmt: skip
+    head = ("", "element", "coarsest: error (dofs)", "finest: error (dofs)", "iterations",
+            "dofs for 1 %", "CPU s for 1 %")  # fmt: skip
+    return table(head, rows)
+
+
+def marks(name: str) -> tuple[str, str]:
+    """Lines of the page between which a case's part is written."""
+    return f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+
+
+def write(case: Case, records: list[dict[str, Any]]) -> None:
+    """Put a case's description, figure and table between its marks in the page."""
+    begin, end = marks(case.name)
+    text = PAGE.read_text(encoding="utf-8")
+    if begin not in text:
+        raise SystemExit(f"{PAGE}: no line {begin!r}")
+    draw(case, records, IMAGES / f"comparison-{case.name}.png")
+    part = (
+        f"### {case.title}\n\n{case.about}\n\n"
+        f"![{case.title}](images/comparison-{case.name}.png)\n\n{tables(case, records)}\n"
+    )
+    head, rest = text.split(begin)
+    PAGE.write_text(f"{head}{begin}\n{part}\n{end}{rest.split(end)[1]}", encoding="utf-8")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--studies", nargs="+")
+    parser.add_argument("--cases", nargs="+")
+    parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} and its figures")
+    parser.add_argument("--redraw", action="store_true", help="run nothing, take what is kept")
+    args = parser.parse_args()
+    kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+    for case in cases():
+        if (args.studies and case.study not in args.studies) or (
+            args.cases and case.name not in args.cases
+        ):
+            continue
+        if not args.redraw:
+            kept[case.name] = run(case)
+            KEPT.parent.mkdir(parents=True, exist_ok=True)
+            KEPT.write_text(json.dumps(kept), encoding="utf-8")
+        if case.name not in kept:
+            continue
+        if args.write:
+            write(case, kept[case.name])
+        sys.stdout.write(f"\n### {case.title}\n\n{machine()}\n\n{tables(case, kept[case.name])}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
