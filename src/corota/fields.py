@@ -321,6 +321,9 @@ class Averaging:
 
 def cell_mean(block: PointFields, name: str) -> Floats:
     """Volume average over each cell of stored values, shape (n,) or (n, 4)."""
-    weight = block.volume / block.volume.sum(axis=1, keepdims=True)
+    whole = block.volume.sum(axis=1, keepdims=True)
+    # Springs have no volume.
+    weight = np.where(whole > 0.0, block.volume, 1.0)
+    weight = weight / weight.sum(axis=1, keepdims=True)
     values = block.values[name]
     return np.asarray(np.einsum("np,np...->n...", weight, values))

@@ -77,6 +77,8 @@ class Section:
     profile : tuple of float
         Numbers of line elements: area, second moment, shear area; of springs the stiffness and
         the dofs of both ends.
+    table : tuple of pairs of float
+        Elongation (or angle) and force of nonlinear springs, rising; empty for linear ones.
     mean_dilatation : bool
         Replace the volume strain by its mean over each element: no volumetric locking in plastic
         or nearly incompressible plane strain. Quadrilaterals in plane strain only.
@@ -96,8 +98,17 @@ class Section:
     mean_dilatation: bool = field(default=False, kw_only=True)
     beta0: float | None = field(default=None, kw_only=True)
     profile: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), kw_only=True)
+    table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
+        pairs = np.asarray(self.table, dtype=np.float64).reshape(-1, 2)
+        rising = (np.diff(pairs[:, 0]) > 0.0).all() and len(pairs) != 1
+        if not (np.isfinite(pairs).all() and rising):
+            raise InputError(
+                "a nonlinear spring needs at least two finite pairs of elongation and force, the "
+                "elongation rising",
+                self.where,
+            )
         if not (np.isfinite(self.thickness) and self.thickness > 0.0):
             raise InputError(f"the thickness must be > 0, not {self.thickness}", self.where)
         if self.mean_dilatation and self.plane != "strain":
@@ -289,23 +300,29 @@ class Model(InitialFields):
             )
         self._line(cells, "BEAM", material, (area, inertia, shear_area))
 
-    def spring(self, cells: str | ArrayLike, stiffness: float, dofs: str | None = None) -> None:
+    def spring(self, cells: str | ArrayLike, stiffness: ArrayLike, dofs: str | None = None) -> None:
         """Make lines or points springs.
 
         Parameters
         ----------
         cells : str or array_like of int, shape (n,)
             Two-node lines, or points for springs to the ground.
-        stiffness : float
-            Force per length, or moment per angle.
+        stiffness : float or array_like, shape (m, 2)
+            Force per length, or moment per angle; or pairs of elongation and force, with the
+            force constant outside.
         dofs : str, optional
             Fixed directions that the spring joins: ``"x"``, ``"y"`` or ``"theta"``, or two of
             them for the two nodes. By default it acts along the line of its nodes.
         """
         from corota.materials import Elastic
 
-        if not np.isfinite(stiffness):
-            raise InputError(f"the stiffness of a spring must be finite, not {stiffness}")
+        given = np.asarray(stiffness, dtype=np.float64)
+        if given.ndim not in (0, 2) or (given.ndim and given.shape[1] != 2):
+            raise InputError(f"a stiffness, or pairs of elongation and force, not {stiffness!r}")
+        if not np.isfinite(given).all():
+            raise InputError(f"the stiffness of a spring must be finite, not {stiffness!r}")
+        value = float(given) if given.ndim == 0 else 0.0
+        pairs = [] if given.ndim == 0 else given.tolist()
         name, ends = "SPRING", (0, 0)
         if dofs is not None:
             chosen = [DOFS[d] for d in dofs.split()]
@@ -314,8 +331,9 @@ class Model(InitialFields):
             every = self.mesh.cell_sets[found] if isinstance(found, str) else found
             kinds = {self.mesh.cells[self.mesh.locate(int(c))[0]].kind for c in every}
             name = ("SPRING1" if kinds == {"point1"} else "SPRING2") + "R" * (2 in ends)
+        table = tuple((e, f) for e, f in pairs)
         self.sections.append(
-            Section(self._cells(cells), name, Elastic(E=1.0), profile=(float(stiffness), *ends))
+            Section(self._cells(cells), name, Elastic(E=1.0), profile=(value, *ends), table=table)
         )
 
     def _line(

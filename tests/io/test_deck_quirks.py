@@ -52,9 +52,14 @@ def test_gmsh_lines_become_edges_and_nodes(tmp_path: Path) -> None:
     assert model.supports[0].nodes == "foot"
 
 
-def test_real_trusses_are_refused(tmp_path: Path) -> None:
-    text = GMSH + SECTION.replace("eall", "foot")
-    assert any("trusses" in d.message for d in faults(tmp_path, text))
+def test_a_set_of_lines_with_a_section_is_a_truss(tmp_path: Path) -> None:
+    text = GMSH + SECTION.replace("eall", "Surface1") + (
+        "*SOLID SECTION, ELSET=foot, MATERIAL=steel\n0.5\n"
+    )  # fmt: skip
+    model = read(tmp_path, text)
+    assert [(s.element, s.profile[0]) for s in model.sections[1:]] == [("TRUSS", 0.5)]
+    assert model.mesh.cell_sets["foot"].tolist() == [0]
+    assert model.mesh.edge_sets["Line3"].tolist() == [[2, 1]]
 
 
 def test_freecad_style(tmp_path: Path) -> None:

@@ -102,6 +102,38 @@ fn linear(xi: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
     ([0.5 * (1.0 - xi[0]), 0.5 * (1.0 + xi[0])], [[-0.5, 0.0], [0.5, 0.0]])
 }
 
+/// What bars of two nodes have in common: one point, a mass along the line, no strain operator.
+macro_rules! bar {
+    ($op:ident, $zero:expr) => {
+        type Op<T: Real> = $op<T, 2>;
+        type Prepared<T: Real> = ();
+
+        fn rule() -> Vec<[f64; 3]> {
+            vec![[0.0, 0.0, 2.0]]
+        }
+        fn mass_rule() -> Vec<[f64; 3]> {
+            two_points()
+        }
+        fn shape(xi: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+            linear(xi)
+        }
+        #[inline(always)]
+        fn measure<T: Real>(x: &Nodal<T, 2, 2>, point: &Point<2>) -> T {
+            axis(x).1.scale(0.5 * point.weight)
+        }
+        #[inline(always)]
+        fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64) {}
+        #[inline(always)]
+        fn sample<T: Real>(
+            x: &Nodal<T, 2, 2>,
+            (): &(),
+            point: &Point<2>,
+        ) -> Sample<T, $op<T, 2>, 0> {
+            Sample { op: $op([$zero; 2]), modes: [], weight: Self::measure(x, point) }
+        }
+    };
+}
+
 /// Bar of two nodes that carries an axial force only. Profile: area.
 #[derive(Clone, Copy)]
 pub struct Truss;
@@ -111,29 +143,8 @@ impl Element<2, 2, 0> for Truss {
     const CELL: &'static str = "line2";
     const LINE: bool = true;
     const OUTPUTS: &'static [&'static str] = &["N"];
-    type Op<T: Real> = Grad<T, 2>;
-    type Prepared<T: Real> = ();
+    bar!(Grad, [T::zero(); 2]);
 
-    fn rule() -> Vec<[f64; 3]> {
-        vec![[0.0, 0.0, 2.0]]
-    }
-    fn mass_rule() -> Vec<[f64; 3]> {
-        two_points()
-    }
-    fn shape(xi: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
-        linear(xi)
-    }
-    #[inline(always)]
-    fn measure<T: Real>(x: &Nodal<T, 2, 2>, point: &Point<2>) -> T {
-        axis(x).1.scale(0.5 * point.weight)
-    }
-    #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64) {}
-    #[inline(always)]
-    fn sample<T: Real>(x: &Nodal<T, 2, 2>, (): &(), point: &Point<2>) -> Sample<T, Grad<T, 2>, 0> {
-        let op = Grad([[T::zero(); 2]; 2]);
-        Sample { op, modes: [], weight: Self::measure(x, point) }
-    }
     #[inline(always)]
     fn law_into<T: Real>(
         x: &Nodal<T, 2, 2>,
@@ -202,29 +213,8 @@ impl Element<2, 3, 0> for Beam {
     const CELL: &'static str = "line2";
     const LINE: bool = true;
     const OUTPUTS: &'static [&'static str] = &["N", "V", "M1", "M2"];
-    type Op<T: Real> = Full<T, 2>;
-    type Prepared<T: Real> = ();
+    bar!(Full, [[T::zero(); 4]; 3]);
 
-    fn rule() -> Vec<[f64; 3]> {
-        vec![[0.0, 0.0, 2.0]]
-    }
-    fn mass_rule() -> Vec<[f64; 3]> {
-        two_points()
-    }
-    fn shape(xi: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
-        linear(xi)
-    }
-    #[inline(always)]
-    fn measure<T: Real>(x: &Nodal<T, 2, 2>, point: &Point<2>) -> T {
-        axis(x).1.scale(0.5 * point.weight)
-    }
-    #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64) {}
-    #[inline(always)]
-    fn sample<T: Real>(x: &Nodal<T, 2, 2>, (): &(), point: &Point<2>) -> Sample<T, Full<T, 2>, 0> {
-        let op = Full([[[T::zero(); 4]; 3]; 2]);
-        Sample { op, modes: [], weight: Self::measure(x, point) }
-    }
     #[inline(always)]
     fn law_into<T: Real>(
         x: &Nodal<T, 2, 2>,
@@ -268,6 +258,48 @@ impl Element<2, 3, 0> for Beam {
     }
 }
 
+/// Force and stiffness of a spring: linear, or along the section's table, constant outside.
+#[inline(always)]
+fn spring<T: Real, const N: usize>(section: &Section<N>, e: T) -> (T, T) {
+    let Some(first) = section.table.first() else {
+        let k = T::real(section.profile[0]);
+        return (k * e, k);
+    };
+    let (mut force, mut stiffness) = (T::real(first[1]), T::zero());
+    for pair in section.table.windows(2) {
+        let ([e0, f0], [e1, f1]) = (pair[0], pair[1]);
+        let slope = T::real((f1 - f0) / (e1 - e0));
+        let way = T::real(e1).lt(e);
+        let way = T::select(way, T::real(e1), e) - T::real(e0);
+        let behind = way.lt(T::zero());
+        force = T::select(behind, T::zero(), way).fma(slope, force);
+        let inside = T::select(e.lt(T::real(e1)), slope, T::zero());
+        stiffness += T::select(behind, T::zero(), inside);
+    }
+    (force, stiffness)
+}
+
+/// Resultants of a spring with an elongation.
+fn spring_resultants<const N: usize>(section: &Section<N>, e: f64) -> Resultants {
+    let force = spring(section, e).0;
+    // Work from no elongation: the table's own integral from there.
+    let energy = match section.table.first() {
+        None => 0.5 * force * e,
+        Some(first) => {
+            let integral = |x: f64| {
+                let segments = section.table.windows(2).map(|pair| {
+                    let ([e0, f0], [e1, f1]) = (pair[0], pair[1]);
+                    let way = (x - e0).clamp(0.0, e1 - e0);
+                    (f1 - f0) / (e1 - e0) * way * (0.5 * way + (x - e1).max(0.0))
+                });
+                first[1] * x + segments.sum::<f64>()
+            };
+            integral(e) - integral(0.0)
+        }
+    };
+    Resultants { outputs: [force, 0.0, 0.0, 0.0], energy, ..Resultants::default() }
+}
+
 /// Spring along the line between two nodes. Profile: stiffness [force/length].
 #[derive(Clone, Copy)]
 pub struct Spring;
@@ -309,8 +341,8 @@ impl Element<2, 2, 0> for Spring {
         out: &mut Local<T, 2, 2>,
     ) {
         let row = stretch::<T, 2>(axis(x).0);
-        let k = T::real(section.profile[0]);
-        add(out, &row, k * apply(&row, q), &[(k, &row)], tangent);
+        let (force, k) = spring(section, apply(&row, q));
+        add(out, &row, force, &[(k, &row)], tangent);
     }
     fn resultants(
         x: &Nodal<f64, 2, 2>,
@@ -320,9 +352,7 @@ impl Element<2, 2, 0> for Spring {
     ) -> Resultants {
         let t = axis(x).0;
         let e = apply(&stretch::<f64, 2>(t), q);
-        let force = section.profile[0] * e;
-        let outputs = [force, 0.0, 0.0, 0.0];
-        Resultants { outputs, axis: t, energy: 0.5 * force * e, ..Resultants::default() }
+        Resultants { axis: t, ..spring_resultants(section, e) }
     }
 }
 
@@ -387,8 +417,8 @@ macro_rules! dof_spring {
                 out: &mut Local<T, $n, $m>,
             ) {
                 let row = Self::row::<T>(section);
-                let k = T::real(section.profile[0]);
-                add(out, &row, k * apply(&row, q), &[(k, &row)], tangent);
+                let (force, k) = spring(section, apply(&row, q));
+                add(out, &row, force, &[(k, &row)], tangent);
             }
             fn resultants(
                 _: &Nodal<f64, $n, 2>,
@@ -396,10 +426,7 @@ macro_rules! dof_spring {
                 section: &Section<$n>,
                 _: f64,
             ) -> Resultants {
-                let e = apply(&Self::row::<f64>(section), q);
-                let force = section.profile[0] * e;
-                let outputs = [force, 0.0, 0.0, 0.0];
-                Resultants { outputs, energy: 0.5 * force * e, ..Resultants::default() }
+                spring_resultants(section, apply(&Self::row::<f64>(section), q))
             }
         }
     };

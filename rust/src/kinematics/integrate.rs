@@ -36,6 +36,8 @@ pub struct Section<const N: usize> {
     pub thickness: f64,
     /// Numbers of line elements, see each.
     pub profile: [f64; 3],
+    /// Pairs of elongation and force of nonlinear springs, rising; empty for linear ones.
+    pub table: Vec<[f64; 2]>,
     /// [`Element::parameter`] of the law's moduli.
     pub parameter: f64,
     /// Whether the trace of the gradient is its mean over the element.

@@ -11,6 +11,9 @@ use std::slice::from_ref;
 /// No multiple of any width, so that the last batch has idle lanes.
 const ELEMENTS: usize = 13;
 
+/// A nonlinear spring: pairs of elongation and force.
+const TABLE: [[f64; 2]; 3] = [[-0.2, -0.1], [0.0, 0.05], [0.3, 0.4]];
+
 /// Moduli of the material whose answer comes from outside, by rows.
 const GIVEN: [f64; 9] = [1100.0, 330.0, 0.0, 330.0, 1100.0, 0.0, 0.0, 0.0, 385.0];
 
@@ -118,6 +121,7 @@ fn case(facts: &Facts, law: &str, strain: &str, turning: bool) -> Case {
         local_strain: strain.into(),
         thickness: 0.7,
         profile: [0.7, 0.1, 0.4],
+        table: if strain == "logarithmic" { TABLE.to_vec() } else { Vec::new() },
         rho: 1.0,
         options: super::problem::Options::default(),
         nodes: (0..x.len() as u32).collect(),
@@ -134,6 +138,9 @@ impl Case {
         if self.input.law == "given" {
             problem.give(0, &given(ELEMENTS * problem.blocks[0].facts.n_points)).unwrap();
         }
+        let values = 4 * ELEMENTS * problem.blocks[0].facts.n_points;
+        let initial: Vec<f64> = (0..values).map(|i| 0.01 * (i as f64).sin()).collect();
+        problem.set_initial(0, &initial).unwrap();
         let (n, nnz) = (problem.dofs.n_dofs(), problem.dofs.indices.len());
         let mut failed = Vec::new();
         let mut answers = Vec::new();

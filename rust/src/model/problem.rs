@@ -30,6 +30,8 @@ pub struct BlockInput {
     pub thickness: f64,
     /// Section numbers of line elements.
     pub profile: [f64; 3],
+    /// Pairs of elongation and force of nonlinear springs.
+    pub table: Vec<[f64; 2]>,
     pub rho: f64,
     pub options: Options,
     /// Node indices, element by element.
@@ -430,6 +432,7 @@ fn build(
             law: law.clone(),
             plane: input.plane,
             profile: input.profile,
+            table: input.table.clone(),
             mean_dilatation: input.options.mean_dilatation,
             finite: true,
         };

@@ -27,6 +27,7 @@ fn sheet(n: usize, shuffled: bool) -> Problem {
         local_strain: "modified".into(),
         thickness: 1.0,
         profile: [0.0; 3],
+        table: Vec::new(),
         rho: 1.0,
         options: Options::default(),
         nodes: (0..n * n).flat_map(cell).collect(),

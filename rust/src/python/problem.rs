@@ -36,7 +36,7 @@ impl PyProblem {
     ///
     /// ``points`` (n, 2); ``blocks`` a list of dicts with element, law, parameters, plane,
     /// local_strain, thickness, rho, nodes (flat uint32), and
-    /// where wanted profile (3 numbers), mean_dilatation (bool) and beta0 (float or None); ``extra_dofs`` (n,) uint8 or empty.
+    /// where wanted profile (3 numbers), table (pairs), mean_dilatation (bool) and beta0 (float or None); ``extra_dofs`` (n,) uint8 or empty.
     #[new]
     fn new(
         points: PyReadonlyArray2<'_, f64>,
@@ -62,6 +62,10 @@ impl PyProblem {
                 profile: match d.get_item("profile")? {
                     Some(v) => v.extract()?,
                     None => [0.0; 3],
+                },
+                table: match d.get_item("table")? {
+                    Some(v) => v.extract()?,
+                    None => Vec::new(),
                 },
                 rho: get("rho")?.extract()?,
                 options: Options {

@@ -149,6 +149,7 @@ where
         strain,
         thickness: 1.3,
         profile: [0.0; 3],
+        table: Vec::new(),
         parameter: E::parameter(&law.moduli()),
         law,
         finite: true,

@@ -29,6 +29,7 @@ fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(ca
         plane: Plane::Stress,
         thickness: number("thickness"),
         profile: [0.0; 3],
+        table: Vec::new(),
         parameter: E::parameter(&law.moduli()),
         law,
         mean_dilatation: false,

@@ -79,7 +79,7 @@ def make_parser() -> Parser:
 
     plot = command("plot", "Draw pictures of results (.vtkhdf), or of a model with --model.")
     plot.add_argument("file", help="result file, or deck or mesh with --model")
-    plot.add_argument("-o", "--output", metavar="FILE", help="picture: .png .svg .pdf, or .gif")
+    plot.add_argument("-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4")
     plot.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
     plot.add_argument("--frame", type=int, default=-1, help="frame from 0; -1 is the last")
     plot.add_argument("--scale", type=float, default=1.0, help="factor of the displacements")
@@ -91,7 +91,7 @@ def make_parser() -> Parser:
         metavar="X,Y",
         help="a curve, such as 'U2@TIP,load factor'",
     )
-    plot.add_argument("--animate", action="store_true", help="all frames as a GIF")
+    plot.add_argument("--animate", action="store_true", help="all frames as a GIF or MP4")
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
 
     info = command("info", "Describe a deck, a mesh or a result file.")

@@ -129,12 +129,15 @@ class Corrected:
         Residuals, the first before the first correction.
     reason : str
         Why it was not found.
+    singular : SingularError or None
+        Set where a tangent on the way had no inverse.
     """
 
     point: Point | None
     iterations: int = 0
     sizes: list[float] = field(default_factory=list)
     reason: str = ""
+    singular: SingularError | None = None
 
 
 def correct(
@@ -201,7 +204,7 @@ def correct(
         try:
             x, _ = system.correct(at, np.asfortranarray(rhs), np.asfortranarray(held))
         except SingularError as error:
-            done.reason = str(error)
+            done.reason, done.singular = str(error), error
             return done
         change = control.change(u - base.u, factor - base.factor, x[:, 0], x[:, 1])
         if change is None or not np.isfinite(x).all():

@@ -344,6 +344,8 @@ class Follower:
             weight = self.metric.length if self.plan.spherical else 0.0
             control = Arc(math.hypot(moved, weight * share * df), self.system.counted, weight)
             done = self._solve(guess, control, share)
+            if done.singular is not None:
+                raise done.singular
             if done.point is None:
                 return None
             tangent, _ = tangent_at(self.system, done.point, self.metric)

@@ -7,6 +7,7 @@ are numbered as in the system; displacements are along the axes of the nodes.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Relation:
+class Relation(ABC):
     """What all relations have.
 
     Parameters
@@ -44,13 +45,13 @@ class Relation:
     #: Whether rotations are finite.
     turning = True
 
+    @abstractmethod
     def values(self, u: Floats) -> Floats:
         """Dependents at `u`, shape (d,)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def jacobian(self, u: Floats) -> Floats:
         """Derivative of the dependents by the masters at `u`, shape (d, m)."""
-        raise NotImplementedError
 
     def bend(self, u: Floats, force: Floats) -> Floats:
         """Second derivative of ``force . dependents`` by the masters, shape (m, m)."""

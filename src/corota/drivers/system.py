@@ -118,6 +118,7 @@ class System:
                 "local_strain": b.section.local_strain,
                 "thickness": float(b.section.thickness),
                 "profile": [float(v) for v in b.section.profile],
+                "table": [[float(v) for v in pair] for pair in b.section.table],
                 "rho": float(b.section.material.rho),
                 "mean_dilatation": b.section.mean_dilatation,
                 "beta0": b.section.beta0,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic, Location
-from corota.io.inp_elements import ELEMENTS, LINES
+from corota.io.inp_elements import COMPANIONS, ELEMENTS, LINES
 from corota.io.inp_lexer import key
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
@@ -93,7 +93,9 @@ class MeshBuilder:
     turned : ndarray of bool, shape (n_cells,)
         Cells given clockwise.
     line_nodes : list of ndarray of int
-        Nodes of each line element.
+        Nodes of each line element that is no truss.
+    twin : ndarray of int, shape (n_cells,)
+        Second half of a beam of three nodes, -1 for others.
     """
 
     def __init__(self, deck: Deck) -> None:
@@ -106,6 +108,8 @@ class MeshBuilder:
         self.cell_type: Ints = np.zeros(0, np.int64)
         self.turned = np.zeros(0, bool)
         self.line_nodes: list[Ints] = []
+        self.twin: Ints = np.zeros(0, np.int64)
+        self._halves: list[tuple[View, Ints, Ints]] = []
 
     def build(self) -> Mesh:
         """Nodes and cells, without sets."""
@@ -221,12 +225,20 @@ class MeshBuilder:
             view.cell_offset = self._offset(view, own, largest, "elements")
             largest = max(largest, int(own.max()) + view.cell_offset)
             line_labels, line_rows = [], []
+            trusses = _truss_labels(view.scope)
             for block in blocks:
                 nodes = view.nodes(block.nodes)
                 good = self._known(block, nodes)
                 if repeated is not None:
                     good &= ~np.isin(block.labels, repeated)
+                if block.type in COMPANIONS:
+                    placed += self._companions(view, block, nodes, good)
+                    continue
                 if block.type in LINES:
+                    truss = good & np.isin(block.labels, trusses)
+                    good &= ~truss
+                    if truss.any():
+                        placed += self._trusses(view, block, nodes, truss)
                     for at in np.flatnonzero(good):
                         line_labels.append(int(block.labels[at]))
                         line_rows.append(len(self.line_nodes))
@@ -261,6 +273,38 @@ class MeshBuilder:
         if not placed:
             self.deck.error(None, None, "the deck has no elements")
         return placed
+
+    def _trusses(self, view: View, block: ElementBlock, nodes: Ints, mine: Ints) -> list[Placed]:
+        if LINES[block.type] != 2:
+            at = int(np.flatnonzero(mine)[0])
+            self._block_fault(block, at, f"trusses have two nodes here; use {block.type[:-1]}2")
+            return []
+        rows = mine & self._distinct(block, nodes)
+        still = np.zeros(int(rows.sum()), np.int64)
+        return [Placed("line2", nodes[rows], block.labels[rows], still, view, block)]
+
+    def _companions(self, view: View, block: ElementBlock, nodes: Ints, good: Ints) -> list[Placed]:
+        """Cells of beams and springs; beams of three nodes become two."""
+        info = COMPANIONS[block.type]
+        if block.nodes.shape[1] > 1:
+            good = good & self._distinct(block, nodes)
+        nodes, labels = nodes[good], block.labels[good]
+        still = np.zeros(len(labels), np.int64)
+        if info.n_nodes < 3:
+            return [Placed(info.kind, nodes, labels, still, view, block)]
+        if not len(labels):
+            return []
+        every = np.concatenate([b.labels for b in view.scope.elements])
+        second = labels + 10 ** len(str(int(every.max())))
+        self.deck.note(
+            f"{block.type} elements are two beams of two nodes each; the second has a number from "
+            f"{int(second.min())} on"
+        )
+        self._halves.append((view, labels, second))
+        return [
+            Placed(info.kind, nodes[:, :2], labels, still, view, block),
+            Placed(info.kind, nodes[:, 1:], second, still, view, block),
+        ]
 
     def _repeated(self, blocks: list[ElementBlock], labels: Ints) -> Ints | None:
         order = np.argsort(labels, kind="stable")
@@ -323,6 +367,9 @@ class MeshBuilder:
                 view.cells = Lookup(
                     np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
                 )
+        self.twin = np.full(start, -1, np.int64)
+        for view, first, second in self._halves:
+            self.twin[view.cells(first)] = view.cells(second)
 
     def _block_fault(self, block: ElementBlock, row: int, text: str) -> None:
         where = Location(block.file, int(block.lines[row]))
@@ -334,6 +381,30 @@ class MeshBuilder:
     def _more(self, count: int, text: str) -> None:
         if count > MAX_LISTED:
             self.deck.error(None, None, f"{count} {text}; the first {MAX_LISTED} are listed")
+
+
+def _truss_labels(scope: Scope) -> Ints:
+    """Line elements of sets that hold nothing else and have a section: trusses."""
+    none = np.zeros(0, np.int64)
+    curves = [none, *(b.labels for b in scope.elements if b.type in LINES)]
+    every = np.concatenate(curves)
+
+    def labels(name: str, depth: int) -> Ints:
+        named = scope.elsets.get(key(name))
+        if named is None or depth > 50:
+            return none
+        parts = [none]
+        for entry in named.entries:
+            own = not entry.name or entry.name.startswith("@")
+            parts.append(entry.labels if own else labels(entry.name, depth + 1))
+        return np.concatenate(parts)
+
+    found = [none]
+    for section in scope.sections:
+        members = labels(section.elset, 0)
+        if len(members) and np.isin(members, every).all():
+            found.append(members)
+    return np.concatenate(found)
 
 
 def view_of(views: list[View], target: str) -> tuple[View, str] | None:

@@ -14,9 +14,10 @@ from corota.io.inp_build_materials import build_material
 from corota.io.inp_build_mesh import MeshBuilder, View, view_of
 from corota.io.inp_build_sets import Elements, Sets
 from corota.io.inp_build_ties import build_ties
+from corota.io.inp_cards_lines import build_lines, truss_section
 from corota.io.inp_cards_thermal import build_initial, build_temperature
 from corota.io.inp_deck import nearest
-from corota.io.inp_elements import DRILLING, ELEMENTS
+from corota.io.inp_elements import COMPANIONS, DRILLING, ELEMENTS, LINES
 from corota.io.inp_lexer import key
 from corota.model import BodyForce, EdgeLoad, Fixed, InitialVelocity, Model, NodalForce, Section
 from corota.steps import Static
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints
     from corota.model import Load
     from corota.steps import Step
+
+#: Cards that give beams and springs their section.
+SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
 
 
 class ModelBuilder:
@@ -60,6 +64,7 @@ class ModelBuilder:
             step = self._step(draft)
             if step is not None:
                 model.steps.append(step)
+        self.sets.judge_missing(self._names_used())
         model.time_points = deck.time_points
         model.title = " ".join(deck.heading)
         self._move_supports()
@@ -76,9 +81,19 @@ class ModelBuilder:
             self.meshes.views[0], draft.target, draft.row.at(0), draft.card, draft.row.text
         )
 
+    def _names_used(self) -> set[str]:
+        """Keys of the names that supports, loads and constraints use."""
+        deck = self.deck
+        drafts = deck.supports + deck.velocities + [item.draft for item in deck.initial]
+        drafts += [d for step in deck.steps for d in step.supports + step.loads]
+        drafts += [d for tie in deck.ties for d in (*tie.terms, tie.target) if d is not None]
+        return {key(d.target) for d in drafts} | {key(tie.surface) for tie in deck.ties}
+
     def _unused(self) -> None:
         deck = self.deck
-        used = {key(s.material) for v in self.meshes.views for s in v.scope.sections}
+        scopes = [view.scope for view in self.meshes.views]
+        used = {key(s.material) for scope in scopes for s in scope.sections}
+        used |= {key(s.material) for scope in scopes for s in scope.lines}
         for name, material in deck.materials.items():
             if name not in used and self.model.sections:
                 deck.note(f"{material.card.where}: material {material.name} is not used")
@@ -101,7 +116,8 @@ class ModelBuilder:
                 self.deck.error(
                     card,
                     card.at("ELSET"),
-                    f"{draft.elset} holds line elements only; trusses are not part of this version",
+                    f"{draft.elset} holds line elements of curves only",
+                    hint="for trusses, put the set and the section beside the elements",
                 )
                 continue
             taken = found.cells[owner[found.cells] >= 0]
@@ -125,13 +141,14 @@ class ModelBuilder:
             material = materials[key(draft.material)]
             if material is not None:
                 self._section(view, draft, found.cells, material)
-        bare = np.flatnonzero(owner < 0)
+        build_lines(self.deck, self.model, self.meshes, self.sets, materials, self.rotating, owner)
+        bare = np.flatnonzero(owner == -1)
         if len(bare) and (drafts or self.deck.steps):
             label = self.mesh.cell_labels[bare[0]]
             more = f" and {len(bare) - 1} others have" if len(bare) > 1 else " has"
-            self.deck.error(
-                None, None, f"element {label}{more} no *SOLID SECTION", hint="give it one"
-            )
+            companion = COMPANIONS.get(self.meshes.types[self.meshes.cell_type[bare[0]]])
+            wanted = SECTION_CARDS[companion.role] if companion else "*SOLID SECTION"
+            self.deck.error(None, None, f"element {label}{more} no {wanted}", hint="give it one")
 
     def _section(self, view: View, draft: SectionDraft, cells: Ints, material: Material) -> None:
         deck, card = self.deck, draft.card
@@ -154,7 +171,16 @@ class ModelBuilder:
         groups: dict[tuple[str, str], list[Ints]] = {}
         types = self.meshes.cell_type[cells]
         for code in np.unique(types):
-            info = ELEMENTS[self.meshes.types[code]]
+            name = self.meshes.types[code]
+            if name in LINES:
+                truss = truss_section(deck, draft, cells[types == code], material)
+                self.model.sections += [truss] if truss else []
+                continue
+            if name in COMPANIONS:
+                wanted = SECTION_CARDS[COMPANIONS[name].role]
+                deck.error(card, card.at("ELSET"), f"elements of type {name} take {wanted}")
+                continue
+            info = ELEMENTS[name]
             if draft.plane and info.plane and draft.plane != info.plane:
                 deck.error(
                     card,

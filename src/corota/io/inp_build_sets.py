@@ -48,6 +48,7 @@ class Sets:
     def __init__(self, builder: MeshBuilder, mesh: Mesh) -> None:
         self.deck, self.mesh, self.views = builder.deck, mesh, builder.views
         self.turned, self.line_nodes = builder.turned, builder.line_nodes
+        self.twin = builder.twin
         self.nsets: dict[str, tuple[View, NamedSet]] = {}
         self.elsets: dict[str, tuple[View, NamedSet]] = {}
         self.surfaces: dict[str, tuple[View, Surface]] = {}
@@ -60,6 +61,8 @@ class Sets:
             ):
                 for name, found in theirs.items():
                     mine[prefix + name] = (view, found)  # type: ignore[assignment]
+        #: Labels without nodes, by set: name, labels, place.
+        self.missing: list[tuple[str, Ints, Location]] = []
         self._nodes: dict[str, Ints | None] = {}
         self._elements: dict[str, Elements | None] = {}
         self._edges: dict[str, Ints] = {}
@@ -126,7 +129,8 @@ class Sets:
                 continue
             at = view_of(self.views, entry.name[1:] + "0") if entry.name else None
             nodes = (at[0] if at else view).nodes(entry.labels)
-            self._undefined(nodes, entry.labels, entry.where, "node", named.name)
+            # Programs leave such nodes out of a set; whether that is harmless depends on its use.
+            self.missing.append((named.name, entry.labels[nodes < 0], entry.where))
             parts.append(nodes[nodes >= 0])
         return _unique(np.concatenate(parts))
 
@@ -180,7 +184,13 @@ class Sets:
             self._undefined(known, entry.labels, entry.where, "element", named.name)
             cells.append(rows[rows >= 0])
             lines.append(curves[curves >= 0])
-        return Elements(_unique(np.concatenate(cells)), _unique(np.concatenate(lines)))
+        whole = self._with_halves(_unique(np.concatenate(cells)))
+        return Elements(whole, _unique(np.concatenate(lines)))
+
+    def _with_halves(self, cells: Ints) -> Ints:
+        """Cells with the second halves of beams of three nodes."""
+        twins = self.twin[cells] if len(self.twin) else _NONE
+        return _unique(np.concatenate([cells, twins[twins >= 0]]))
 
     def elements(
         self, view: View, target: str, where: Location, card: Card | None, text: str = ""
@@ -199,7 +209,7 @@ class Sets:
             label = np.array([int(found[1])])
             cells, lines = found[0].cells(label), found[0].lines(label)
             if cells[0] >= 0 or lines[0] >= 0:
-                return Elements(cells[cells >= 0], lines[lines >= 0])
+                return Elements(self._with_halves(cells[cells >= 0]), lines[lines >= 0])
             self.deck.error(card, where, f"element {target} is not defined", text=text)
             return None
         hint = nearest(target, [self.spelled(self.elsets, n) for n in self.elsets])
@@ -208,13 +218,31 @@ class Sets:
         )
         return None
 
+    def judge_missing(self, used: set[str]) -> None:
+        """Refuse undefined nodes in sets that supports, loads or constraints use.
+
+        Parameters
+        ----------
+        used : set of str
+            Keys of the names that they use.
+        """
+        for view in self.views:
+            for named in view.scope.nsets.values():
+                used = used | {key(entry.name) for entry in named.entries}
+        for name, labels, where in self.missing:
+            self._say_undefined(labels, where, "node", name, key(name) not in used)
+
     def _undefined(
         self, indices: Ints, labels: Ints, where: Location, what: str, name: str
     ) -> None:
-        bad = labels[indices < 0]
+        self._say_undefined(labels[indices < 0], where, what, name, False)
+
+    def _say_undefined(
+        self, bad: Ints, where: Location, what: str, name: str, harmless: bool
+    ) -> None:
         if len(bad):
             more = f" and {len(bad) - 1} others" if len(bad) > 1 else ""
-            say = self.deck.warning if self.deck.lenient else self.deck.error
+            say = self.deck.warning if self.deck.lenient or harmless else self.deck.error
             say(None, where, f"{what} {bad[0]}{more} in set {name}: not defined in the deck")
 
     def _node_surface(self, view: View, surface: Surface) -> Ints:

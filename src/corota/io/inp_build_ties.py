@@ -58,6 +58,9 @@ def _build(
         if nodes is not None:
             model.axes.append(LocalAxes(nodes, tie.angle, tie.centre, tie.where))
         return
+    if tie.kind == "same":
+        _same(model, find, rotating, tie)
+        return
     single = [_single(deck, find, term) for term in tie.terms]
     if None in single:
         return
@@ -85,6 +88,27 @@ def _build(
     name = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, name, tie.where))
     rotating[reference] = True
+
+
+def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) -> None:
+    """Equal displacements, and rotations where both have one, of pairs of nodes."""
+    assert tie.target is not None
+    pairs = []
+    for draft in (tie.target, tie.terms[0]):
+        found = find(draft)
+        if found is None:
+            return
+        pairs.append(model.mesh.nodes_of(found) if isinstance(found, str) else found)
+    first, second = pairs
+    if len(second) == 1:
+        second = np.broadcast_to(second, len(first))
+    if len(first) != len(second):
+        raise InputError(f"{len(first)} nodes cannot go with {len(second)} nodes", tie.where)
+    for a, b in zip(first.tolist(), second.tolist(), strict=True):
+        for dof in tie.dofs:
+            if a != b and (dof < 2 or (rotating[a] and rotating[b])):
+                terms = [(a, dof, 1.0), (b, dof, -1.0)]
+                model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
 def _single(deck: Deck, find: Find, draft: Draft) -> int | None:

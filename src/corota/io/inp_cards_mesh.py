@@ -21,7 +21,7 @@ from corota.io.inp_deck import (
     int_array,
     nearest,
 )
-from corota.io.inp_elements import ELEMENTS, LINES, UNSUPPORTED_ELEMENTS
+from corota.io.inp_elements import COMPANIONS, ELEMENTS, LINES, UNSUPPORTED_ELEMENTS
 from corota.io.inp_lexer import Card, Chunk, Row, key, split_row
 from corota.mesh.data import N_NODES
 
@@ -77,21 +77,27 @@ def _odd_rows(chunk: Chunk, odd: list[tuple[int, int]]) -> Iterator[Row]:
 
 
 def _node_row(deck: Deck, card: Card, row: Row) -> tuple[int, tuple[float, float, float]] | None:
-    odd = not 1 < len(row) < 5 and not (len(row) == 1 and not row.get(0))
-    if odd and deck.lenient:
-        said = "missing coordinates are zero" if len(row) < 2 else "fields after z are ignored"
-        deck.warning(card, row.where, said, text=row.text)
+    rest = [row.get(i) for i in range(4, len(row)) if row.get(i)]
+    if rest and (deck.lenient or all(_zero(text) for text in rest)):
+        deck.note(f"{row.where}: fields after z of a node are not used")
     else:
         deck.extra_fields(card, row, 4)
     label = _label(deck, card, row, "the node number")
     x = deck.real(card, row, 1, "x", 0.0)
     y = deck.real(card, row, 2, "y", 0.0)
     z = deck.real(card, row, 3, "z", 0.0)
-    if len(row) < 2 and not deck.lenient:
-        deck.row_error(card, row, 1, "coordinates are missing; expected number, x, y")
-    elif label is not None and x is not None and y is not None and z is not None:
+    if not any(row.get(i) for i in range(1, len(row))):
+        deck.note(f"{row.where}: a node without coordinates lies in the origin")
+    if label is not None and x is not None and y is not None and z is not None:
         return label, (x, y, z)
     return None
+
+
+def _zero(text: str) -> bool:
+    try:
+        return inp_numbers.real(text) == 0.0
+    except ValueError:
+        return False
 
 
 def element(deck: Deck, card: Card) -> None:
@@ -104,6 +110,8 @@ def element(deck: Deck, card: Card) -> None:
         size = N_NODES[ELEMENTS[type_].kind]
     elif type_ in LINES:
         size = LINES[type_]
+    elif type_ in COMPANIONS:
+        size = COMPANIONS[type_].n_nodes
     elif type_ in UNSUPPORTED_ELEMENTS:
         deck.error(
             card,
@@ -116,7 +124,7 @@ def element(deck: Deck, card: Card) -> None:
             card,
             card.at("TYPE"),
             f"unknown element type {inp_numbers.shown(name)}",
-            hint=nearest(type_, ELEMENTS) or "known: " + ", ".join(ELEMENTS),
+            hint=nearest(type_, [*ELEMENTS, *COMPANIONS]) or "known: " + ", ".join(ELEMENTS),
         )
         return
     labels_of_card = []

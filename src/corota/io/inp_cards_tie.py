@@ -23,8 +23,8 @@ PLANAR = {1: 0, 2: 1, 6: 2}
 class TieDraft:
     """One constraint as written.
 
-    ``kind`` is ``equation``, ``kinematic``, ``distributing`` or ``axes``. ``terms`` holds the
-    terms of an equation; the first one the reference node of a coupling.
+    ``kind`` is ``equation``, ``kinematic``, ``distributing``, ``same`` or ``axes``. ``terms``
+    holds the terms of an equation; the first one the reference node of a coupling.
     """
 
     kind: str
@@ -162,25 +162,31 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 
 
 def mpc(deck: Deck, card: Card) -> None:
-    """``*MPC``: ``BEAM``, first node, second node: the first one rides on the second."""
+    """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets; ``PLANE`` holds by itself."""
     for row in card.rows():
         type_ = key(row.get(0))
-        if type_ != "BEAM":
+        if type_ == "PLANE":
+            deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
+            continue
+        if type_ not in ("BEAM", "PIN", "TIE"):
             deck.row_error(
                 card,
                 row,
                 0,
                 f"MPC type {row.get(0)!r} is not supported",
-                "write *EQUATION, *RIGID BODY or *COUPLING",
+                "BEAM, PIN, TIE and PLANE are; or write *EQUATION, *RIGID BODY or *COUPLING",
             )
             continue
         deck.extra_fields(card, row, 3)
         if not row.get(1) or not row.get(2):
             deck.row_error(card, row, 1, "two nodes are expected")
             continue
-        tie = TieDraft("kinematic", card, row.where, ready=True)
-        tie.terms = [Draft("node", card, row, row.get(2), (0.0,))]
-        tie.target = Draft("set", card, row, row.get(1), (0.0,))
+        follows = Draft("set", card, row, row.get(1), (0.0,))
+        leads = Draft("node", card, row, row.get(2), (0.0,))
+        kind = "kinematic" if type_ == "BEAM" else "same"
+        tie = TieDraft(kind, card, row.where, [leads], follows, ready=True)
+        if type_ == "PIN":
+            tie.dofs = (0, 1)
         deck.ties.append(tie)
 
 

@@ -16,6 +16,7 @@ from corota.io.inp_lexer import Card, Row, key
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from corota.io.inp_cards_lines import LineDraft
     from corota.io.inp_cards_tie import TieDraft
     from corota.materials import Expansion
     from corota.mesh.data import Floats, Ints
@@ -207,6 +208,7 @@ class Scope:
     elsets: dict[str, NamedSet] = field(default_factory=dict)
     surfaces: dict[str, Surface] = field(default_factory=dict)
     sections: list[SectionDraft] = field(default_factory=list)
+    lines: list[LineDraft] = field(default_factory=list)
     orientations: dict[str, float] = field(default_factory=dict)
 
 

@@ -45,22 +45,39 @@ ELEMENTS: dict[str, DeckElement] = {
 #: Elements that have rotations at their nodes.
 DRILLING = ("OPT", "Q4D")
 
-#: Line elements that mesh generators write for curves, with their number of nodes.
+#: Line elements that mesh generators write for curves, with their number of nodes; trusses
+#: where a section names them.
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3}
 
-_BEAM = "beams are not part of this version; model the part with planar elements"
+
+@dataclass(frozen=True, slots=True)
+class Companion:
+    """Kind of the cells, number of nodes in the deck, and the section it takes."""
+
+    kind: str
+    n_nodes: int
+    role: str
+
+
+#: Beams and springs; beams of three nodes become two of two.
+COMPANIONS: dict[str, Companion] = {
+    **dict.fromkeys(("B21", "B23", "B31", "B31R", "B33"), Companion("line2", 2, "beam")),
+    **dict.fromkeys(("B22", "B32", "B32R"), Companion("line2", 3, "beam")),
+    **dict.fromkeys(("SPRINGA", "SPRING2"), Companion("line2", 2, "spring")),
+    "SPRING1": Companion("point1", 1, "spring"),
+}  # fmt: skip
+
 _AXI = "axisymmetric models are not part of this version"
 _SOLID = "only planar models are computed; use CPS* or CPE* elements"
 UNSUPPORTED_ELEMENTS: dict[str, str] = {
-    **dict.fromkeys(("B21", "B22", "B23", "B31", "B31R", "B32", "B32R"), _BEAM),
     **dict.fromkeys(("CAX3", "CAX4", "CAX4R", "CAX4I", "CAX6", "CAX8", "CAX8R"), _AXI),
     **dict.fromkeys(
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
     **dict.fromkeys(("M3D3", "M3D4", "M3D4R", "M3D6", "M3D8", "M3D8R"), _SOLID),
     **dict.fromkeys(
-        ("SPRINGA", "SPRING1", "SPRING2", "DASHPOTA", "GAPUNI", "MASS", "DCOUP3D", "ROTARYI"),
-        "springs, dashpots, gaps and point masses are not part of this version",
+        ("DASHPOTA", "GAPUNI", "MASS", "DCOUP3D", "ROTARYI"),
+        "dashpots, gaps and point masses of decks are not part of this version",
     ),
     **dict.fromkeys(
         ("CPS4H", "CPE4H", "CPE4RH", "CPE4IH", "CPE8H", "CPE8RH", "CPE3H", "CPE6H"),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from corota.io import inp_cards_assembly as assembly
 from corota.io import inp_cards_dynamic as dynamic
+from corota.io import inp_cards_lines as lines
 from corota.io import inp_cards_material as material
 from corota.io import inp_cards_mesh as mesh
 from corota.io import inp_cards_output as output
@@ -77,11 +78,18 @@ KEYWORDS: dict[str, Keyword] = {
     "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
     "SOLIDSECTION": Keyword(
         material.solid_section, "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION",
-        "CONTROLS", place="model",
+        "CONTROLS OFFSET", place="model",
     ),
     "SHELLSECTION": Keyword(
         material.shell_section, "ELSET MATERIAL ORIENTATION LOCALSTRAIN", "OFFSET", place="model"
     ),
+    "BEAMSECTION": Keyword(
+        lines.beam_section, "ELSET MATERIAL SECTION OFFSET1 OFFSET2", place="model"
+    ),
+    "BEAMGENERALSECTION": Keyword(
+        lines.beam_general_section, "ELSET SECTION DENSITY OFFSET1 OFFSET2", place="model"
+    ),
+    "SPRING": Keyword(lines.spring, "ELSET NONLINEAR", place="model"),
     "ORIENTATION": Keyword(material.orientation, "NAME SYSTEM", "DEFINITION", place="model"),
     "AMPLITUDE": Keyword(step.amplitude, "NAME TIME SHIFTX SHIFTY DEFINITION VALUE"),
     "TIMEPOINTS": Keyword(step.time_points, "NAME TIME GENERATE"),
@@ -149,7 +157,7 @@ _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTIN
 _HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _PLASTIC = "the material laws are *ELASTIC and *PLASTIC; use these"
 _PROCEDURE = "this procedure is not part of this version"
-_LINE = "only planar solids are part of this version; use CPS* or CPE* elements"
+_LINE = "only planar solids, trusses, beams and springs are part of this version"
 
 #: Cards that change the answer and are refused by name.
 UNSUPPORTED: dict[str, str] = {
@@ -193,8 +201,8 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "BEAMSECTION", "BEAMGENERALSECTION", "MEMBRANESECTION", "FLUIDSECTION", "SPRING",
-            "DASHPOT", "MASS", "USERELEMENT", "USERSECTION", "ROTARYINERTIA", "TRUSSSECTION",
+            "MEMBRANESECTION", "FLUIDSECTION", "DASHPOT", "MASS", "USERELEMENT", "USERSECTION",
+            "ROTARYINERTIA", "TRUSSSECTION",
         ),
         _LINE,
     ),
@@ -242,6 +250,8 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SHELLSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
+    ("SPRING", "ORIENTATION"): "give the springs global directions",
+    ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
     ("ELASTIC", "DEPENDENCIES"): "constants that depend on fields are not part of this version",
 }
 

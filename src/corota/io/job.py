@@ -202,6 +202,11 @@ class JobFiles(Silent):
         results.info["seconds held by output"] = profile.get("write", 0.0)
         profile["write"] = self.seconds
         self._finish(lambda: self._events.end(results, error))
+        if results.modes and "vtkhdf" in self._formats:
+            from corota.io.modes import write_modes
+
+            path = self._path(self.name or self.model.name, "modes.vtkhdf")
+            self._finish(lambda: write_modes(results, path))
         self.close(results.info)
         if self.error is not None and error is None:
             raise self.error

@@ -13,7 +13,9 @@ import numpy as np
 
 from corota import fields as vf
 from corota.errors import FileError, InputError
+from corota.io.vtkhdf import VTK_TYPES
 from corota.mesh import Cells, Mesh
+from corota.mesh.data import N_NODES
 from corota.model import Model
 from corota.results import Frame, PointFields, Results
 
@@ -26,8 +28,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-_KINDS = {5: "tri3", 22: "tri6", 9: "quad4", 23: "quad8", 28: "quad9"}
-_SIZES = {"tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8, "quad9": 9}
+_KINDS = {number: kind for kind, number in VTK_TYPES.items()}
 #: Scalars of a frame that are its own attributes.
 _OWN = ("step", "increment", "time", "step time", "load factor")
 
@@ -241,7 +242,7 @@ class StoredResults(Results):
 
 
 def _mesh(file: Any) -> Mesh:
-    """Mesh of a file: its cells with an area, labels and sets."""
+    """Mesh of a file: its cells, labels and sets."""
     root, own = file["VTKHDF"], file["corota"]
     types, chain, offsets = root["Types"][:], root["Connectivity"][:], root["Offsets"][:]
     labels = root["CellData/element label"][:]
@@ -253,7 +254,7 @@ def _mesh(file: Any) -> Mesh:
         kind = _KINDS.get(int(types[first]))
         if kind is None:
             raise InputError(f"cell type {types[first]} is not one of Corota's")
-        nodes = chain[offsets[first] : offsets[end]].reshape(-1, _SIZES[kind])
+        nodes = chain[offsets[first] : offsets[end]].reshape(-1, N_NODES[kind])
         cells.append(Cells(kind, nodes, labels[first:end]))
     mesh = Mesh(root["Points"][:, :2], cells, node_labels=own["node labels"][:])
     for kind in ("node", "cell", "edge"):

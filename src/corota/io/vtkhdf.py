@@ -38,13 +38,13 @@ _CHUNK = 4 << 20
 
 
 def topology(mesh: Mesh) -> tuple[Ints, Ints, NDArray[np.uint8], Ints]:
-    """Connectivity, offsets, types and global cell indices of the cells with an area."""
+    """Connectivity, offsets, types and global cell indices of all cells."""
     chain: list[Ints] = []
     sizes: list[Ints] = []
     types: list[NDArray[np.uint8]] = []
     index: list[Ints] = []
     for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
-        if cells.kind.startswith(("line", "point")) or not len(cells):
+        if not len(cells):
             continue
         chain.append(cells.nodes.ravel())
         sizes.append(np.full(len(cells), cells.nodes.shape[1], np.int64))

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota import fields as vf
+from corota.errors import InputError
 from corota.io.twin import full
 from corota.plots.contour import Drawing, frame_title, label_bar, paint
 from corota.plots.figure import extent_size, look, new_figure, picture_path
@@ -22,6 +24,22 @@ if TYPE_CHECKING:
 
 #: More frames than this are thinned evenly.
 MOST_FRAMES = 120
+#: Even numbers of pixels and colors that every player knows.
+PLAYABLE = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]
+
+
+def require_ffmpeg() -> None:
+    """Refuse MP4 where the program ffmpeg is missing.
+
+    Raises
+    ------
+    InputError
+    """
+    if shutil.which("ffmpeg") is None:
+        raise InputError(
+            "an MP4 needs the program ffmpeg, which is not on the path: install it "
+            "(such as apt install ffmpeg), or write a .gif"
+        )
 
 
 def animate(
@@ -35,7 +53,7 @@ def animate(
     seconds: float = 4.0,
     dpi: float = 100.0,
 ) -> Path:
-    """Write all frames as a GIF, with one color scale and one window for all.
+    """Write all frames as a GIF or MP4, with one color scale and one window for all.
 
     Parameters
     ----------
@@ -43,7 +61,7 @@ def animate(
     name : str
         Variable.
     path : path-like
-        Ends with ``.gif``.
+        Ends with ``.gif``, or ``.mp4`` (needs the program ffmpeg).
     scale : float
         Factor of the displacements.
     per_cell : bool
@@ -57,7 +75,9 @@ def animate(
     -------
     Path
     """
-    target = picture_path(path, (".gif",))
+    target = picture_path(path, (".gif", ".mp4"))
+    if target.suffix.lower() == ".mp4":
+        require_ffmpeg()
     name = vf.match_name(name, results.variables())
     drawing = Drawing(results, name, per_cell)
     count = len(results.frames)
@@ -70,7 +90,7 @@ def animate(
         moved = points + scale * results.frame(int(i)).U
         low, high = np.minimum(low, moved.min(axis=0)), np.maximum(high, moved.max(axis=0))
     with look() as mpl:
-        from matplotlib.animation import FuncAnimation, PillowWriter
+        from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
         width, height, below = extent_size(low, high)
         figure = new_figure(width, height, shown=False)
@@ -95,9 +115,12 @@ def animate(
         figure.set_layout_engine("none")  # else the axes would move with the titles
         rate = max(2, min(25, round(len(chosen) / seconds)))
         moving = FuncAnimation(figure, show, frames=[int(i) for i in chosen], blit=False)
-        hidden = target.with_name(f".{target.stem}.next.gif")
+        hidden = target.with_name(f".{target.stem}.next{target.suffix.lower()}")
+        writer: Any = PillowWriter(fps=rate)
+        if hidden.suffix == ".mp4":
+            writer = FFMpegWriter(fps=rate, codec="h264", extra_args=PLAYABLE)
         try:
-            moving.save(hidden, writer=PillowWriter(fps=rate), dpi=dpi)
+            moving.save(hidden, writer=writer, dpi=dpi)
             os.replace(hidden, target)
         except OSError as error:
             with contextlib.suppress(OSError):

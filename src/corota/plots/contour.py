@@ -31,6 +31,10 @@ BANDS = 16
 PIXELS_FROM = 60000
 
 
+#: Variables of line elements only.
+LINE_ONLY = ("N", "V", "M1", "M2")
+
+
 @dataclass
 class Drawing:
     """What of a model stays the same from frame to frame.
@@ -54,6 +58,11 @@ class Drawing:
         planar = np.zeros(results.mesh.n_cells, dtype=bool)
         for offset, cells in zip(results.mesh.offsets, results.mesh.cells, strict=False):
             planar[offset : offset + len(cells)] = cells.kind.startswith(("tri", "quad"))
+        blocks = zip(results.mesh.offsets, results.mesh.cells, strict=False)
+        of_lines = [(o + np.arange(len(c)), c.nodes) for o, c in blocks if c.kind == "line2"]
+        none = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
+        #: Trusses, beams and springs: their cells and nodes.
+        self.lines = tuple(np.concatenate(part) for part in zip(none, *of_lines, strict=True))
         jumps = not self.per_cell and self.name not in vf.NODAL
         self.parts: list[tuple[int | None, Surface]] = [
             (int(g) if jumps else None, surface(results.mesh, (self.groups == g) & planar))
@@ -70,9 +79,29 @@ class Drawing:
             for group, part in self.parts
         ]
 
+    def line_values(self, frame: int) -> Floats:
+        """Value of each line, not a number where it has none."""
+        cells, nodes = self.lines
+        if self.name in vf.NODAL:
+            return np.asarray(self.results.nodal(self.name, frame)[nodes].mean(axis=1))
+        own = np.full(self.results.mesh.n_cells, np.nan)
+        try:
+            known = self.results.cells(self.name, frame)
+        except InputError:
+            return np.asarray(own[cells])
+        for block in self.results.frame(frame).fields:
+            # Stresses and strains, too, are known wherever a block has points.
+            if self.name in block.values or self.name not in LINE_ONLY:
+                own[block.cells] = known[block.cells]
+        return np.asarray(own[cells])
+
     def range(self, frame: int) -> tuple[float, float]:
         """Smallest and largest drawn value."""
         values = [v for _, v in self.draw(frame) if len(v)]
+        lines = self.line_values(frame)
+        values += [lines[np.isfinite(lines)]] if np.isfinite(lines).any() else []
+        if not values:
+            return 0.0, 0.0
         return min(float(v.min()) for v in values), max(float(v.max()) for v in values)
 
 
@@ -248,6 +277,7 @@ def paint(
             drawn.set_rasterized(pixels)
             drawn.set_edgecolor("face")
             drawn.set_linewidth(0.15)
+    _paint_lines(ax, drawing, frame, positions, colors, norm)
     show = mesh.n_cells <= EDGES_UP_TO if edges is None else edges
     if show:
         width = 0.35 if mesh.n_cells < 400 else 0.2
@@ -269,6 +299,24 @@ def paint(
     )
     painted.set_array([])
     return painted
+
+
+def _paint_lines(
+    ax: Any, drawing: Drawing, frame: int, positions: Floats, colors: Any, norm: Any
+) -> None:
+    """Trusses, beams and springs as thick lines; those without the variable in ink."""
+    from matplotlib.collections import LineCollection
+
+    _, nodes = drawing.lines
+    if not len(nodes):
+        return
+    values = drawing.line_values(frame)
+    known = np.isfinite(values)
+    ax.add_collection(LineCollection(positions[nodes], colors=INK, linewidths=3.2))
+    painted = LineCollection(positions[nodes[known]], cmap=colors, norm=norm, linewidths=2.2)
+    painted.set_array(values[known])
+    ax.add_collection(painted)
+    ax.autoscale_view()
 
 
 def _between(colors: Any, norm: Any, levels: Floats) -> Any:

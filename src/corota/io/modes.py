@@ -1,0 +1,67 @@
+"""Modes as results: a frame a mode, for files and pictures."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.results import Frame, Results
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def as_results(results: Results) -> Results:
+    """Buckling and vibration modes as frames of results of their own.
+
+    Parameters
+    ----------
+    results : Results
+
+    Returns
+    -------
+    Results
+        A frame for each mode: its displacement is the shape, its time and increment the number
+        of the mode, its scalars hold ``buckling factor`` or ``frequency``. The largest
+        displacement of a buckling mode is 1; vibration modes have modal mass 1.
+
+    Raises
+    ------
+    InputError
+        If there are no modes.
+    """
+    if not results.modes:
+        raise InputError("the analysis found no modes: it has no step of buckling or frequencies")
+    out = Results(results.model)
+    number = 0
+    for modes in results.modes:
+        named = "buckling factor" if modes.kind == "buckling" else "frequency"
+        for factor, shape in zip(modes.factors, modes.shapes, strict=True):
+            number += 1
+            none = np.zeros((len(shape), 3))
+            value = float(factor)
+            out.add(
+                Frame(
+                    modes.step, number, float(number), float(number), value,
+                    shape[:, :2].copy(), shape[:, 2].copy(), none, none,
+                    scalars={named: value, "mode": float(number)},
+                )
+            )  # fmt: skip
+    return out
+
+
+def write_modes(results: Results, path: Path) -> None:
+    """Write the modes as a temporal VTKHDF file, a time step a mode."""
+    from corota.io.vtkhdf import VtkhdfWriter
+
+    found = as_results(results)
+    writer = VtkhdfWriter(path, found.model, points=False)
+    for frame in found.frames:
+        writer.add(frame)
+    writer.close(found.info)
+
+
+__all__ = ["as_results", "write_modes"]
