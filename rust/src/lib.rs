@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 pub mod base;
+pub mod contact;
 pub mod elements;
 pub mod io;
 pub mod kinematics;

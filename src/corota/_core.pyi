@@ -9,6 +9,64 @@ from numpy.typing import NDArray
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]
 
+_Integers = NDArray[np.int64]
+
+class Contact:
+    threads: int
+    offset: _Floats
+    @staticmethod
+    def edges(
+        reference: _Floats,
+        slave_nodes: _Integers,
+        slave_bulge: _Floats,
+        slave_thickness: _Floats,
+        master_nodes: _Integers,
+        master_bulge: _Floats,
+        *,
+        method: str = ...,
+        tie: bool = ...,
+        reach: float,
+        margin: float,
+        depth: float = ...,
+    ) -> Contact: ...
+    @staticmethod
+    def itself(
+        reference: _Floats,
+        nodes: _Integers,
+        bulge: _Floats,
+        thickness: _Floats,
+        *,
+        method: str = ...,
+        reach: float,
+        margin: float,
+    ) -> Contact: ...
+    @staticmethod
+    def rigid(
+        reference: _Floats,
+        slave_nodes: _Integers,
+        slave_bulge: _Floats,
+        slave_thickness: _Floats,
+        segments: _Floats,
+        node: int,
+        point: tuple[float, float],
+        *,
+        method: str = ...,
+        reach: float,
+        margin: float,
+        depth: float = ...,
+    ) -> Contact: ...
+    @property
+    def nodes(self) -> _Integers: ...
+    @property
+    def full_area(self) -> _Floats: ...
+    def search(self, x: _Floats) -> bool: ...
+    def candidates(self) -> _Integers: ...
+    def pattern(self) -> tuple[_Integers, _Integers]: ...
+    def evaluate(self, x: _Floats, old: _Floats | None = ...) -> dict[str, NDArray[Any]]: ...
+    def hessian(self, p: _Floats, q: _Floats) -> tuple[_Integers, _Integers, _Floats]: ...
+    def commit(self) -> None: ...
+    def restore(self) -> None: ...
+
 class Problem:
     def __init__(
         self, points: _Floats, blocks: list[dict[str, Any]], extra_dofs: NDArray[np.uint8]

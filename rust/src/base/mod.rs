@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 pub mod dual;
+pub mod hyper;
 pub mod pack;
 pub mod real;
 pub mod small;
 
 pub use dual::Dual;
+pub use hyper::{Hyper, Smooth};
 pub use pack::{Kernel, Lanes, MAX_LANES, dispatch};
 pub use real::Real;

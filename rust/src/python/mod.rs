@@ -1,6 +1,7 @@
 //! The border to Python: conversions, names, docstrings; no numerics.
 // SPDX-License-Identifier: BSD-3-Clause
 
+mod contact;
 mod io;
 mod linear;
 mod material;
@@ -11,6 +12,7 @@ use pyo3::prelude::*;
 /// Compiled core of Corota.
 #[pymodule]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    contact::register(m)?;
     io::register(m)?;
     linear::register(m)?;
     material::register(m)?;

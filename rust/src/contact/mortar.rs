@@ -1,0 +1,181 @@
+//! Mortar integrals of gap and slip over the covered part of a slave edge.
+//!
+//! From each slave point a ray along the slave normal meets the master at distance g. Weighted
+//! with the linear shape functions psi of the slave corners and integrated with the reference
+//! area, G = int psi g dA; the limits are the feet of the master's ends on the slave edge and
+//! are differentiated with everything else. The slip is the tangential distance that the two
+//! material points now opposite had in the old configuration: it depends on the motion only
+//! through the pairing, so a common rigid motion gives none.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::curve::{Curve, GAUSS, dot, lift, outward, sub, unit};
+use super::master::Master;
+use crate::base::Smooth;
+
+/// Least cosine between the slave normal and the opposite of the master's.
+const FACING: f64 = 0.05;
+/// Common length of two overlaps, in the slave parameter, that is no more than rounding.
+const TOUCH: f64 = 1e-9;
+
+/// What ends an overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// The slave edge's end, or the place where a closer master begins.
+    Fixed(f64),
+    /// The foot of the master's first or second end.
+    Foot(usize),
+}
+
+/// Part of a slave edge that sees a master.
+#[derive(Clone, Copy, Debug)]
+pub struct Overlap {
+    /// Number of the candidate.
+    pub pair: usize,
+    pub limits: [Limit; 2],
+    pub values: [f64; 2],
+    /// Distance at the middle, without sign.
+    distance: f64,
+}
+
+/// Part of the slave edge opposite to a master, if they face each other within the bounds:
+/// nowhere deeper than `depth` and somewhere closer than `reach`.
+pub fn overlap(
+    pair: usize,
+    slave: &Curve<f64>,
+    master: &Master<f64>,
+    reach: f64,
+    depth: f64,
+) -> Option<Overlap> {
+    let mut limits = [Limit::Fixed(-1.0), Limit::Fixed(1.0)];
+    let mut values = [-1.0, 1.0];
+    // Facing edges run against each other.
+    let (low, high) = (slave.foot(master.end(1)), slave.foot(master.end(0)));
+    if low.is_nan() || high.is_nan() {
+        return None;
+    }
+    if low > -1.0 {
+        (limits[0], values[0]) = (Limit::Foot(1), low);
+    }
+    if high < 1.0 {
+        (limits[1], values[1]) = (Limit::Foot(0), high);
+    }
+    if values[1] - values[0] <= TOUCH {
+        return None;
+    }
+    let [mut least, mut most, mut distance] = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
+    for (i, (r, _)) in GAUSS.iter().enumerate() {
+        let xi = 0.5 * (values[0] + values[1]) + 0.5 * r * (values[1] - values[0]);
+        let t = slave.slope(xi);
+        let n = unit(outward(t));
+        let hit = master.ray(slave.at(xi), t, n);
+        let facing = dot(master.normal(&hit), n);
+        if hit.gap.is_nan() || facing.is_nan() || facing > -FACING || hit.r.abs() > 1.5 {
+            return None;
+        }
+        least = least.min(hit.gap);
+        most = most.max(-hit.gap);
+        if i == 1 {
+            distance = hit.gap.abs();
+        }
+    }
+    (least <= reach && most <= depth).then_some(Overlap { pair, limits, values, distance })
+}
+
+/// Where a slave edge sees several masters one behind the other, leaves it the closest.
+pub fn hide(overlaps: &mut Vec<Overlap>) {
+    let mut order: Vec<usize> = (0..overlaps.len()).collect();
+    order.sort_by(|&a, &b| overlaps[a].distance.total_cmp(&overlaps[b].distance));
+    let mut seen: Vec<Overlap> = Vec::with_capacity(order.len());
+    for i in order {
+        let mut o = overlaps[i];
+        for s in &seen {
+            let low = o.values[0].max(s.values[0]);
+            let high = o.values[1].min(s.values[1]);
+            if high - low <= TOUCH {
+                continue;
+            }
+            // The larger visible side stays.
+            let side = usize::from(s.values[0] - o.values[0] < o.values[1] - s.values[1]);
+            let cut = if side == 0 { s.values[0] } else { s.values[1] };
+            o.values[1 - side] = cut;
+            o.limits[1 - side] = Limit::Fixed(cut);
+        }
+        if o.values[1] - o.values[0] > TOUCH {
+            seen.push(o);
+        }
+    }
+    seen.sort_by_key(|o| o.pair);
+    *overlaps = seen;
+}
+
+/// Slave edge and master in some configuration.
+pub struct Placed<'a, T> {
+    pub slave: &'a Curve<T>,
+    pub master: &'a Master<T>,
+}
+
+/// Integrals for the two corners of a slave edge.
+pub struct Integrals<T> {
+    pub gap: [T; 2],
+    pub slip: Option<[T; 2]>,
+    pub area: [f64; 2],
+}
+
+/// Gap, slip and area of an overlap; `reference` is the undeformed slave edge,
+/// `offset` the clearance taken off the gap at its corners.
+pub fn integrals<T: Smooth>(
+    overlap: &Overlap,
+    now: &Placed<T>,
+    old: Option<&Placed<f64>>,
+    reference: &Curve<f64>,
+    thickness: f64,
+    offset: [f64; 2],
+) -> Integrals<T> {
+    let slave = now.slave;
+    let [low, high] = overlap.limits.map(|limit| match limit {
+        Limit::Fixed(r) => T::real(r),
+        Limit::Foot(end) => slave.foot(now.master.end(end)),
+    });
+    let (middle, half) = ((high + low).scale(0.5), (high - low).scale(0.5));
+    let zero = T::real(0.0);
+    // Integrals with the weights 1 and xi.
+    let [mut gap, mut slip] = [[zero; 2]; 2];
+    let mut area = [0.0; 2];
+    let before = old.map(|o| (lift::<T>(o.slave), Master::lift(o.master)));
+    let straight = slave.straight.then(|| (slave.d, unit(outward(slave.d))));
+    for (r, w) in GAUSS {
+        let xi = middle + half.scale(r);
+        let (t, n) = straight.unwrap_or_else(|| {
+            let t = slave.slope(xi);
+            (t, unit(outward(t)))
+        });
+        let hit = now.master.ray(slave.at(xi), t, n);
+        let da = half * length(reference, xi).scale(w * thickness);
+        let put = |to: &mut [T; 2], v: T| {
+            to[0] += v;
+            to[1] += v * xi;
+        };
+        area[0] += da.value();
+        area[1] += da.value() * xi.value();
+        let shift = xi.scale(0.5 * (offset[1] - offset[0]));
+        let shift = shift + T::real(0.5 * (offset[0] + offset[1]));
+        put(&mut gap, da * (hit.gap - shift));
+        if let Some((edge, master)) = &before {
+            let apart = sub(now.master.carry(&hit, master).point, edge.at(xi));
+            put(&mut slip, da * dot(apart, unit(edge.slope(xi))));
+        }
+    }
+    let corners = |[a, b]: [T; 2]| [(a - b).scale(0.5), (a + b).scale(0.5)];
+    let area = [0.5 * (area[0] - area[1]), 0.5 * (area[0] + area[1])];
+    Integrals { gap: corners(gap), slip: old.map(|_| corners(slip)), area }
+}
+
+/// Length of a curve for a unit of the parameter.
+fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
+    // A middle node at the middle of a straight edge leaves rounding in `b`.
+    if c.straight || dot(c.b, c.b) < 1e-24 * dot(c.d, c.d) {
+        return T::real(dot(c.d, c.d).sqrt());
+    }
+    let t = lift::<T>(c).slope(r);
+    dot(t, t).sqrt()
+}

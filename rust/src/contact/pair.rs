@@ -1,0 +1,346 @@
+//! A pair of boundaries: its candidates, and its gaps and slips with derivatives.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::curve::{Edge, Vec2};
+use super::master::{Master, Surface};
+use super::mortar::{self, Overlap, Placed};
+use super::node::{self, Bounds};
+use super::search::{self, Candidate, Search, each};
+use super::slave::Slave;
+use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
+use super::tie;
+
+/// How the gap is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    Mortar,
+    NodeToSegment,
+}
+
+/// What the pair is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Two boundaries that may touch.
+    Touching,
+    /// A boundary with itself.
+    Itself,
+    /// Two boundaries that stay together.
+    Tied,
+}
+
+/// Distances of the search.
+#[derive(Clone, Copy, Debug)]
+pub struct Distances {
+    /// Farther apart than this nothing is evaluated.
+    pub reach: f64,
+    /// Added for candidates, so that they last.
+    pub margin: f64,
+    /// Deeper than this is no contact.
+    pub depth: f64,
+}
+
+/// A pair of boundaries.
+pub struct Contact {
+    slave: Slave,
+    master: Surface,
+    method: Method,
+    kind: Kind,
+    distances: Distances,
+    /// Undeformed slave edges.
+    reference: Vec<super::curve::Curve<f64>>,
+    /// Deepest penetration of each slave edge (or node).
+    depth: Vec<f64>,
+    /// Clearance taken off the gap of each constraint.
+    pub offset: Vec<f64>,
+    search: Search,
+    /// First candidate of each slave edge (or node).
+    first: Vec<usize>,
+    ties: Vec<Vec<tie::Point>>,
+    /// Whether nobody has asked for the candidates of a tie.
+    fresh: bool,
+    /// Master of each node: of the last evaluation, and of the last commit.
+    held: [Vec<Option<usize>>; 2],
+}
+
+impl Contact {
+    /// A pair; `x` is the reference configuration.
+    pub fn new(
+        x: &[[f64; 3]],
+        slave: (Vec<Edge>, Vec<f64>),
+        master: Option<Surface>,
+        method: Method,
+        tied: bool,
+        distances: Distances,
+    ) -> Self {
+        let kind = match (&master, tied) {
+            (None, _) => Kind::Itself,
+            (_, true) => Kind::Tied,
+            _ => Kind::Touching,
+        };
+        let master = master.unwrap_or_else(|| Surface::Edges(slave.0.clone()));
+        let middles = tied || method == Method::NodeToSegment;
+        let slave = Slave::new(x, slave.0, slave.1, middles);
+        let mut depth = match kind {
+            Kind::Itself => search::half_thickness(&slave, x),
+            _ => vec![f64::INFINITY; slave.edges.len()],
+        };
+        if method == Method::NodeToSegment {
+            let mut of_nodes = vec![f64::INFINITY; slave.nodes.len()];
+            for (constraints, d) in slave.constraints.iter().zip(&depth) {
+                for &k in constraints.iter().filter(|&&k| k != usize::MAX) {
+                    of_nodes[k] = f64::min(of_nodes[k], *d);
+                }
+            }
+            depth = of_nodes;
+        }
+        for d in &mut depth {
+            *d = d.min(distances.depth);
+        }
+        let n = slave.nodes.len();
+        let mut pair = Self {
+            reference: slave.edges.iter().map(|e| e.place(x)).collect(),
+            master,
+            method,
+            kind,
+            distances,
+            depth,
+            offset: vec![0.0; n],
+            search: Search::default(),
+            first: Vec::new(),
+            ties: Vec::new(),
+            fresh: true,
+            held: [vec![None; n], vec![None; n]],
+            slave,
+        };
+        if kind == Kind::Tied {
+            pair.renew(x);
+            pair.bind(x);
+        }
+        pair
+    }
+
+    pub fn slave(&self) -> &Slave {
+        &self.slave
+    }
+
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.search.candidates
+    }
+
+    /// Renews the candidates where needed; tells whether they changed.
+    pub fn update(&mut self, x: &[[f64; 3]]) -> bool {
+        if self.kind == Kind::Tied {
+            // Bound at the start for good; asked for the first time they are new.
+            return std::mem::take(&mut self.fresh);
+        }
+        self.renew(x)
+    }
+
+    fn renew(&mut self, x: &[[f64; 3]]) -> bool {
+        let (slave, method, kind) = (&self.slave, self.method, self.kind);
+        let items = match method {
+            Method::Mortar => search::edges(slave, x),
+            Method::NodeToSegment => search::nodes(slave, x),
+        };
+        let owners = (kind == Kind::Itself).then(|| slave.owners(method == Method::NodeToSegment));
+        let allowed = |i: usize, j: usize| owners.as_ref().is_none_or(|o| slave.apart(&o[i], j));
+        let Distances { reach, margin, .. } = self.distances;
+        let changed = self.search.update(&items, &self.master, x, reach, margin, allowed);
+        if changed {
+            let candidates = &self.search.candidates;
+            self.first =
+                (0..=items.len()).map(|i| candidates.partition_point(|c| c.0 < i)).collect();
+        }
+        changed
+    }
+
+    fn bind(&mut self, x: &[[f64; 3]]) {
+        let mut kept = Vec::new();
+        for i in 0..self.slave.edges.len() {
+            let mut overlaps = self.overlaps(i, x);
+            mortar::hide(&mut overlaps);
+            for o in overlaps {
+                let candidate = self.search.candidates[o.pair];
+                let master = self.master.place(candidate.1, x);
+                let thickness = self.slave.thickness[i];
+                self.ties.push(tie::points(&o, &self.reference[i], &master, thickness));
+                kept.push(candidate);
+            }
+        }
+        self.search.candidates = kept;
+    }
+
+    fn overlaps(&self, i: usize, x: &[[f64; 3]]) -> Vec<Overlap> {
+        let edge = self.slave.edges[i].place(x);
+        let candidates = self.first[i]..self.first[i + 1];
+        candidates
+            .filter_map(|pair| {
+                let master = self.master.place(self.search.candidates[pair].1, x);
+                mortar::overlap(pair, &edge, &master, self.distances.reach, self.depth[i])
+            })
+            .collect()
+    }
+
+    /// Variables of a candidate pair.
+    pub fn variables(&self, pair: usize) -> [i64; WIDTH] {
+        let (i, j) = self.search.candidates[pair];
+        let master = self.master.variables(j);
+        match self.method {
+            Method::Mortar => join(&self.slave.edges[i].variables(), &master),
+            Method::NodeToSegment => {
+                let node = 3 * i64::from(self.slave.nodes[i]);
+                join(&[node, node + 1], &master)
+            }
+        }
+    }
+
+    /// Constraints of a candidate pair.
+    pub fn constraints(&self, pair: usize) -> [usize; 3] {
+        let i = self.search.candidates[pair].0;
+        match self.method {
+            Method::Mortar => self.slave.constraints[i],
+            Method::NodeToSegment => [i, usize::MAX, usize::MAX],
+        }
+    }
+
+    /// Terms of all pairs that meet at `x`, in the order of the pairs; slip since `old`.
+    pub fn evaluate(&mut self, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
+        if self.kind == Kind::Tied {
+            let all = 0..self.search.candidates.len();
+            return each(all.len(), |pair| self.tied(pair, x));
+        }
+        let n = self.first.len().saturating_sub(1);
+        match self.method {
+            Method::Mortar => each(n, |i| self.edge(i, x, old)).into_iter().flatten().collect(),
+            Method::NodeToSegment => {
+                let normals = search::nodes(&self.slave, x);
+                let chosen = each(n, |k| self.choose(k, normals[k].1, x));
+                for (held, pair) in self.held[0].iter_mut().zip(&chosen) {
+                    *held = pair.map(|p| self.search.candidates[p].1);
+                }
+                let pairs: Vec<usize> = chosen.into_iter().flatten().collect();
+                each(pairs.len(), |i| self.node(pairs[i], x, old))
+            }
+        }
+    }
+
+    /// Keeps the masters of the nodes as those to return to.
+    pub fn commit(&mut self) {
+        let [now, kept] = &mut self.held;
+        kept.clone_from(now);
+    }
+
+    /// Returns to the masters of the last commit.
+    pub fn restore(&mut self) {
+        let [now, kept] = &mut self.held;
+        now.clone_from(kept);
+    }
+
+    fn edge(&self, i: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
+        let mut overlaps = self.overlaps(i, x);
+        mortar::hide(&mut overlaps);
+        let width = self.slave.edges[i].variables().len();
+        let small = |o: &Overlap| {
+            width + self.master.variables(self.search.candidates[o.pair].1).len() <= 8
+        };
+        let terms = |o: &Overlap| {
+            if small(o) {
+                self.overlapped::<8>(o, x, old)
+            } else {
+                self.overlapped::<12>(o, x, old)
+            }
+        };
+        overlaps.iter().map(terms).collect()
+    }
+
+    fn overlapped<const D: usize>(
+        &self,
+        overlap: &Overlap,
+        x: &[[f64; 3]],
+        old: Option<&[[f64; 3]]>,
+    ) -> Terms {
+        let (i, j) = self.search.candidates[overlap.pair];
+        let edge = &self.slave.edges[i];
+        let variables = self.variables(overlap.pair);
+        let v = lifted::<D>(&variables, x);
+        let (width, master) = (edge.variables().len(), self.master.variables(j).len());
+        let slave = edge.curve(&v[..width]);
+        let master = self.master.shape(j, &v[width..width + master]);
+        let now = Placed { slave: &slave, master: &master };
+        let before = old.map(|o| (edge.place(o), self.master.place(j, o)));
+        let before = before.as_ref().map(|(slave, master)| Placed { slave, master });
+        let constraints = self.slave.constraints[i];
+        let offset = [self.offset[constraints[0]], self.offset[constraints[1]]];
+        let sums = mortar::integrals(
+            overlap,
+            &now,
+            before.as_ref(),
+            &self.reference[i],
+            self.slave.thickness[i],
+            offset,
+        );
+        let share = |a: usize| Share {
+            constraint: constraints[a],
+            gap: (&sums.gap[a]).into(),
+            slip: sums.slip.as_ref().map_or_else(Function::none, |s| (&s[a]).into()),
+            area: sums.area[a],
+        };
+        Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }
+    }
+
+    fn choose(&self, k: usize, normal: Vec2<f64>, x: &[[f64; 3]]) -> Option<usize> {
+        let p = x[self.slave.nodes[k] as usize];
+        let pairs = self.first[k]..self.first[k + 1];
+        let shapes: Vec<(usize, Master<f64>)> = pairs
+            .map(|pair| (pair, self.master.place(self.search.candidates[pair].1, x)))
+            .collect();
+        let last = self.held[0][k].and_then(|j| {
+            let same = |s: &&(usize, Master<f64>)| self.search.candidates[s.0].1 == j;
+            shapes.iter().find(same).map(|s| s.0)
+        });
+        let bounds = Bounds { reach: self.distances.reach, depth: self.depth[k] };
+        node::choose([p[0], p[1]], normal, &shapes, last, bounds)
+    }
+
+    fn node(&self, pair: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Terms {
+        let (k, j) = self.search.candidates[pair];
+        let variables = self.variables(pair);
+        let v = lifted::<8>(&variables, x);
+        let width = self.master.variables(j).len();
+        let master = self.master.shape(j, &v[2..2 + width]);
+        let before = old.map(|o| {
+            let p = o[self.slave.nodes[k] as usize];
+            ([p[0], p[1]], self.master.place(j, o))
+        });
+        let before = before.as_ref().map(|(p, m)| (*p, m));
+        let (gap, slip) = node::gap_and_slip([v[0], v[1]], &master, before);
+        let area = self.slave.area[k];
+        let share = Share {
+            constraint: k,
+            gap: (&node::open(gap, self.offset[k], area)).into(),
+            slip: slip.map_or_else(Function::none, |s| (&node::open(s, 0.0, area)).into()),
+            area,
+        };
+        Terms { pair, variables, shares: vec![share] }
+    }
+
+    fn tied(&self, pair: usize, x: &[[f64; 3]]) -> Terms {
+        let (i, j) = self.search.candidates[pair];
+        let edge = &self.slave.edges[i];
+        let variables = self.variables(pair);
+        let v = lifted::<WIDTH>(&variables, x);
+        let slave = edge.curve(&v[..edge.variables().len()]);
+        let Surface::Edges(masters) = &self.master else { unreachable!("ties join edges") };
+        let master = masters[j].curve(&v[edge.variables().len()..]);
+        let points = &self.ties[pair];
+        let n = edge.n_nodes;
+        let (jumps, areas) = (tie::jumps(points, &slave, &master, n), tie::areas(points, n));
+        let share = |a: usize| Share {
+            constraint: self.slave.constraints[i][a],
+            gap: (&jumps[a][0]).into(),
+            slip: (&jumps[a][1]).into(),
+            area: areas[a],
+        };
+        Terms { pair, variables, shares: (0..n).map(share).collect() }
+    }
+}

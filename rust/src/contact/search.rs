@@ -1,0 +1,146 @@
+//! Which slave edges may meet which masters, kept while nothing has moved far.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::curve::{Curve, Vec2, add, dot, outward, sub, unit};
+use super::master::{Master, Surface, curve_box, master_box};
+use super::slave::Slave;
+use super::tree::{Box2, Tree, grown};
+use rayon::prelude::*;
+
+/// Box and outward normal of a slave edge or node.
+pub type Item = (Box2, Vec2<f64>);
+
+/// A slave edge (or slave node) and a master that may meet.
+pub type Candidate = (usize, usize);
+
+/// Most of the cosine between the outward normals of two chords that may meet.
+const TURNED: f64 = 0.7;
+
+/// Candidates with the boxes they were found for.
+#[derive(Default)]
+pub struct Search {
+    slave: Vec<Box2>,
+    master: Vec<Box2>,
+    pub candidates: Vec<Candidate>,
+}
+
+impl Search {
+    /// Renews the candidates if something has moved by more than half the margin; tells whether
+    /// they changed.
+    pub fn update(
+        &mut self,
+        items: &[Item],
+        master: &Surface,
+        x: &[[f64; 3]],
+        reach: f64,
+        margin: f64,
+        allowed: impl Fn(usize, usize) -> bool + Sync,
+    ) -> bool {
+        let theirs: Vec<_> = (0..master.len()).map(|j| master.place(j, x)).collect();
+        let slaves: Vec<_> = items.iter().map(|i| i.0).collect();
+        let masters: Vec<_> = theirs.iter().map(master_box).collect();
+        let first = self.slave.is_empty() && self.master.is_empty();
+        let moved = motion(&self.slave, &slaves).max(motion(&self.master, &masters));
+        if !first && moved <= 0.5 * margin {
+            return false;
+        }
+        let tree = Tree::new(&masters);
+        let normals: Vec<_> = theirs.iter().map(chord_normal).collect();
+        let found = each(items.len(), |i| {
+            let (around, n) = items[i];
+            let mut list: Vec<Candidate> = Vec::new();
+            tree.query(&grown(around, reach + margin), &mut |j| {
+                let j = j as usize;
+                if allowed(i, j) && dot(n, normals[j]) < TURNED {
+                    list.push((i, j));
+                }
+            });
+            list.sort_unstable();
+            list
+        });
+        let candidates = found.concat();
+        (self.slave, self.master) = (slaves, masters);
+        let changed = first || candidates != self.candidates;
+        self.candidates = candidates;
+        changed
+    }
+}
+
+/// Largest motion of a side of a box.
+fn motion(old: &[Box2], new: &[Box2]) -> f64 {
+    let sides = old.as_flattened().iter().zip(new.as_flattened());
+    sides.fold(0.0, |m, (a, b)| if (a - b).abs() <= m { m } else { (a - b).abs() })
+}
+
+/// The body of a hollow arc is on the left as well, so the chord serves all kinds.
+fn chord_normal(shape: &Master<f64>) -> Vec2<f64> {
+    unit(outward(sub(shape.end(1), shape.end(0))))
+}
+
+/// Slave edges as the search sees them.
+pub fn edges(slave: &Slave, x: &[[f64; 3]]) -> Vec<Item> {
+    let item = |c: Curve<f64>| (curve_box(&c), unit(outward(c.d)));
+    slave.edges.iter().map(|e| item(e.place(x))).collect()
+}
+
+/// Slave nodes as the search sees them, with the mean normal of their edges.
+pub fn nodes(slave: &Slave, x: &[[f64; 3]]) -> Vec<Item> {
+    let mut normals = vec![[0.0; 2]; slave.nodes.len()];
+    for (edge, constraints) in slave.edges.iter().zip(&slave.constraints) {
+        let n = outward(edge.place(x).d);
+        for &k in constraints.iter().filter(|&&k| k != usize::MAX) {
+            normals[k] = add(normals[k], n);
+        }
+    }
+    let place = |(n, normal): (&u32, Vec2<f64>)| {
+        let p = x[*n as usize];
+        ([p[0], p[1], p[0], p[1]], unit(normal))
+    };
+    slave.nodes.iter().zip(normals).map(place).collect()
+}
+
+/// Half the distance from each edge to the body's other face, inwards along the normal.
+pub fn half_thickness(slave: &Slave, reference: &[[f64; 3]]) -> Vec<f64> {
+    let curves: Vec<_> = slave.edges.iter().map(|e| e.place(reference)).collect();
+    let boxes: Vec<_> = curves.iter().map(curve_box).collect();
+    let tree = Tree::new(&boxes);
+    let whole = boxes
+        .iter()
+        .fold(boxes[0], |a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]);
+    let far = (whole[2] - whole[0]).hypot(whole[3] - whole[1]);
+    each(curves.len(), |i| {
+        let (p, t) = (curves[i].at(0.0), curves[i].slope(0.0));
+        let n = unit(outward(t));
+        let mut size = 2.0 * dot(t, t).sqrt();
+        // Lengthening rays, so that few boxes are met.
+        loop {
+            let q = [p[0] - size * n[0], p[1] - size * n[1]];
+            let ray = [p[0].min(q[0]), p[1].min(q[1]), p[0].max(q[0]), p[1].max(q[1])];
+            let mut least = f64::INFINITY;
+            tree.query(&ray, &mut |j| {
+                let j = j as usize;
+                if j == i {
+                    return;
+                }
+                let other = Master::Curve(curves[j]);
+                let hit = other.ray(p, t, n);
+                if hit.gap < 0.0 && hit.r.abs() <= 1.0 && dot(other.normal(&hit), n) < 0.0 {
+                    least = least.min(-hit.gap);
+                }
+            });
+            if least <= size || size > far {
+                return 0.5 * least;
+            }
+            size *= 2.0;
+        }
+    })
+}
+
+/// `f` of 0 to `n` in order, shared out if this runs in a pool of threads.
+pub fn each<R: Send>(n: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+    if rayon::current_thread_index().is_some() {
+        (0..n).into_par_iter().map(f).collect()
+    } else {
+        (0..n).map(f).collect()
+    }
+}

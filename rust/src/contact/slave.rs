@@ -1,0 +1,84 @@
+//! The slave side of a pair: its edges, and the nodes that carry constraints.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::curve::{Edge, GAUSS, dot};
+use std::collections::HashMap;
+
+/// Edges of the slave side with what follows from the reference configuration.
+#[derive(Clone, Debug)]
+pub struct Slave {
+    pub edges: Vec<Edge>,
+    pub thickness: Vec<f64>,
+    /// Mesh node of each constraint.
+    pub nodes: Vec<u32>,
+    /// Constraints of each edge's nodes.
+    pub constraints: Vec<[usize; 3]>,
+    /// Reference area of each constraint over all its edges.
+    pub area: Vec<f64>,
+}
+
+impl Slave {
+    /// Constraints at the corners, or at all nodes if `middles`.
+    pub fn new(
+        reference: &[[f64; 3]],
+        edges: Vec<Edge>,
+        thickness: Vec<f64>,
+        middles: bool,
+    ) -> Self {
+        let (mut nodes, mut area) = (Vec::new(), Vec::new());
+        let mut number = HashMap::new();
+        let mut constraints = Vec::with_capacity(edges.len());
+        for (edge, thickness) in edges.iter().zip(&thickness) {
+            let n = if middles { edge.n_nodes } else { 2 };
+            let curve = edge.place(reference);
+            let mut mine = [usize::MAX; 3];
+            for a in 0..n {
+                mine[a] = *number.entry(edge.nodes[a]).or_insert_with(|| {
+                    nodes.push(edge.nodes[a]);
+                    area.push(0.0);
+                    nodes.len() - 1
+                });
+            }
+            for (r, w) in GAUSS {
+                let t = curve.slope(r);
+                let da = w * thickness * dot(t, t).sqrt();
+                let psi = weights(n, r);
+                for a in 0..n {
+                    area[mine[a]] += psi[a] * da;
+                }
+            }
+            constraints.push(mine);
+        }
+        Self { edges, thickness, nodes, constraints, area }
+    }
+
+    /// Edges of each constraint, or each edge alone.
+    pub fn owners(&self, of_nodes: bool) -> Vec<Vec<usize>> {
+        if !of_nodes {
+            return (0..self.edges.len()).map(|i| vec![i]).collect();
+        }
+        let mut owners = vec![Vec::new(); self.nodes.len()];
+        for (i, constraints) in self.constraints.iter().enumerate() {
+            for &k in constraints.iter().filter(|&&k| k != usize::MAX) {
+                owners[k].push(i);
+            }
+        }
+        owners
+    }
+
+    /// Whether edge `j` comes before all of `mine` and shares no node with them, so that each
+    /// pair of a boundary with itself is taken once.
+    pub fn apart(&self, mine: &[usize], j: usize) -> bool {
+        let other = self.edges[j].nodes();
+        mine.iter().all(|&i| j < i && !self.edges[i].nodes().iter().any(|n| other.contains(n)))
+    }
+}
+
+/// Shape functions of the constraints on an edge with two or three of them.
+pub fn weights(n: usize, r: f64) -> [f64; 3] {
+    if n == 2 {
+        [0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0]
+    } else {
+        [0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r]
+    }
+}

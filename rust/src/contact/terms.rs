@@ -1,0 +1,79 @@
+//! What one pair gives to its constraints, with derivatives.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use crate::base::{Hyper, Smooth};
+
+/// Most variables of a pair: two edges of six each.
+pub const WIDTH: usize = 12;
+
+/// A function of a pair's variables.
+#[derive(Clone, Debug)]
+pub struct Function {
+    pub value: f64,
+    pub gradient: [f64; WIDTH],
+    /// Row by row, of the first `size` variables.
+    hessian: Vec<f64>,
+    size: usize,
+}
+
+impl<const D: usize> From<&Hyper<D>> for Function {
+    fn from(x: &Hyper<D>) -> Self {
+        let mut gradient = [0.0; WIDTH];
+        gradient[..D].copy_from_slice(&x.d);
+        Self { value: x.v, gradient, hessian: x.h.as_flattened().to_vec(), size: D }
+    }
+}
+
+impl Function {
+    /// A function that is zero.
+    pub fn none() -> Self {
+        Self { value: 0.0, gradient: [0.0; WIDTH], hessian: Vec::new(), size: 0 }
+    }
+
+    /// Adds `factor` times the Hessian to a full square.
+    pub fn add_hessian(&self, factor: f64, to: &mut [f64]) {
+        if factor == 0.0 {
+            return;
+        }
+        for i in 0..self.size {
+            for j in 0..self.size {
+                to[i * WIDTH + j] += factor * self.hessian[i * self.size + j];
+            }
+        }
+    }
+}
+
+/// Share of one pair in one constraint.
+#[derive(Clone, Debug)]
+pub struct Share {
+    pub constraint: usize,
+    pub gap: Function,
+    pub slip: Function,
+    pub area: f64,
+}
+
+/// All shares of a pair.
+#[derive(Clone, Debug)]
+pub struct Terms {
+    pub pair: usize,
+    /// `3 node + component`, -1 where unused.
+    pub variables: [i64; WIDTH],
+    pub shares: Vec<Share>,
+}
+
+/// Variables of two sides, one after the other.
+pub fn join(slave: &[i64], master: &[i64]) -> [i64; WIDTH] {
+    let mut v = [-1; WIDTH];
+    for (to, from) in v.iter_mut().zip(slave.iter().chain(master)) {
+        *to = *from;
+    }
+    v
+}
+
+/// The numbers that `variables` name, as independent variables.
+pub fn lifted<const D: usize>(variables: &[i64; WIDTH], x: &[[f64; 3]]) -> [Hyper<D>; D] {
+    std::array::from_fn(|i| match usize::try_from(variables[i]) {
+        Ok(v) => Hyper::variable(x[v / 3][v % 3], i),
+        Err(_) => Hyper::real(0.0),
+    })
+}

@@ -1,0 +1,396 @@
+//! Python class of a contact pair.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use crate::contact::pair::Distances;
+use crate::contact::terms::WIDTH;
+use crate::contact::{Contact as Pair, Edge, Method, Rigid, Surface, Terms};
+use crate::linear::pool;
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+type Floats<'py> = PyReadonlyArray1<'py, f64>;
+type Rows<'py> = PyReadonlyArray2<'py, f64>;
+type Numbers<'py> = PyReadonlyArray2<'py, i64>;
+
+fn bad(text: impl Into<String>) -> PyErr {
+    PyValueError::new_err(text.into())
+}
+
+/// Rows of `N` numbers.
+fn rows<'a, const N: usize, T: numpy::Element>(
+    array: &'a PyReadonlyArray2<'_, T>,
+    name: &str,
+) -> PyResult<&'a [[T; N]]> {
+    let shape = array.as_array().shape().to_vec();
+    if shape[1] != N {
+        return Err(bad(format!("{name} has rows of {}, not {N}", shape[1])));
+    }
+    Ok(array.as_slice()?.as_chunks::<N>().0)
+}
+
+/// Edges from their arrays; every fault is one the driver should have reported by name.
+fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResult<Vec<Edge>> {
+    let nodes = rows::<3, i64>(nodes, side)?;
+    let alpha = alpha.as_slice()?;
+    if alpha.len() != nodes.len() || nodes.is_empty() {
+        return Err(bad(format!("{side}: {} edges, {} factors", nodes.len(), alpha.len())));
+    }
+    let edge = |(row, &alpha_b): (&[i64; 3], &f64)| {
+        let n_nodes = if row[2] < 0 { 2 } else { 3 };
+        let mut edge = Edge { nodes: [0; 3], n_nodes, alpha_b };
+        for a in 0..n_nodes {
+            edge.nodes[a] = u32::try_from(row[a])
+                .ok()
+                .filter(|&n| (n as usize) < x.len())
+                .ok_or_else(|| bad(format!("{side}: node {} is out of range", row[a])))?;
+        }
+        let d = edge.place(x).d;
+        if d[0].hypot(d[1]) <= 0.0 {
+            return Err(bad(format!("{side}: edge {} - {} has no length", row[0], row[1])));
+        }
+        Ok(edge)
+    };
+    nodes.iter().zip(alpha).map(edge).collect()
+}
+
+fn method(name: &str) -> PyResult<Method> {
+    match name {
+        "mortar" => Ok(Method::Mortar),
+        "node_to_segment" => Ok(Method::NodeToSegment),
+        other => Err(bad(format!("method must be mortar or node_to_segment, not {other}"))),
+    }
+}
+
+/// A pair of boundaries that may touch, or are tied.
+///
+/// Gap and slip of each constraint (a node of the slave side) as functions of the nodal
+/// positions, with exact gradients and Hessians. Edges are rows corner, corner, middle (-1 for
+/// none) with the element on the left; configurations are arrays (n_nodes, 3) of x, y and
+/// rotation; a variable is ``3 * node + component``.
+#[pyclass(module = "corota._core")]
+pub struct Contact {
+    pair: Pair,
+    n_nodes: usize,
+    terms: Vec<Terms>,
+    threads: usize,
+}
+
+fn sides(
+    x: &[[f64; 3]],
+    nodes: &Numbers,
+    alpha: &Floats,
+    thickness: &Floats,
+) -> PyResult<(Vec<Edge>, Vec<f64>)> {
+    let edges = edges(x, nodes, alpha, "slave")?;
+    let thickness = thickness.as_slice()?.to_vec();
+    if thickness.len() != edges.len() {
+        return Err(bad(format!("{} edges, {} thicknesses", edges.len(), thickness.len())));
+    }
+    Ok((edges, thickness))
+}
+
+impl Contact {
+    fn wrap(
+        x: &[[f64; 3]],
+        slave: (Vec<Edge>, Vec<f64>),
+        master: Option<Surface>,
+        method: Method,
+        tied: bool,
+        distances: Distances,
+    ) -> PyResult<Self> {
+        let Distances { reach, margin, depth } = distances;
+        if !(reach > 0.0 && margin >= 0.0 && depth > 0.0 && reach.is_finite()) {
+            return Err(bad("reach and depth are positive, margin is not negative"));
+        }
+        if tied && method != Method::Mortar {
+            return Err(bad("ties are mortar ties"));
+        }
+        let pair = Pair::new(x, slave, master, method, tied, distances);
+        Ok(Self { pair, n_nodes: x.len(), terms: Vec::new(), threads: 1 })
+    }
+
+    fn configuration<'a>(&self, x: &'a Rows<'_>, name: &str) -> PyResult<&'a [[f64; 3]]> {
+        let x = rows::<3, f64>(x, name)?;
+        if x.len() != self.n_nodes {
+            return Err(bad(format!("{name} has {} rows for {} nodes", x.len(), self.n_nodes)));
+        }
+        Ok(x)
+    }
+
+    fn workers(&self) -> usize {
+        if self.threads == 0 { pool::available() } else { self.threads }
+    }
+}
+
+#[pymethods]
+impl Contact {
+    /// Pair of two boundaries of the mesh.
+    #[staticmethod]
+    #[pyo3(signature = (
+        reference, slave_nodes, slave_bulge, slave_thickness, master_nodes, master_bulge, *,
+        method="mortar", tie=false, reach, margin, depth=f64::INFINITY
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn edges(
+        reference: Rows<'_>,
+        slave_nodes: Numbers<'_>,
+        slave_bulge: Floats<'_>,
+        slave_thickness: Floats<'_>,
+        master_nodes: Numbers<'_>,
+        master_bulge: Floats<'_>,
+        method: &str,
+        tie: bool,
+        reach: f64,
+        margin: f64,
+        depth: f64,
+    ) -> PyResult<Self> {
+        let x = rows::<3, f64>(&reference, "reference")?;
+        let slave = sides(x, &slave_nodes, &slave_bulge, &slave_thickness)?;
+        let master = Surface::Edges(edges(x, &master_nodes, &master_bulge, "master")?);
+        let distances = Distances { reach, margin, depth };
+        Self::wrap(x, slave, Some(master), self::method(method)?, tie, distances)
+    }
+
+    /// A boundary with itself; a penetration beyond half the local thickness is no contact.
+    #[staticmethod]
+    #[pyo3(signature = (reference, nodes, bulge, thickness, *, method="mortar", reach, margin))]
+    #[allow(clippy::too_many_arguments)]
+    fn itself(
+        reference: Rows<'_>,
+        nodes: Numbers<'_>,
+        bulge: Floats<'_>,
+        thickness: Floats<'_>,
+        method: &str,
+        reach: f64,
+        margin: f64,
+    ) -> PyResult<Self> {
+        let x = rows::<3, f64>(&reference, "reference")?;
+        let slave = sides(x, &nodes, &bulge, &thickness)?;
+        let distances = Distances { reach, margin, depth: f64::INFINITY };
+        Self::wrap(x, slave, None, self::method(method)?, false, distances)
+    }
+
+    /// A boundary and a rigid curve.
+    ///
+    /// ``segments`` (n, 7) are rows x0, y0, x1, y1, cx, cy, sweep in reference coordinates: for
+    /// sweep 0 the line from 0 to 1, else the arc about c from 0 through the angle; the body is
+    /// on the left. ``node`` (-1 for none) moves the curve and turns it about its place.
+    #[staticmethod]
+    #[pyo3(signature = (
+        reference, slave_nodes, slave_bulge, slave_thickness, segments, node, point, *,
+        method="mortar", reach, margin, depth=f64::INFINITY
+    ))]
+    #[allow(clippy::too_many_arguments)]
+    fn rigid(
+        reference: Rows<'_>,
+        slave_nodes: Numbers<'_>,
+        slave_bulge: Floats<'_>,
+        slave_thickness: Floats<'_>,
+        segments: Rows<'_>,
+        node: i64,
+        point: [f64; 2],
+        method: &str,
+        reach: f64,
+        margin: f64,
+        depth: f64,
+    ) -> PyResult<Self> {
+        let x = rows::<3, f64>(&reference, "reference")?;
+        let slave = sides(x, &slave_nodes, &slave_bulge, &slave_thickness)?;
+        let node = u32::try_from(node).ok();
+        let point = match node {
+            Some(n) => x
+                .get(n as usize)
+                .map(|p| [p[0], p[1]])
+                .ok_or_else(|| bad(format!("reference node {n} is out of range")))?,
+            None => point,
+        };
+        let rigid = Rigid::new(rows::<7, f64>(&segments, "segments")?, node, point).map_err(bad)?;
+        let distances = Distances { reach, margin, depth };
+        Self::wrap(x, slave, Some(Surface::Rigid(rigid)), self::method(method)?, false, distances)
+    }
+
+    /// Mesh node of each constraint.
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        let nodes: Vec<i64> = self.pair.slave().nodes.iter().map(|&n| n.into()).collect();
+        nodes.into_pyarray(py)
+    }
+
+    /// Reference area of each constraint over all its edges.
+    #[getter]
+    fn full_area<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.pair.slave().area)
+    }
+
+    /// Distance taken off the gap at each constraint.
+    #[getter]
+    fn offset<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.pair.offset)
+    }
+
+    #[setter]
+    fn set_offset(&mut self, offset: Floats<'_>) -> PyResult<()> {
+        let offset = offset.as_slice()?;
+        if offset.len() != self.pair.offset.len() {
+            return Err(bad(format!("the offsets are {} numbers", self.pair.offset.len())));
+        }
+        self.pair.offset.copy_from_slice(offset);
+        Ok(())
+    }
+
+    /// Threads to use, 0 for all the machine has; results do not depend on it.
+    #[getter]
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    #[setter]
+    fn set_threads(&mut self, threads: usize) {
+        self.threads = threads;
+    }
+
+    /// Renew the candidates if something has moved far enough; True if they changed.
+    fn search(&mut self, py: Python<'_>, x: Rows<'_>) -> PyResult<bool> {
+        let x = self.configuration(&x, "x")?;
+        let (threads, pair) = (self.workers(), &mut self.pair);
+        Ok(py.detach(|| pool::run(threads, || pair.update(x))))
+    }
+
+    /// Candidate pairs (P, 2): slave edge (node_to_segment: constraint), master edge or piece.
+    fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let list = self.pair.candidates();
+        let flat = list.iter().flat_map(|&(i, j)| [i as i64, j as i64]).collect();
+        matrix(py, flat, [list.len(), 2])
+    }
+
+    /// Variables (P, 12) and constraints (P, 3) of the candidate pairs, -1 where unused.
+    fn pattern<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let n = self.pair.candidates().len();
+        let variables = (0..n).flat_map(|p| self.pair.variables(p)).collect();
+        let number = |k: usize| i64::try_from(k).unwrap_or(-1);
+        let constraints = (0..n).flat_map(|p| self.pair.constraints(p).map(number)).collect();
+        Ok((matrix(py, variables, [n, WIDTH])?, matrix(py, constraints, [n, 3])?))
+    }
+
+    /// Terms at a configuration, sorted by constraint; without ``old`` the slip is left out.
+    #[pyo3(signature = (x, old=None))]
+    fn evaluate<'py>(
+        &mut self,
+        py: Python<'py>,
+        x: Rows<'py>,
+        old: Option<Rows<'py>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let x = self.configuration(&x, "x")?;
+        let old = match &old {
+            Some(o) => Some(self.configuration(o, "old")?),
+            None => None,
+        };
+        let (threads, pair) = (self.workers(), &mut self.pair);
+        self.terms = py.detach(|| pool::run(threads, || pair.evaluate(x, old)));
+        self.collect(py)
+    }
+
+    /// Pairs (h,), variables (h, 12) and ``sum_k p_k d2G_k + q_k d2S_k`` (h, 12, 12) of the last
+    /// evaluation.
+    fn hessian<'py>(
+        &self,
+        py: Python<'py>,
+        p: Floats<'py>,
+        q: Floats<'py>,
+    ) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let (p, q) = (p.as_slice()?, q.as_slice()?);
+        let n = self.pair.slave().nodes.len();
+        if p.len() != n || q.len() != n {
+            return Err(bad(format!("p and q are {n} numbers each")));
+        }
+        let wanted =
+            |t: &&Terms| t.shares.iter().any(|s| p[s.constraint] != 0.0 || q[s.constraint] != 0.0);
+        let terms: Vec<&Terms> = self.terms.iter().filter(wanted).collect();
+        let mut values = vec![0.0; terms.len() * WIDTH * WIDTH];
+        for (t, square) in terms.iter().zip(values.chunks_mut(WIDTH * WIDTH)) {
+            for share in &t.shares {
+                share.gap.add_hessian(p[share.constraint], square);
+                share.slip.add_hessian(q[share.constraint], square);
+            }
+        }
+        let pairs: Vec<i64> = terms.iter().map(|t| t.pair as i64).collect();
+        let variables = terms.iter().flat_map(|t| t.variables).collect();
+        let h = terms.len();
+        Ok((
+            pairs.into_pyarray(py),
+            matrix(py, variables, [h, WIDTH])?,
+            matrix(py, values, [h, WIDTH, WIDTH])?,
+        ))
+    }
+
+    /// Remember the masters of the nodes (node_to_segment).
+    fn commit(&mut self) {
+        self.pair.commit();
+    }
+
+    /// Return to the masters remembered.
+    fn restore(&mut self) {
+        self.pair.restore();
+    }
+}
+
+impl Contact {
+    fn collect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let n = self.pair.slave().nodes.len();
+        let mut order: Vec<(usize, usize, usize)> = Vec::new();
+        for (t, terms) in self.terms.iter().enumerate() {
+            for (s, share) in terms.shares.iter().enumerate() {
+                order.push((share.constraint, t, s));
+            }
+        }
+        order.sort_unstable();
+        let m = order.len();
+        let [mut constraint, mut pair] = [const { Vec::<i64>::new() }; 2];
+        let mut variables = Vec::with_capacity(m * WIDTH);
+        let [mut gap, mut slip, mut area] = [const { Vec::<f64>::new() }; 3];
+        let [mut gap_gradient, mut slip_gradient] = [const { Vec::<f64>::new() }; 2];
+        let mut totals = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+        for (k, t, s) in order {
+            let (terms, share) = (&self.terms[t], &self.terms[t].shares[s]);
+            constraint.push(k as i64);
+            pair.push(terms.pair as i64);
+            variables.extend(terms.variables);
+            gap.push(share.gap.value);
+            slip.push(share.slip.value);
+            area.push(share.area);
+            gap_gradient.extend(share.gap.gradient);
+            slip_gradient.extend(share.slip.gradient);
+            totals[0][k] += share.gap.value;
+            totals[1][k] += share.slip.value;
+            totals[2][k] += share.area;
+        }
+        let d = PyDict::new(py);
+        d.set_item("constraint", constraint.into_pyarray(py))?;
+        d.set_item("pair", pair.into_pyarray(py))?;
+        d.set_item("variables", matrix(py, variables, [m, WIDTH])?)?;
+        for (name, values) in [("gap", gap), ("slip", slip), ("area", area)] {
+            d.set_item(name, values.into_pyarray(py))?;
+        }
+        d.set_item("gap_gradient", matrix(py, gap_gradient, [m, WIDTH])?)?;
+        d.set_item("slip_gradient", matrix(py, slip_gradient, [m, WIDTH])?)?;
+        for (name, values) in ["total_gap", "total_slip", "total_area"].iter().zip(totals) {
+            d.set_item(name, values.into_pyarray(py))?;
+        }
+        Ok(d)
+    }
+}
+
+/// An array with a shape.
+fn matrix<T: numpy::Element, const N: usize>(
+    py: Python<'_>,
+    flat: Vec<T>,
+    shape: [usize; N],
+) -> PyResult<Bound<'_, PyAny>> {
+    Ok(flat.into_pyarray(py).reshape(shape.to_vec())?.into_any())
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<Contact>()
+}
