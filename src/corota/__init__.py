@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from corota import mesh
+    from corota.contact import PressureLaw, RigidCurve
     from corota.drivers.analysis import solve
     from corota.errors import (
         ConvergenceError,
@@ -53,7 +54,9 @@ _HOMES = {
     "Model": "model",
     "ModelError": "errors",
     "Orthotropic": "materials",
+    "PressureLaw": "contact",
     "Results": "results",
+    "RigidCurve": "contact",
     "SingularError": "errors",
     "Static": "steps",
     "SteadyState": "steps",
@@ -85,7 +88,9 @@ __all__ = [
     "Model",
     "ModelError",
     "Orthotropic",
+    "PressureLaw",
     "Results",
+    "RigidCurve",
     "SingularError",
     "Static",
     "SteadyState",

@@ -29,7 +29,12 @@ NODAL: dict[str, tuple[str, int]] = {
     "F1": ("F", 0), "F2": ("F", 1), "F": ("F", -1), "M3": ("F", 2),
     "V1": ("V", 0), "V2": ("V", 1), "V": ("V", -1), "VR3": ("V", 2),
     "A1": ("A", 0), "A2": ("A", 1), "A": ("A", -1), "AR3": ("A", 2),
+    "CPRESS": ("C", 0), "CSHEAR": ("C", 1), "COPEN": ("C", 2), "CSLIP": ("C", 3),
+    "CSTATUS": ("C", 4),
 }  # fmt: skip
+
+#: Columns of the contact values at nodes.
+CONTACT = ("CPRESS", "CSHEAR", "COPEN", "CSLIP", "CSTATUS")
 
 #: Tensors at points, rows xx, yy, zz, xy: stress, strain, plastic strain, back-stress deviator.
 TENSORS = ("S", "E", "PE", "ALPHA")
@@ -80,6 +85,9 @@ MEANING = {
     "ALPHA33": "back-stress deviator zz", "ALPHA12": "back-stress deviator xy",
     "PWORK": "plastic work density", "PDISS": "plastic dissipation density",
     "STH": "current thickness [length]",
+    "CPRESS": "contact pressure", "CSHEAR": "contact shear traction",
+    "COPEN": "contact gap [length]", "CSLIP": "contact slip [length]",
+    "CSTATUS": "contact status: 0 open, 1 closed, 2 slipping",
 }  # fmt: skip
 
 #: The order of operations, written into result files.

@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.attachments import Dashpot, PointMass
 from corota.constraints import Constraint, Coupling, Equation, LocalAxes
+from corota.contact import ContactPair, PressureLaw, RigidCurve, Tie
 from corota.errors import InputError, Location
 from corota.initial import InitialFields
 from corota.loads import (
@@ -168,6 +169,8 @@ class Model(InitialFields):
         Equations and couplings, in force in every step.
     axes : list of LocalAxes
         Axes of nodes; the last for a node counts.
+    contacts : list of ContactPair
+    ties : list of Tie
     notes : list of str
         What the reader ignored, repaired or assumed.
     title : str
@@ -190,6 +193,8 @@ class Model(InitialFields):
         self.dashpots: list[Dashpot] = []
         self.constraints: list[Constraint] = []
         self.axes: list[LocalAxes] = []
+        self.contacts: list[ContactPair] = []
+        self.ties: list[Tie] = []
         self.steps: list[Step] = []
         self.notes: list[str] = []
         self.title = ""
@@ -552,6 +557,44 @@ class Model(InitialFields):
             Radial and circumferential axes about this point [length].
         """
         self.axes.append(LocalAxes(self._nodes(nodes), angle, centre))
+
+    def contact(
+        self,
+        slave: str | ArrayLike,
+        master: str | ArrayLike | RigidCurve,
+        *,
+        method: Literal["mortar", "node_to_segment"] = "mortar",
+        friction: float = 0.0,
+        law: PressureLaw | None = None,
+        clearance: float | None = None,
+        start: Literal["keep", "adjust", "ramp"] = "keep",
+        stabilise: bool = False,
+        reach: float = 0.0,
+        name: str = "",
+    ) -> None:
+        """Let two edge sets touch, or an edge set and a rigid curve; see ``docs/contact.md``.
+
+        The parameters are those of :class:`corota.contact.ContactPair`; the same set twice is
+        contact of a surface with itself.
+        """
+        other = master if isinstance(master, RigidCurve) else self._edges(master)
+        self.contacts.append(
+            ContactPair(
+                self._edges(slave), other, method, friction, law, clearance, start, stabilise,
+                reach, name,
+            )
+        )  # fmt: skip
+
+    def tie(
+        self,
+        slave: str | ArrayLike,
+        master: str | ArrayLike,
+        *,
+        tolerance: float = 0.0,
+        name: str = "",
+    ) -> None:
+        """Join two edge sets whose nodes need not match (:class:`corota.contact.Tie`)."""
+        self.ties.append(Tie(self._edges(slave), self._edges(master), tolerance, name))
 
     def _nodes(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):

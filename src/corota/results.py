@@ -86,6 +86,10 @@ class Frame:
         ``strain energy``, ``external work``, ``iterations``, ...
     V, A : ndarray, shape (n_nodes, 3), or None
         Velocity and acceleration, the rotation's last; in dynamic steps.
+    C : ndarray, shape (n_nodes, 5), or None
+        Contact at slave nodes, 0 elsewhere: pressure, shear traction (positive along the slave
+        surface, the body on the left), gap, slip so far, status (0 open, 1 closed, 2 slipping);
+        tractions per reference area.
     """
 
     step: int
@@ -101,6 +105,7 @@ class Frame:
     scalars: dict[str, float] = field(default_factory=dict)
     V: Floats | None = None
     A: Floats | None = None
+    C: Floats | None = None
 
 
 @dataclass

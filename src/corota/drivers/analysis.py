@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: Procedures that know contact and ties between surfaces.
+WITH_CONTACT = ("static",)
 #: Local strain above which the linear one of ``simplified`` is no longer a good measure.
 LARGE_STRAIN = 0.05
 
@@ -168,12 +170,20 @@ class Analysis:
             raise UnsupportedError(
                 f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
             )
+        if system.touching is not None and step.procedure not in WITH_CONTACT:
+            raise UnsupportedError(
+                f"a {step.procedure} step takes no contact pairs or ties; leave them out, or use "
+                f"{' or '.join(WITH_CONTACT)} steps",
+                step.where,
+            )
         self.observers.step(number, step)
         turning = system.turning
         system.begin(step, state.time, state.u, reaction)
         if state.at is None or turning != system.turning:
             state.at = system.evaluate(state.u, 0.0)
         if number == 1:
+            if system.touching is not None:
+                state.notes += system.touching.notes
             self._save(number, state, 0, 0.0, {})
 
         def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
@@ -214,6 +224,10 @@ class Analysis:
                 )
                 self.results.notes.append(note)
                 warnings.warn(note, stacklevel=2)
+        contact = None
+        if system.touching is not None:
+            contact, sums = system.touching.output()
+            scalars = {**scalars, **sums}
         frame = Frame(
             number,
             increment,
@@ -228,6 +242,7 @@ class Analysis:
             scalars,
             None if state.v is None else system.by_node(state.v),
             None if state.a is None else system.by_node(state.a),
+            contact,
         )
         self.results.add(frame)
         with system.timed("write"):

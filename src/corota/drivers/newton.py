@@ -194,7 +194,9 @@ def newton(
         outcome.sizes.append(judged.size)
         note = f"step {length:.3g}" if length != 1.0 else ""
         if report is not None:
-            report(iteration, judged, length * float(np.abs(du).max()), note)
+            # Unknowns beyond the dofs are multipliers, of another unit.
+            largest = float(np.abs(du[: len(at.internal)]).max())
+            report(iteration, judged, length * largest, note)
         if not np.isfinite(judged.size):
             outcome.reason = "the residual is not finite"
             return outcome

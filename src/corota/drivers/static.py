@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from corota.drivers.arc_length import path_step
 from corota.drivers.increments import Increments
 from corota.drivers.newton import Outcome, Settings, newton
+from corota.drivers.touching_start import newton_with_contact
 from corota.errors import ConvergenceError, Interrupted, ModelError, SingularError
 from corota.paths import ArcLength
 from corota.results import Iteration
@@ -61,16 +62,15 @@ def static_step(
         if begin is not None:
             # Newton's method overwrites the tangent; a further attempt needs it again.
             begin = replace(begin, values=begin.values.copy())
+        report = iteration_reporter(observers, system, number, control)
+        prescribed = system.conditions.prescribed(target, state.u)
         try:
-            outcome = newton(
-                system,
-                state.u,
-                system.conditions.prescribed(target, state.u),
-                target,
-                settings,
-                begin,
-                iteration_reporter(observers, system, number, control),
-            )
+            if system.touching is None:
+                outcome = newton(system, state.u, prescribed, target, settings, begin, report)
+            else:
+                outcome, touching = newton_with_contact(
+                    system, system, state.u, prescribed, target, settings, report
+                )
         except SingularError as error:
             if number == 1 and control.number == 0:
                 raise
@@ -100,13 +100,15 @@ def static_step(
                 number, control.number + 1, control.attempt - 1, outcome.reason, control.size
             )
             continue
+        if system.touching is not None:
+            touching.accept(outcome.u, target)
         _accept(system, state, outcome, target)
         dt = target - control.time
         attempts = control.attempt
         control.accept(target, outcome.iterations)
         if grown > 0.0 and not step.fixed_increments:
             control.size = min(control.size, dt * step.plastic_increment / grown)
-        scalars = {
+        scalars: dict[str, float] = {
             "dt": dt,
             "iterations": float(outcome.iterations),
             "attempts": float(attempts),

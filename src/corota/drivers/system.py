@@ -19,6 +19,7 @@ from corota.drivers.conditions import Conditions
 from corota.drivers.constraints import Link, Ties, extra_dofs
 from corota.drivers.newton import ElementFailure, Judgement
 from corota.drivers.thermal import FreeStrains
+from corota.drivers.tie_setup import carry_curves
 from corota.drivers.user_blocks import UserBlocks
 from corota.errors import ModelError, SingularError
 from corota.results import PointFields
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.drivers.solvers import LinearSolver
+    from corota.drivers.touching import Touching
     from corota.model import Model
     from corota.steps import Step
 
@@ -132,6 +134,8 @@ class System:
             own = elements.find(b.section.element).dofs_per_node
             np.maximum.at(carried, b.nodes.ravel(), own)
         extra = extra_dofs(model, carried > 0)
+        if model.contacts:
+            extra = carry_curves(model, carried, extra)
         try:
             self.core = _core.Problem(mesh.points, inputs, extra)
         except ValueError as error:
@@ -152,6 +156,7 @@ class System:
             self.ties = Ties(model, self.start, carried, self.indptr, self.indices)
         self._link: Link | None = None
         self.conditions = Conditions(self)
+        self.touching: Touching | None = None
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
         self.profile: dict[str, float] = {}
@@ -161,6 +166,10 @@ class System:
         #: Largest force and moment of the state judged last, and of the committed one.
         self._sizes = self._committed_sizes = (0.0, 0.0)
         self._keys: Ints | None = None
+        if model.contacts or model.ties:
+            from corota.drivers.touching import Touching
+
+            self.touching = Touching(self)
 
     # -- numbering ---------------------------------------------------------------------
 
@@ -202,6 +211,8 @@ class System:
             self.ties.set_turning(step.nlgeom)
             self.ties.complete(u)
         self.conditions.begin(step, time, u, reaction)
+        if self.touching is not None:
+            self.touching.begin(step)
 
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and tangent at a trial state; dependent dofs of `u` are set, in place.
@@ -295,8 +306,7 @@ class System:
             self._stiffest = float(np.abs(at.values[self.indptr[1:] - 1]).max(initial=0.0))
         # Forces that rounding of the coordinates alone would give, where nothing is loaded; a
         # load as small as that still bends what is slender enough.
-        nothing = NOTHING * EPS * self._stiffest * self.length
-        if max(force, moment / self.length) <= nothing and not at.external.any():
+        if max(force, moment / self.length) <= self.nothing and not at.external.any():
             return Judgement(0.0, 0.0, 0.0, 0)
         force = force or moment / self.length
         relative = (residual[0] / force, residual[1] / moment)
@@ -309,6 +319,16 @@ class System:
             worst[0] if relative[0] >= relative[1] else worst[1],
             noise * self.cell_size / moment,
         )
+
+    @property
+    def nothing(self) -> float:
+        """Force that rounding of the coordinates alone would give."""
+        return NOTHING * EPS * self._stiffest * self.length
+
+    @property
+    def force_scale(self) -> float:
+        """Largest force of the state judged last or of the committed one."""
+        return max(self._sizes[0], self._committed_sizes[0])
 
     def plastic_increment(self) -> float:
         """Largest growth of the equivalent plastic strain since the last commit."""

@@ -188,20 +188,23 @@ class Places:
         self.bend_terms.add(out, bend, self.tied.numbers(g))
         return out
 
+    def whole(self, rows: Rows) -> Any:
+        """All dofs by the unknowns, scipy CSC: the rows given, those of the identity elsewhere."""
+        import scipy.sparse as sp
+
+        one = np.ones(self.n)
+        one[rows.dofs] = 0.0
+        put = sp.csr_array(
+            (np.ones(len(rows.dofs)), (rows.dofs, np.arange(len(rows.dofs)))),
+            shape=(self.n, len(rows.dofs)),
+        )
+        return (sp.diags_array(one) + put @ rows.matrix).tocsc()[:, self.free]
+
     def reduce_full(self, matrix: Any, turned: Rows, g: Any, bend: Floats) -> Any:
         """The same for a full matrix, scipy CSC."""
         import scipy.sparse as sp
 
-        def whole(rows: Rows) -> Any:
-            one = np.ones(self.n)
-            one[rows.dofs] = 0.0
-            put = sp.csr_array(
-                (np.ones(len(rows.dofs)), (rows.dofs, np.arange(len(rows.dofs)))),
-                shape=(self.n, len(rows.dofs)),
-            )
-            return (sp.diags_array(one) + put @ rows.matrix).tocsc()[:, self.free]
-
-        t = whole(turned)
+        t = self.whole(turned)
         out = t.T @ matrix @ t
         if len(bend):
             i, j = self.bend_pairs
@@ -209,7 +212,7 @@ class Places:
             side = sp.coo_array(
                 (np.where(i == j, 0.0, bend), (j, i)), shape=(self.n, self.n)
             ).tocsr()
-            tied = whole(Rows(self.tied_dofs, g))
+            tied = self.whole(Rows(self.tied_dofs, g))
             out = out + tied.T @ (half + side) @ tied
         return out.tocsc()
 

@@ -57,6 +57,18 @@ def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]
     return extra
 
 
+def carry_curves(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Give reference nodes of rigid curves all three dofs; changes `carried`, returns `extra`."""
+    from corota.drivers.touching_setup import reference_nodes
+
+    nodes = reference_nodes(model)
+    if len(nodes):
+        carried[nodes] = 3
+        extra = extra if len(extra) else np.zeros(model.mesh.n_nodes, np.uint8)
+        extra[nodes] = 3
+    return extra
+
+
 class Builder:
     """Relations of a model.
 

@@ -21,7 +21,7 @@ def check_frame(frame: Frame) -> None:
     CorotaError
         Internal error: the solver should never have accepted such an increment.
     """
-    for name in ("U", "UR", "RF", "F", "V", "A"):
+    for name in ("U", "UR", "RF", "F", "V", "A", "C"):
         values = getattr(frame, name)
         if values is not None:
             check(frame, name, values)

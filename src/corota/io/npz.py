@@ -42,9 +42,10 @@ def write_npz(results: Results, path: Path) -> None:
     }
     for name in ("U", "UR", "RF", "F"):
         data[name] = np.stack([getattr(f, name) for f in frames])
-    for name in ("V", "A"):
-        if any(getattr(f, name) is not None for f in frames):
-            zero = np.zeros_like(frames[0].RF)
+    for name in ("V", "A", "C"):
+        have = [f for f in frames if getattr(f, name) is not None]
+        if have:
+            zero = np.zeros_like(getattr(have[0], name))
             rows = [getattr(f, name) for f in frames]
             data[name] = np.stack([zero if r is None else r for r in rows])
     for number, cells in enumerate(mesh.cells):
@@ -53,8 +54,8 @@ def write_npz(results: Results, path: Path) -> None:
         data[f"cells_{number}"] = block.cells
         data[f"points_{number}"] = np.stack([f.fields[number].points for f in frames if f.fields])
         for name in block.values:
-            have = [f.fields[number].values[name] for f in frames if f.fields]
-            data[f"{name}_{number}"] = np.stack(have)
+            values = [f.fields[number].values[name] for f in frames if f.fields]
+            data[f"{name}_{number}"] = np.stack(values)
     for name in frames[-1].scalars:
         data[name.replace(" ", "_")] = np.array([f.scalars.get(name, 0.0) for f in frames])
     hidden = path.with_name(f".{path.name}.next")

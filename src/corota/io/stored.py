@@ -124,6 +124,9 @@ class StoredFrames(Sequence[Frame]):
                 at = self.at_points(name, number)
                 at[:, 2] = self.at_points(f"angular {name}", number)
                 moving[attribute] = at
+        if vf.CONTACT[0] in self._file["VTKHDF/PointData"]:
+            columns = [self.at_points(name, number) for name in vf.CONTACT]
+            moving["C"] = np.column_stack(columns)
         return Frame(
             int(scalars["step"]),
             int(scalars["increment"]),

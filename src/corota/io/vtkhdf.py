@@ -76,6 +76,8 @@ def point_data(frame: Frame, averaging: vf.Averaging) -> dict[str, Floats]:
         if moving is not None:
             data[name] = np.column_stack([moving[:, :2], np.zeros(n)])
             data[f"angular {name}"] = moving[:, 2]
+    if frame.C is not None:
+        data |= dict(zip(vf.CONTACT, frame.C.T, strict=True))
     names = sorted({k for b in frame.fields for k in b.values})
     mean = averaging.average(frame.fields, [k for k in names if k != "MISES"])
     if "S" in mean:

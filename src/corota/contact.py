@@ -1,0 +1,348 @@
+"""Contact pairs, rigid curves, pressure laws and ties as plain data."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.errors import InputError, Location
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Ints = NDArray[np.int64]
+    Floats = NDArray[np.float64]
+    Reference = int | tuple[float, float] | None
+
+#: Ways to treat what overlaps, or is apart, at the start.
+STARTS = ("keep", "adjust", "ramp")
+METHODS = ("mortar", "node_to_segment")
+
+
+@dataclass
+class RigidCurve:
+    """A rigid curve of straight lines and arcs; the rigid body lies to its left.
+
+    Parameters
+    ----------
+    segments : ndarray, shape (n, 7)
+        Rows x0, y0, x1, y1, cx, cy, sweep in the reference configuration: a straight line from
+        (x0, y0) to (x1, y1) where sweep is 0, else an arc about (cx, cy) from (x0, y0) through
+        the angle sweep [rad], counter-clockwise if positive.
+    reference : int, tuple of float or None
+        Node (index) that carries the curve: move, turn, load or hold it as any node, its
+        reaction is that of the curve. A point, or None: the curve stays where it is.
+    """
+
+    segments: Floats
+    reference: Reference = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        self.segments = np.asarray(self.segments, dtype=np.float64).reshape(-1, 7)
+        if not len(self.segments) or not np.isfinite(self.segments).all():
+            raise InputError("a rigid curve needs one segment at least, with finite numbers")
+        flat = self.segments[:, 6] == 0.0
+        length = np.where(
+            flat,
+            np.hypot(*(self.segments[:, 2:4] - self.segments[:, :2]).T),
+            np.hypot(*(self.segments[:, :2] - self.segments[:, 4:6]).T),
+        )
+        if (length <= 0.0).any():
+            at = int(np.argmin(length))
+            raise InputError(f"segment {at + 1} of the rigid curve has no length")
+        if (np.abs(self.segments[:, 6]) > 2.0 * math.pi * (1.0 + 1e-12)).any():
+            raise InputError("an arc of a rigid curve turns by at most one full circle")
+
+    @classmethod
+    def line(
+        cls, start: Sequence[float], end: Sequence[float], reference: Reference = None
+    ) -> RigidCurve:
+        """A straight line; the rigid body lies to the left when going from start to end."""
+        return cls.polyline([start, end], reference=reference)
+
+    @classmethod
+    def circle(
+        cls,
+        centre: Sequence[float],
+        radius: float,
+        *,
+        inside: bool = False,
+        reference: Reference = None,
+    ) -> RigidCurve:
+        """A disc, or with `inside` a round hole with the deformable body in it."""
+        return cls.arc(centre, radius, 0.0, -360.0 if inside else 360.0, reference=reference)
+
+    @classmethod
+    def arc(
+        cls,
+        centre: Sequence[float],
+        radius: float,
+        start: float,
+        sweep: float,
+        reference: Reference = None,
+    ) -> RigidCurve:
+        """An arc from the angle `start` through `sweep`, both in degrees.
+
+        Counter-clockwise (sweep > 0) the rigid body is the disc, clockwise it lies outside.
+        """
+        if not (radius > 0.0 and math.isfinite(radius)):
+            raise InputError(f"the radius of an arc must be > 0, not {radius}")
+        if sweep == 0.0:
+            raise InputError("the sweep of an arc must not be 0")
+        a, turn = math.radians(start), math.radians(sweep)
+        (cx, cy), end = centre, a + turn
+        first = (cx + radius * math.cos(a), cy + radius * math.sin(a))
+        last = (cx + radius * math.cos(end), cy + radius * math.sin(end))
+        return cls(np.array([[*first, *last, cx, cy, turn]]), reference)
+
+    @classmethod
+    def polyline(
+        cls,
+        points: ArrayLike,
+        *,
+        closed: bool = False,
+        fillet: float = 0.0,
+        reference: Reference = None,
+    ) -> RigidCurve:
+        """Straight lines through points, the corners rounded with the radius `fillet`.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            In the order that has the rigid body on the left: counter-clockwise round a body.
+        closed : bool
+            Join the last point with the first.
+        fillet : float
+            Radius of the corners [length]; 0 leaves them sharp.
+        """
+        p = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        if len(p) < 2 + closed:
+            raise InputError(f"a polyline needs {2 + closed} points at least, not {len(p)}")
+        n = len(p)
+        before, after = p.copy(), p.copy()  # ends of the straight parts at each corner
+        arcs: dict[int, list[float]] = {}
+        for i in range(n) if closed else range(1, n - 1):
+            if fillet <= 0.0:
+                break
+            a, b = p[i] - p[i - 1], p[(i + 1) % n] - p[i]
+            la, lb = np.hypot(*a), np.hypot(*b)
+            a, b = a / la, b / lb
+            turn = math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))
+            if abs(turn) < 1e-9:
+                continue
+            cut = fillet * math.tan(0.5 * abs(turn))
+            if cut > 0.5 * min(la, lb) * (1.0 + 1e-9):
+                raise InputError(
+                    f"the fillet {fillet:g} does not fit at point {i + 1} of the polyline; take "
+                    f"at most {0.5 * min(la, lb) / math.tan(0.5 * abs(turn)):.4g} there"
+                )
+            before[i], after[i] = p[i] - cut * a, p[i] + cut * b
+            side = math.copysign(1.0, turn)
+            c = before[i] + side * fillet * np.array([-a[1], a[0]])
+            arcs[i] = [*before[i], *after[i], *c, turn]
+        rows: list[list[float]] = []
+        for i in range(n if closed else n - 1):
+            j = (i + 1) % n
+            if np.hypot(*(before[j] - after[i])) > 1e-12 * np.hypot(*(p[j] - p[i])):
+                rows.append([*after[i], *before[j], 0.0, 0.0, 0.0])
+            if j in arcs:
+                rows.append(arcs[j])
+        return cls(np.array(rows), reference)
+
+
+@dataclass
+class PressureLaw:
+    """Pressure [force/length^2] against overclosure [length], instead of none below contact.
+
+    Parameters
+    ----------
+    kind : {"linear", "exponential", "tabular"}
+        ``linear``: ``pressure[0]`` is the stiffness [force/length^3]; ``exponential``: the
+        pressure begins at the clearance ``overclosure[0]`` = c and is ``pressure[0]`` = p0 at
+        zero, p = p0 / (e - 1) (w/c + 1) (exp(w/c + 1) - 1) at the overclosure w; ``tabular``:
+        straight between points, beyond the last one with the last slope.
+    pressure, overclosure : ndarray, shape (n,)
+    """
+
+    kind: Literal["linear", "exponential", "tabular"]
+    pressure: Floats
+    overclosure: Floats = field(default_factory=lambda: np.zeros(1))
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        p = self.pressure = np.atleast_1d(np.asarray(self.pressure, np.float64))
+        w = self.overclosure = np.atleast_1d(np.asarray(self.overclosure, np.float64))
+        if self.kind not in ("linear", "exponential", "tabular"):
+            raise InputError(
+                f"no pressure law {self.kind!r}; there are linear, exponential, tabular",
+                self.where,
+            )
+        if not (np.isfinite(p).all() and np.isfinite(w).all()):
+            raise InputError("the numbers of a pressure law must be finite", self.where)
+        if self.kind == "tabular":
+            if len(p) != len(w) or len(p) < 2 or p[0] != 0.0:
+                raise InputError(
+                    "a pressure table needs as many pressures as overclosures, two at least, and "
+                    "begins with the pressure 0",
+                    self.where,
+                )
+            if (np.diff(p) <= 0.0).any() or (np.diff(w) <= 0.0).any():
+                raise InputError(
+                    "pressures and overclosures of a table must increase strictly", self.where
+                )
+        elif not (p[0] > 0.0 and (self.kind == "linear" or w[0] > 0.0)):
+            raise InputError("the numbers of a pressure law must be > 0", self.where)
+
+    @property
+    def start(self) -> float:
+        """Overclosure at which the pressure begins [length]; negative before contact."""
+        if self.kind == "linear":
+            return 0.0
+        return -float(self.overclosure[0]) if self.kind == "exponential" else float(
+            self.overclosure[0]
+        )  # fmt: skip
+
+    def __call__(self, w: Floats) -> tuple[Floats, Floats, Floats]:
+        """Pressure, slope and energy per area at overclosures above the start.
+
+        Parameters
+        ----------
+        w : ndarray, shape (n,)
+
+        Returns
+        -------
+        pressure, slope, energy : ndarray, shape (n,)
+            [force/length^2], [force/length^3], [force/length].
+        """
+        if self.kind == "linear":
+            k = float(self.pressure[0])
+            return k * w, np.full_like(w, k), 0.5 * k * w * w
+        if self.kind == "exponential":
+            c, p0 = float(self.overclosure[0]), float(self.pressure[0]) / (math.e - 1.0)
+            # Straight on from 30 c: the exponential of a bad iterate must not overflow.
+            s = w / c + 1.0
+            near = np.minimum(s, 30.0)
+            e, over = np.exp(near), s - near
+            slope = p0 / c * (e - 1.0 + near * e)
+            at = p0 * near * (e - 1.0)
+            energy = p0 * c * (near * e - e + 1.0 - 0.5 * near * near)
+            return (
+                at + slope * c * over,
+                slope,
+                energy + at * c * over + 0.5 * slope * (c * over) ** 2,
+            )
+        ws, ps = self.overclosure, self.pressure
+        at = np.clip(np.searchsorted(ws, w, side="right") - 1, 0, len(ws) - 2)
+        slopes = np.diff(ps) / np.diff(ws)
+        below = np.concatenate([[0.0], np.cumsum(0.5 * (ps[1:] + ps[:-1]) * np.diff(ws))])
+        d = w - ws[at]
+        return ps[at] + slopes[at] * d, slopes[at], below[at] + ps[at] * d + 0.5 * slopes[at] * d**2
+
+
+@dataclass
+class ContactPair:
+    """Two surfaces, or a surface and a rigid curve, that may touch.
+
+    Parameters
+    ----------
+    slave : str or array_like of int, shape (n, 2)
+        Edge set, or pairs of cell index and local edge: the side that carries the pressures;
+        the finer or softer one.
+    master : str, array_like of int or RigidCurve
+        The other side; the slave again for contact of a surface with itself.
+    method : {"mortar", "node_to_segment"}
+    friction : float
+        Coulomb coefficient, >= 0.
+    law : PressureLaw, optional
+        Pressure against overclosure; without it nothing penetrates.
+    clearance : float, optional
+        Gap at the start [length], whatever the coordinates say.
+    start : {"keep", "adjust", "ramp"}
+        Overlap of the coordinates at the start: pushed out in the first increment, taken as
+        the touching state without strain, or pushed out over the first step.
+    stabilise : bool
+        Damp the two surfaces in static steps until the end of each, so that bodies which
+        nothing else holds find each other.
+    reach : float
+        Distance at which pairs are looked at [length]; 0 takes four edges.
+    name : str
+    """
+
+    slave: str | Ints
+    master: str | Ints | RigidCurve
+    method: Literal["mortar", "node_to_segment"] = "mortar"
+    friction: float = 0.0
+    law: PressureLaw | None = None
+    clearance: float | None = None
+    start: Literal["keep", "adjust", "ramp"] = "keep"
+    stabilise: bool = False
+    reach: float = 0.0
+    name: str = ""
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError(
+                f"no contact method {self.method!r}; there are {', '.join(METHODS)}", self.where
+            )
+        if self.start not in STARTS:
+            raise InputError(
+                f"start must be one of {', '.join(STARTS)}, not {self.start!r}", self.where
+            )
+        for what, value in (("friction", self.friction), ("reach", self.reach)):
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(f"the {what} of a contact pair must be >= 0", self.where)
+        if self.clearance is not None and not math.isfinite(self.clearance):
+            raise InputError("the clearance of a contact pair must be finite", self.where)
+        if not self.name:
+            self.name = f"{_called(self.slave)}-{_called(self.master)}"
+
+    @property
+    def itself(self) -> bool:
+        """Whether the surface touches itself."""
+        if isinstance(self.master, RigidCurve) or isinstance(self.slave, str) != isinstance(
+            self.master, str
+        ):
+            return False
+        if isinstance(self.slave, str):
+            return self.slave == self.master
+        return np.array_equal(self.slave, np.asarray(self.master))
+
+
+@dataclass
+class Tie:
+    """Two surfaces joined without the same nodes.
+
+    Parameters
+    ----------
+    slave, master : str or array_like of int, shape (n, 2)
+    tolerance : float
+        Largest distance that is bridged [length]; 0 takes a tenth of the longest edge. What
+        is farther apart stays free.
+    name : str
+    """
+
+    slave: str | Ints
+    master: str | Ints
+    tolerance: float = 0.0
+    name: str = ""
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
+            raise InputError("the tolerance of a tie must be >= 0", self.where)
+        if not self.name:
+            self.name = f"{_called(self.slave)}-{_called(self.master)}"
+
+
+def _called(where: object) -> str:
+    if isinstance(where, RigidCurve):
+        return where.name or "rigid curve"
+    return where if isinstance(where, str) else "edges"

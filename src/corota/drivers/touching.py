@@ -1,0 +1,526 @@
+"""Contact pairs and ties during an analysis: gaps, forces and their multipliers.
+
+With the weighted gap G_k(x) and slip S_k(x) of a slave node k and the tractions p_k, q_k that
+belong to them, the Lagrangian is ``Pi - sum_k p_k G_k - sum_k q_k S_k``. G and S come from the
+core as functions of the nodal positions alone, with exact first and second derivatives.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.contact import ContactPair, Tie
+from corota.drivers.touching_setup import contact_core, tie_core
+from corota.errors import ModelError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.drivers.system import System
+    from corota.drivers.touching_linear import Bordered
+    from corota.steps import Step
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: States of a constraint.
+OPEN, CLOSED, SLIPPING = 0, 1, 2
+#: Share of its full area below which a node sees nothing of the other side.
+COVERED = 1e-9
+#: Damping of stabilised surfaces per stiffness of their nodes and period.
+STABILISE = 1e-3
+EPS = float(np.finfo(float).eps)
+
+
+@dataclass
+class Terms:
+    """Gaps and slips of one pair at a state.
+
+    Parameters
+    ----------
+    gap, slip, area : ndarray, shape (k,)
+        Weighted gap and slip of each constraint [length^3], covered area [length^2].
+    constraint, pair : ndarray of int, shape (m,)
+        Constraint of each term, and candidate pair of the core.
+    variables : ndarray of int, shape (m, v)
+        ``3 node + component``, -1 for none.
+    gap_gradient, slip_gradient : ndarray, shape (m, v)
+    """
+
+    gap: Floats
+    slip: Floats
+    area: Floats
+    constraint: Ints
+    pair: Ints
+    variables: Ints
+    gap_gradient: Floats
+    slip_gradient: Floats
+
+
+class Pair:
+    """One contact pair or tie.
+
+    Parameters
+    ----------
+    system : System
+    item : ContactPair or Tie
+
+    Attributes
+    ----------
+    n : int
+        Constraints.
+    nodes : ndarray of int, shape (n,)
+        Their slave nodes.
+    width : int
+        Multipliers of the pair: n, or 2 n with friction and in ties.
+    """
+
+    def __init__(self, system: System, item: ContactPair | Tie) -> None:
+        self.item = item
+        self.tied = isinstance(item, Tie)
+        self.friction = 0.0 if isinstance(item, Tie) else item.friction
+        self.law = None if isinstance(item, Tie) else item.law
+        build: Any = tie_core if self.tied else contact_core
+        self.core, self.slave, self.master = build(system, item)
+        self.nodes = np.asarray(self.core.nodes, np.int64)
+        self.n = len(self.nodes)
+        self.full = np.asarray(self.core.full_area, float)
+        self.two = self.tied or self.friction > 0.0
+        self.width = self.n * (2 if self.two else 1)
+        self.first = 0
+        self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
+        self.on_slave = np.zeros(len(system.per_node), bool)
+        self.on_slave[self.slave.node_list] = True
+        self.fixed: Terms | None = None  # of geometrically linear steps
+        self.area = self.full.copy()  # areas of pressure laws, kept within an increment
+        self.overlap = self.base = np.zeros(self.n)  # of the start, and gap that counts as none
+        self.slid = np.zeros(self.n)  # slip so far [length]
+        self.friction_work = 0.0
+        self.seen = False  # whether the surfaces were ever near each other
+        self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
+        far = float(np.abs(system.model.mesh.points).max())
+        self.noise = 32.0 * EPS * (system.length + far)  # gaps that are rounding [length]
+        self.name = item.name
+
+    # -- evaluation --------------------------------------------------------------------
+
+    def evaluate(self, x: Floats, old: Floats, turning: bool) -> Terms:
+        """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3)."""
+        if not turning:
+            return self._linear(x, old)
+        self.core.search(x)
+        return self._read(self.core.evaluate(x, old if self.friction else None))
+
+    def _read(self, raw: dict[str, Any]) -> Terms:
+        area = raw["total_area"]
+        self.seen = self.seen or bool(len(raw["constraint"]))
+        return Terms(
+            raw["total_gap"], raw["total_slip"], area, raw["constraint"], raw["pair"],
+            raw["variables"], raw["gap_gradient"], raw["slip_gradient"],
+        )  # fmt: skip
+
+    def _linear(self, x: Floats, old: Floats) -> Terms:
+        """The pair as it is in the reference configuration, linear in displacement."""
+        if self.fixed is None:
+            self.core.search(self.reference)
+            self.fixed = self._read(self.core.evaluate(self.reference, self.reference))
+        at = self.fixed
+
+        def rise(gradient: Floats, since: Floats) -> Floats:
+            moved = (x - since).ravel()[at.variables]
+            out = np.zeros(self.n)
+            np.add.at(out, at.constraint, (gradient * moved).sum(axis=1))
+            return out
+
+        gap = at.gap + rise(at.gap_gradient, self.reference)
+        slip = rise(at.slip_gradient, self.reference if self.tied else old)
+        return Terms(
+            gap, slip, at.area, at.constraint, at.pair, at.variables, at.gap_gradient,
+            at.slip_gradient,
+        )  # fmt: skip
+
+    # -- states ------------------------------------------------------------------------
+
+    def trial(self, terms: Terms, p: Floats) -> tuple[Floats, Floats]:
+        """Gap [length] and trial pressure of each constraint; not covered: infinitely open."""
+        seen = terms.area > COVERED * self.full
+        if self.law is not None:
+            # The areas of the law are those of the increment's start: its tangent is exact.
+            gap = np.where(seen, terms.gap / self.area, np.inf)
+            return gap, np.where(seen, -gap - self.law.start, -np.inf)
+        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), np.inf)
+        return gap, np.where(seen, p - self.stiffness * np.where(seen, gap, 0.0), -np.inf)
+
+    def states(self, terms: Terms, p: Floats, q: Floats) -> NDArray[np.int8]:
+        """State of each constraint that its gap, slip and tractions ask for, shape (n,)."""
+        if self.tied:
+            return np.where(terms.area > COVERED * self.full, CLOSED, OPEN).astype(np.int8)
+        _, push = self.trial(terms, p)
+        # What touches without pressure holds, or nothing would hold a body that just rests.
+        rounding = 0.0 if self.law is not None else self.stiffness * self.noise
+        state = np.where(push > -rounding, CLOSED, OPEN).astype(np.int8)
+        if self.friction:
+            bound = self.friction * (p if self.law is not None else push)
+            state[(state == CLOSED) & (np.abs(self.shear(terms, q)) > bound)] = SLIPPING
+        return state
+
+    def shear(self, terms: Terms, q: Floats) -> Floats:
+        """Trial shear traction, shape (n,)."""
+        seen = terms.area > COVERED * self.full
+        slip: Floats = terms.slip / np.where(seen, terms.area, 1.0)
+        return q - self.stiffness * np.where(seen, slip, 0.0)
+
+    def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
+        """What the contact conditions lack, as a force by constraint, shape (n,)."""
+        seen = terms.area > COVERED * self.full
+        area = np.where(seen, terms.area, self.full)
+
+        def beyond(length: Floats) -> Floats:
+            return np.sign(length) * np.maximum(np.abs(length) - self.noise, 0.0)
+
+        gap = beyond(terms.gap / area)
+        slip = beyond(terms.slip / area)
+        c = self.stiffness
+        if self.tied:
+            return np.where(seen, area * c * np.hypot(gap, slip), self.full * np.hypot(p, q))
+        if self.law is None:
+            lack = np.abs(np.minimum(c * gap, p))
+        else:
+            lack = np.abs(p - self._pressure(terms.gap / self.area)[0])
+        lack = np.where(seen, lack, np.abs(p))
+        if self.friction:
+            bound = self.friction * np.maximum(p, 0.0)
+            lack += np.abs(q - np.where(seen, np.clip(q - c * slip, -bound, bound), 0.0))
+        return area * lack
+
+    def _pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
+        """The law at gaps: pressure, slope, energy per area; none where it has not begun."""
+        assert self.law is not None
+        begun = -gap > self.law.start
+        p, slope, energy = self.law(np.where(begun, -gap, self.law.start))
+        return (
+            np.where(begun, p, 0.0), np.where(begun, slope, 0.0), np.where(begun, energy, 0.0)
+        )  # fmt: skip
+
+    def law_energy(self, terms: Terms) -> float:
+        """Energy of the pressure law [force*length]."""
+        if self.law is None:
+            return 0.0
+        seen = terms.area > COVERED * self.full
+        gap = np.where(seen, terms.gap / self.area, -self.law.start)
+        return float((self._pressure(gap)[2] * self.area)[seen].sum())
+
+    def rows(
+        self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """The constraints linearised: diagonals and right-hand sides of p and q, and the slope.
+
+        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
+
+        Returns
+        -------
+        diagonal_p, rhs_p, diagonal_q, rhs_q, follow : ndarray, shape (n,)
+            ``follow`` is dq / dp of slipping rows.
+        """
+        own = self.full / self.stiffness  # of the size of a row
+        closed = state != OPEN
+        dp = np.where(closed, 0.0, own)
+        rp = np.where(closed, terms.gap, -own * p)
+        if self.law is not None and closed.any():
+            area = self.area
+            value, slope, _ = self._pressure(terms.gap / area)
+            weight = area / np.where(slope > 0.0, slope, 1.0)
+            dp = np.where(closed, -weight, dp)
+            rp = np.where(closed, weight * (p - value), rp)
+        if not self.two:
+            return dp, rp, dp[:0], dp[:0], dp[:0]
+        sticks = state == CLOSED
+        dq = np.where(sticks, 0.0, own)
+        sign = np.where(self.shear(terms, q) > 0.0, 1.0, -1.0)
+        follow = np.where(state == SLIPPING, self.friction * sign, 0.0)
+        rq = np.where(sticks, terms.slip, 0.0)
+        return dp, rp, dq, rq, follow
+
+    # -- increments --------------------------------------------------------------------
+
+    def commit(self, terms: Terms, q: Floats) -> None:
+        """Accept a state."""
+        self.core.commit()
+        seen = terms.area > COVERED * self.full
+        self.area = np.where(seen, terms.area, self.full)
+        if self.friction:
+            slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
+            self.slid += np.where(q != 0.0, slip, 0.0)
+            self.friction_work -= float(q @ terms.slip)
+
+
+@dataclass
+class Touch:
+    """All pairs at a state.
+
+    Parameters
+    ----------
+    terms : list of Terms
+    force : ndarray, shape (n_dofs,)
+        Of the pairs on the nodes, along the axes of the nodes.
+    size : ndarray, shape (n_dofs,)
+        Sum of sizes of its parts.
+    multipliers : ndarray, shape (n_multipliers,)
+    damping : ndarray, shape (n_dofs,), or None
+        Stabilising stiffness of this increment.
+    """
+
+    terms: list[Terms]
+    force: Floats
+    size: Floats
+    multipliers: Floats
+    damping: Floats | None = None
+    states: list[NDArray[np.int8]] = field(default_factory=list)
+
+
+class Touching:
+    """All contact pairs and ties of a model.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    pairs : list of Pair
+    n : int
+        Multipliers of all pairs.
+    committed : ndarray, shape (n,)
+        Their values in the committed state.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        model = system.model
+        items: list[ContactPair | Tie] = [*model.ties, *model.contacts]
+        self.pairs = [Pair(system, item) for item in items]
+        names: dict[str, int] = {}
+        for pair in self.pairs:
+            count = names[pair.item.name] = names.get(pair.item.name, 0) + 1
+            pair.name = pair.item.name + (f" ({count})" if count > 1 else "")
+        self.n = 0
+        for pair in self.pairs:
+            pair.first = self.n
+            self.n += pair.width
+        self.committed = np.zeros(self.n)
+        self.u = np.zeros(system.n_dofs)
+        self.at: Touch | None = None
+        self.period, self.number = 1.0, 0
+        self.time = 0.0
+        self.notes: list[str] = []
+        self.damped = np.zeros(0)
+        self.damping_work = 0.0
+        # Dof of each variable 3 node + component, -1 where there is none.
+        dof = np.full(3 * len(system.per_node), -1, np.int64)
+        dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
+        self._dof = np.append(dof, -1)
+        self._stiff = False
+        self.border: Bordered | None = None  # linear algebra with the multipliers, made when needed
+
+    # -- steps -------------------------------------------------------------------------
+
+    def begin(self, step: Step) -> None:
+        """Start a step."""
+        self.number += 1
+        self.period, self.time = step.period, 0.0
+        if self.number == 1:
+            self._start()
+        for pair in self.pairs:
+            pair.fixed = None
+
+    def _start(self) -> None:
+        """Look at the gaps of the start; report, adjust or note what to ramp."""
+        x = self.positions(self.u)
+        for pair in self.pairs:
+            item = pair.item
+            if isinstance(item, Tie):
+                self._start_tie(pair, x)
+                continue
+            pair.core.search(x)
+            raw = pair.core.evaluate(x, x)
+            area = raw["total_area"]
+            seen = area > COVERED * pair.full
+            gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
+            if item.clearance is not None:
+                pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
+                gap = np.where(seen, item.clearance, 0.0)
+            pair.overlap = np.minimum(gap, 0.0)
+            pair.base = pair.core.offset
+            pair.area = np.where(seen, area, pair.full)
+            deepest = int(np.argmin(gap))
+            longest = float(pair.slave.length.max())
+            if gap[deepest] < -1e-9 * longest:
+                how = {
+                    "keep": "is pushed out in the first increment (start='ramp' or 'adjust' "
+                    "would spread it over the step, or take it as no strain)",
+                    "adjust": "counts as touching, without strain",
+                    "ramp": "is pushed out over the first step",
+                }[item.start]
+                label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
+                self.notes.append(
+                    f"contact pair {pair.name!r}: the surfaces overlap by up to "
+                    f"{-gap[deepest]:.4g} at node {label} at the start; this {how}"
+                )
+            if item.start == "adjust":
+                pair.core.offset = pair.core.offset + pair.overlap
+
+    def _start_tie(self, pair: Pair, x: Floats) -> None:
+        pair.core.search(x)
+        raw = pair.core.evaluate(x, x)
+        bare = raw["total_area"] <= COVERED * pair.full
+        if bare.all():
+            raise ModelError(
+                f"tie {pair.name!r}: no edge of {pair.slave.name!r} lies on {pair.item.master!r} "
+                "within its tolerance; raise it (tolerance=, POSITION TOLERANCE=)",
+                pair.item.where,
+            )
+        if bare.any():
+            labels = self.system.model.mesh.node_labels[pair.nodes[bare]]
+            self.notes.append(
+                f"tie {pair.name!r}: {len(labels)} nodes of {pair.slave.name!r} are out of "
+                f"tolerance and stay free: {_few(labels)}"
+            )
+
+    # -- evaluation --------------------------------------------------------------------
+
+    def positions(self, u: Floats) -> Floats:
+        """Positions and rotations of all nodes at a displacement, shape (n_nodes, 3)."""
+        x = self.system.by_node(u)
+        x[:, :2] += self.system.model.mesh.points
+        return x
+
+    def dofs(self, variables: Ints) -> Ints:
+        """Dofs of variables of the core, -1 for none."""
+        return self._dof[variables]
+
+    def parts(self, multipliers: Floats) -> list[tuple[Floats, Floats]]:
+        """Tractions p and q of each pair."""
+        out = []
+        for pair in self.pairs:
+            p = multipliers[pair.first : pair.first + pair.n]
+            q = multipliers[pair.first + pair.n : pair.first + pair.width]
+            out.append((p, q if pair.two else np.zeros(pair.n)))
+        return out
+
+    def evaluate(self, u: Floats, multipliers: Floats, step_time: float, values: Floats) -> Touch:
+        """All pairs at a trial state.
+
+        Parameters
+        ----------
+        values : ndarray, shape (nnz,)
+            Tangent of the elements, for the stiffness of the nodes.
+        """
+        system = self.system
+        if not self._stiff:
+            self._measure(values)
+        x, old = self.positions(u), self.positions(self.u)
+        force, size = np.zeros(system.n_dofs + 1), np.zeros(system.n_dofs + 1)
+        found = []
+        for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
+            with system.timed("contact"):
+                self._ramp(pair, step_time)
+                terms = pair.evaluate(x, old, system.turning)
+            found.append(terms)
+            part = p[terms.constraint, None] * terms.gap_gradient
+            if pair.two:
+                part = part + q[terms.constraint, None] * terms.slip_gradient
+            where = self.dofs(terms.variables)
+            np.add.at(force, where, part)
+            np.add.at(size, where, np.abs(part))
+        damping = self._damping(step_time)
+        return Touch(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
+
+    def _ramp(self, pair: Pair, step_time: float) -> None:
+        item = pair.item
+        if isinstance(item, ContactPair) and item.start == "ramp" and self.number == 1:
+            pair.core.offset = pair.base + pair.overlap * (1.0 - step_time / self.period)
+
+    def _measure(self, values: Floats) -> None:
+        """Pressure per gap of each node: stiffness of the node over its area."""
+        system = self.system
+        diagonal = np.abs(values[system.indptr[1:].astype(np.int64) - 1])
+        by_node = np.zeros((len(system.per_node), 3))
+        by_node[system.node_of_dof, system.component] = diagonal
+        nodal = by_node[:, :2].mean(axis=1)
+        top = float(nodal.max()) or 1.0
+        for pair in self.pairs:
+            k = nodal[pair.nodes]
+            pair.stiffness = np.where(k > 0.0, k, top) / pair.full
+        self.damped = np.zeros(system.n_dofs)
+        for pair in self.pairs:
+            if isinstance(pair.item, ContactPair) and pair.item.stabilise:
+                nodes = pair.slave.node_list
+                if pair.master is not None:
+                    nodes = np.union1d(nodes, pair.master.node_list)
+                for component in (0, 1):
+                    dofs = system.dofs(nodes, component)
+                    self.damped[dofs] = STABILISE * diagonal[dofs]
+        self._stiff = True
+
+    def _damping(self, step_time: float) -> Floats | None:
+        if not self.damped.any():
+            return None
+        dt = step_time - self.time
+        left = 1.0 - step_time / self.period
+        if dt <= 0.0 or left <= 0.0:
+            return None
+        return self.damped * (left * self.period / dt)
+
+    # -- increments --------------------------------------------------------------------
+
+    def commit(self, u: Floats, touch: Touch, step_time: float) -> None:
+        """Accept a state."""
+        for pair, terms, (_, q) in zip(
+            self.pairs, touch.terms, self.parts(touch.multipliers), strict=True
+        ):
+            pair.commit(terms, q)
+        if touch.damping is not None:
+            self.damping_work += float(touch.damping @ (u - self.u) ** 2)
+        self.u, self.committed, self.time = u.copy(), touch.multipliers.copy(), step_time
+        touch.states = [
+            pair.states(terms, p, q)
+            for pair, terms, (p, q) in zip(
+                self.pairs, touch.terms, self.parts(self.committed), strict=True
+            )
+        ]
+        self.at = touch
+
+    def restore(self) -> None:
+        """Go back to the committed state."""
+        for pair in self.pairs:
+            pair.core.restore()
+
+    def output(self) -> tuple[Floats, dict[str, float]]:
+        """Contact at the nodes of the committed state, and sums of the pairs.
+
+        Returns
+        -------
+        values : ndarray, shape (n_nodes, 5)
+            See :attr:`corota.results.Frame.C`.
+        sums : dict of str to float
+            Force on the slave surface, its moment about the origin, and energies.
+        """
+        from corota.drivers.touching_output import output
+
+        return output(self)
+
+    def label(self, pair: Pair, constraint: int) -> int:
+        """The user's number of the slave node of a constraint."""
+        return int(self.system.model.mesh.node_labels[pair.nodes[constraint]])
+
+
+def _few(labels: Ints, most: int = 5) -> str:
+    shown = ", ".join(str(n) for n in labels[:most])
+    return shown + (", ..." if len(labels) > most else "")
+
+
+__all__ = ["CLOSED", "OPEN", "SLIPPING", "Pair", "Terms", "Touch", "Touching"]

@@ -1,0 +1,411 @@
+"""Linear systems with multipliers: the tangent bordered by the constraints of contact.
+
+Unknowns are the free dofs and then the multipliers. The pattern holds every coupling that was
+seen so far and those next to them, so that it, the ordering and the symbolic factorisation stay
+while contact moves about. What slipping friction and follower loads make unsymmetric is kept
+apart: the symmetric part is factorised, and a few steps of GMRES, preconditioned with it, take
+the rest in; where they do not converge, a factorisation LU of the whole does.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.drivers.tie_map import _union
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.drivers.system import Evaluation, System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: GMRES: relative residual that is enough, and steps after which LU takes over.
+ENOUGH, STEPS = 1e-11, 60
+
+
+@dataclass
+class Triplets:
+    """Entries of a sparse matrix, those at one place to be added."""
+
+    rows: Ints
+    columns: Ints
+    values: Floats
+
+    @classmethod
+    def join(cls, parts: list[Triplets]) -> Triplets:
+        """All entries of several."""
+        if not parts:
+            return cls(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
+        return cls(
+            np.concatenate([p.rows for p in parts]),
+            np.concatenate([p.columns for p in parts]),
+            np.concatenate([p.values for p in parts]),
+        )
+
+    def keep(self, chosen: NDArray[np.bool_]) -> Triplets:
+        """Some of the entries."""
+        return Triplets(self.rows[chosen], self.columns[chosen], self.values[chosen])
+
+
+@dataclass
+class Coupling:
+    """What contact adds to the linearised equations, in dofs and multipliers.
+
+    Parameters
+    ----------
+    bend : Triplets
+        Symmetric part at dofs, both triangles.
+    rows : Triplets
+        Dofs by multipliers: derivatives of the forces by the tractions, and transposed those
+        of the constraints.
+    follow : Triplets
+        Dofs by multipliers without the transposed part.
+    diagonal : ndarray, shape (n_multipliers,)
+    force : ndarray, shape (n_dofs,)
+        Added to the right-hand side of equilibrium, in global axes.
+    near : tuple of ndarray of int
+        Dofs and multipliers (-1 none) of pairs that may soon couple, for the pattern.
+    """
+
+    bend: Triplets
+    rows: Triplets
+    follow: Triplets
+    diagonal: Floats
+    force: Floats
+    near: tuple[Ints, Ints]
+
+
+class Bordered:
+    """Solves the bordered systems of a model.
+
+    Parameters
+    ----------
+    system : System
+    n : int
+        Multipliers.
+    """
+
+    def __init__(self, system: System, n: int) -> None:
+        self.system, self.n = system, n
+        ties = system.ties
+        self.free = np.arange(system.n_dofs) if ties is None else ties.free
+        base = (
+            (system.indptr, system.indices) if ties is None
+            else (ties.places.indptr, ties.places.indices)
+        )  # fmt: skip
+        self.nf = len(self.free)
+        self.size = self.nf + n
+        start = base[0].astype(np.int64)
+        column = np.repeat(np.arange(self.nf, dtype=np.int64), np.diff(start))
+        self._base = column * self.size + base[1].astype(np.int64)
+        self.node = np.concatenate(
+            [system.node_of_dof[self.free], len(system.per_node) + np.arange(n)]
+        )
+        self.after = self.nf + np.arange(n)
+        self.keys = np.zeros(0, np.int64)
+        self._held: NDArray[np.bool_] | None = None
+        self._analyzed = False
+        self._full: Callable[[Floats], Floats] | None = None
+        #: Steps of GMRES so far and fall-backs to LU, for reports.
+        self.steps = self.whole = 0
+        self._lu: Any = None
+
+    # -- pattern -----------------------------------------------------------------------
+
+    def _place(self, rows: Ints, columns: Ints, spare: Callable[[], Ints]) -> Ints:
+        """Places of entries of the upper triangle; the pattern grows where it lacks them."""
+        wanted = columns * self.size + rows
+        if len(self.keys):
+            at = np.minimum(np.searchsorted(self.keys, wanted), len(self.keys) - 1)
+            if np.array_equal(self.keys[at], wanted):
+                return at
+        self._grow(np.concatenate([wanted, spare()]))
+        return np.searchsorted(self.keys, wanted)
+
+    def _grow(self, more: Ints) -> None:
+        if not len(self.keys):
+            every = np.arange(self.nf, self.size)
+            more = np.concatenate([every * self.size + every, more])
+            self.keys = _union(self._base, more)
+        else:
+            self.keys = _union(self.keys, more)
+        self._target = np.searchsorted(self.keys, self._base)
+        self.rows = self.keys % self.size
+        self.columns = self.keys // self.size
+        counts = np.bincount(self.columns, minlength=self.size)
+        self.indptr = np.concatenate([[0], np.cumsum(counts)])
+        self.diagonal = self.indptr[1:] - 1
+        self._held, self._analyzed, self._lu = None, False, None
+
+    def _mask(self, held: NDArray[np.bool_]) -> Ints:
+        """Places of the entries of held unknowns beside the diagonal."""
+        if self._held is None or not np.array_equal(held, self._held):
+            self._held = held.copy()
+            off = (held[self.rows] | held[self.columns]) & (self.rows != self.columns)
+            self._masked = np.flatnonzero(off)
+        return self._masked
+
+    # -- solution ----------------------------------------------------------------------
+
+    def solve(
+        self, at: Evaluation, coupling: Coupling, force: Floats, rhs: Floats, du_held: Floats
+    ) -> tuple[Floats, Floats, int]:
+        """Corrections of displacements and multipliers.
+
+        Parameters
+        ----------
+        at : Evaluation
+        coupling : Coupling
+        force : ndarray, shape (n_dofs,)
+            Right-hand side of equilibrium.
+        rhs : ndarray, shape (n,)
+            And of the constraints.
+        du_held : ndarray, shape (n_dofs,)
+            Prescribed changes at held dofs, 0 elsewhere.
+
+        Returns
+        -------
+        du : ndarray, shape (n_dofs,)
+        dp : ndarray, shape (n,)
+        negative : int
+            Negative pivots, -1 if unknown.
+        """
+        system, link = self.system, at.link
+        held = np.zeros(self.size, bool)
+        held[: self.nf] = system.conditions.held[self.free]
+        with system.timed("border"):
+            load = self._load(at)
+            if link is None:
+                values = at.values
+                upper, rest = self._direct(coupling, load)
+                b = np.concatenate([force, rhs])
+            else:
+                values = link.reduce(at.values, at.residual)
+                upper, rest = self._reduced(coupling, load, link)
+                b = np.concatenate([link.gather(force)[self.free], rhs])
+            places = self._place(
+                upper.rows, upper.columns, lambda: self._spare(coupling, link is None)
+            )
+            data = np.zeros(len(self.keys))
+            data[self._target] = values
+            np.add.at(data, places, upper.values)
+            moved = np.zeros(self.size)
+            moved[: self.nf] = du_held[self.free]
+            if moved.any():
+                b -= self._multiply(data, moved)
+                np.subtract.at(b, rest.rows, rest.values * moved[rest.columns])
+            data[self._mask(held)] = 0.0
+            on = self.diagonal[held]
+            data[on] = np.where(data[on] == 0.0, 1.0, np.abs(data[on]))
+            b[held] = 0.0
+            rest = rest.keep(~held[rest.rows] & ~held[rest.columns])
+        try:
+            x, negative = self._solve(data, rest, b)
+        except SingularError as error:
+            raise self._named(error) from None
+        x[held] = moved[held]
+        du = x[: self.nf]
+        if link is not None:
+            out = np.zeros(system.n_dofs)
+            out[self.free] = du
+            du = link.move(out)
+        return du, x[self.nf :], negative
+
+    def _named(self, error: SingularError) -> SingularError:
+        """The same error in terms of nodes."""
+        equation, mode = error.equation, error.mode
+        if not 0 <= equation < self.nf and mode is not None:
+            # The dof that moves most stands for a multiplier.
+            moved = np.abs(np.asarray(mode).reshape(self.size, -1)[: self.nf, 0])
+            equation = int(np.argmax(moved)) if moved.any() else equation
+        if not 0 <= equation < self.nf:
+            return SingularError("the constraints of contact depend on each other")
+        own = None if mode is None else np.asarray(mode).reshape(self.size, -1)[: self.nf]
+        return self.system.singular(SingularError(str(error), equation, own))
+
+    def _load(self, at: Evaluation) -> Triplets:
+        """Minus the derivative of the external force."""
+        if at.load_stiffness is None:
+            return Triplets.join([])
+        rows, columns, values = at.load_stiffness
+        return Triplets(np.asarray(rows, np.int64), np.asarray(columns, np.int64), -values)
+
+    def _direct(self, c: Coupling, load: Triplets) -> tuple[Triplets, Triplets]:
+        upper = [c.bend.keep(c.bend.rows <= c.bend.columns)]
+        rest = []
+        if len(load.values):
+            import scipy.sparse as sp
+
+            n = self.system.n_dofs
+            whole = sp.coo_array((load.values, (load.rows, load.columns)), shape=(n, n)).tocsr()
+            upper_of, odd = _halves(whole)
+            upper.append(upper_of)
+            rest.append(odd)
+        upper += self._borders(c, c.rows)
+        return Triplets.join(upper), Triplets.join([*rest, self._loose(c.follow)])
+
+    def _loose(self, follow: Triplets) -> Triplets:
+        return Triplets(follow.rows, follow.columns + self.nf, follow.values)
+
+    def _borders(self, c: Coupling, rows: Triplets) -> list[Triplets]:
+        own = np.arange(self.n) + self.nf
+        return [
+            Triplets(rows.rows, rows.columns + self.nf, rows.values),
+            Triplets(own, own, c.diagonal),
+        ]
+
+    def _reduced(self, c: Coupling, load: Triplets, link: Any) -> tuple[Triplets, Triplets]:
+        """The same after elimination of dependent dofs."""
+        import scipy.sparse as sp
+
+        n = self.system.n_dofs
+        t = link.ties.places.whole(link.ties.rows_of(link.g))
+
+        def square(x: Triplets) -> Any:
+            full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, n)).tocsr()
+            return t.T @ full @ t
+
+        def side(x: Triplets) -> Triplets:
+            full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, self.n)).tocsr()
+            found = (t.T @ full).tocoo()
+            return Triplets(found.row.astype(np.int64), found.col.astype(np.int64), found.data)
+
+        upper, odd = _halves(square(load) if len(load.values) else None)
+        bend = square(c.bend)
+        bend, _ = _halves(0.5 * (bend + bend.T))
+        rows = self._borders(c, side(c.rows))
+        rest = [odd, self._loose(side(c.follow))]
+        return Triplets.join([upper, bend, *rows]), Triplets.join(rest)
+
+    def _spare(self, c: Coupling, direct: bool) -> Ints:
+        """Keys of couplings that may soon be wanted."""
+        dofs, own = c.near
+        if not direct or not len(dofs):
+            return np.zeros(0, np.int64)
+        every = np.concatenate([dofs, np.where(own >= 0, own + self.nf, -1)], axis=1)
+        i, j = np.triu_indices(every.shape[1])
+        a, b = every[:, i].ravel(), every[:, j].ravel()
+        good = (a >= 0) & (b >= 0)
+        # Multipliers of one pair do not couple with each other.
+        good &= (np.minimum(a, b) < self.nf) | (a == b)
+        a, b = a[good], b[good]
+        return np.unique(np.maximum(a, b) * self.size + np.minimum(a, b))
+
+    def _multiply(self, data: Floats, x: Floats) -> Floats:
+        """Product of the symmetric matrix with a vector that is mostly zero."""
+        hit = np.flatnonzero((x[self.columns] != 0.0) | (x[self.rows] != 0.0))
+        r, c, v = self.rows[hit], self.columns[hit], data[hit]
+        out = np.zeros(self.size)
+        np.add.at(out, r, v * x[c])
+        off = r != c
+        np.add.at(out, c[off], v[off] * x[r[off]])
+        return out
+
+    def _solve(self, data: Floats, rest: Triplets, b: Floats) -> tuple[Floats, int]:
+        system = self.system
+        solver = system.solver
+        try:
+            if not self._analyzed or system._analyzed:
+                with system.timed("order"):
+                    solver.analyze(self.indptr, self.rows, self.node, self.after)
+                self._analyzed, system._analyzed = True, False
+            with system.timed("factor"):
+                inertia = solver.factorize(data)
+            system._last = solver
+            with system.timed("solve"):
+                if not len(rest.values):
+                    return solver.solve(b), -1 if inertia is None else inertia[1]
+                x = self._gmres(solver.solve, rest, b)
+            if x is not None:
+                return x, -1
+        except SingularError:
+            if not len(rest.values):
+                raise
+        with system.timed("factor"):
+            return self._by_lu(data, rest, b), -1
+
+    def _gmres(self, solve: Callable[[Floats], Floats], rest: Triplets, b: Floats) -> Floats | None:
+        """Solution of (M + N) x = b with M factorised and N few entries; None if it stalls."""
+
+        def apply(v: Floats) -> Floats:
+            product = np.zeros(self.size)
+            np.add.at(product, rest.rows, rest.values * v[rest.columns])
+            return v + solve(product)
+
+        r = solve(b)
+        # Multipliers and displacements have sizes of their own.
+        scale = np.ones(self.size)
+        for part in (slice(0, self.nf), slice(self.nf, self.size)):
+            top = float(np.abs(r[part]).max(initial=0.0))
+            scale[part] = top if top > 0.0 else 1.0
+        r = r / scale
+        beta = float(np.linalg.norm(r))
+        if beta == 0.0:
+            return r
+        basis, h = [r / beta], np.zeros((STEPS + 1, STEPS))
+        for k in range(STEPS):
+            w = apply(basis[k] * scale) / scale
+            for _ in range(2):
+                for i, v in enumerate(basis):
+                    part_of = float(v @ w)
+                    h[i, k] += part_of
+                    w = w - part_of * v
+            h[k + 1, k] = float(np.linalg.norm(w))
+            small = np.zeros(k + 2)
+            small[0] = beta
+            y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
+            left = float(np.linalg.norm(small - h[: k + 2, : k + 1] @ y))
+            self.steps += 1
+            if left <= ENOUGH * beta or h[k + 1, k] <= 1e-15 * beta:
+                return np.asarray(
+                    scale * np.sum([c * v for c, v in zip(y, basis, strict=False)], axis=0)
+                )
+            if k > 20 and left > 0.5 * beta:
+                return None
+            basis.append(w / h[k + 1, k])
+        return None
+
+    def _by_lu(self, data: Floats, rest: Triplets, b: Floats) -> Floats:
+        import scipy.sparse as sp
+
+        from corota.drivers.solvers import Faer
+
+        self.whole += 1
+        shape = (self.size, self.size)
+        upper = sp.csc_array((data, self.rows, self.indptr), shape=shape)
+        extra = sp.coo_array((rest.values, (rest.rows, rest.columns)), shape=shape)
+        matrix = (upper + sp.triu(upper, 1).T + extra).tocsc()
+        matrix.sort_indices()
+        lu = Faer(symmetric=False)
+        lu.analyze(matrix.indptr, matrix.indices, self.node)
+        lu.factorize(matrix.data)
+        self.system._last = lu
+        return lu.solve(b)
+
+
+def _halves(matrix: Any) -> tuple[Triplets, Triplets]:
+    """Upper triangle of the symmetric part of a matrix, and the skew part if there is one."""
+    import scipy.sparse as sp
+
+    if matrix is None:
+        return Triplets.join([]), Triplets.join([])
+    size = float(abs(matrix).max()) if matrix.nnz else 0.0
+    even = sp.triu(0.5 * (matrix + matrix.T)).tocoo()
+    odd = (0.5 * (matrix - matrix.T)).tocoo()
+    parts = [
+        Triplets(x.row.astype(np.int64), x.col.astype(np.int64), np.asarray(x.data))
+        for x in (even, odd)
+    ]
+    return parts[0], parts[1].keep(np.abs(parts[1].values) > 1e-9 * size)
+
+
+__all__ = ["Bordered", "Coupling", "Triplets"]

@@ -1,0 +1,65 @@
+"""Newton's method with contact, for the procedures that have it."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.drivers.newton import newton
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.drivers.newton import Judgement, Outcome, Settings
+    from corota.drivers.system import Evaluation, System
+    from corota.drivers.touching_system import TouchingSystem
+
+    Floats = NDArray[np.float64]
+
+
+def newton_with_contact(
+    inner: Any,
+    system: System,
+    u: Floats,
+    prescribed: Floats,
+    step_time: float,
+    settings: Settings,
+    report: Callable[[int, Judgement, float, str], None] | None = None,
+    weight: float = 1.0,
+) -> tuple[Outcome[Evaluation], TouchingSystem]:
+    """Newton's method on displacements and multipliers of contact.
+
+    Parameters
+    ----------
+    inner : System, or a motion around it
+        What gives residual and tangent without contact.
+    system : System
+    u, prescribed, step_time, settings, report
+        As for :func:`corota.drivers.newton.newton`.
+    weight : float
+        Share of the contact forces in the residual.
+
+    Returns
+    -------
+    outcome : Outcome
+        In terms of the system; the internal force holds that of contact.
+    touching : TouchingSystem
+        Its ``accept`` commits contact, once the increment is taken.
+    """
+    from corota.drivers.touching_system import MORE, TouchingSystem
+
+    problem = TouchingSystem(inner, system, weight)
+    n = system.n_dofs
+    z = problem.start(u)
+    target = np.concatenate([prescribed, z[n:]])
+    more = replace(settings, max_iterations=settings.max_iterations + MORE)
+    outcome = newton(problem, z, target, step_time, more, None, report)
+    return problem.settle(outcome), problem
+
+
+__all__ = ["newton_with_contact"]

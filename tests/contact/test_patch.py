@@ -1,0 +1,140 @@
+"""The contact patch test: a uniform pressure passes between meshes that do not match."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+import numpy as np
+import pytest
+
+import corota as ct
+
+CELLS = {
+    "T3": "tri3", "OPT": "tri3", "T6": "tri6", "Q4": "quad4", "Q4I": "quad4", "Q4D": "quad4",
+    "Q8": "quad8", "Q8R": "quad8", "Q9": "quad9",
+}  # fmt: skip
+E, NU, P = 1000.0, 0.3, 5.0
+
+
+def blocks(low, up, angle=0.0, overhang=0.0, cuts=(3, 4)):
+    """Two blocks on each other, the upper one narrower by `overhang` at both sides."""
+    a = ct.mesh.rectangle(2.0, 1.0, cuts[0], 2, CELLS[low])
+    b = ct.mesh.rectangle(2.0 - 2.0 * overhang, 0.8, cuts[1], 2, CELLS[up], origin=(overhang, 1.0))
+    mesh = ct.mesh.assembly(low=a, up=b)
+    return ct.mesh.move(mesh, angle=angle)
+
+
+def rigid_motion_held(model, mesh, angle):
+    """Supports that let both blocks strain freely: the bottom slides, one corner is fixed."""
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    turn = np.array([[c, -s], [s, c]])
+    if angle:
+        model.local_axes(mesh.node_sets["low.bottom"], angle=np.radians(angle))
+        model.local_axes(mesh.node_sets["up.top"], angle=np.radians(angle))
+    # The uniform state needs moments at the corners of edges that bulge.
+    model.fix("low.bottom", x=None, y=0.0, rotation=True)
+    middle = {}
+    for name in ("low.bottom", "up.top"):
+        nodes = mesh.node_sets[name]
+        along = (mesh.points[nodes] @ turn)[:, 0]
+        middle[name] = nodes[np.argsort(along)[0]]
+    model.fix([middle["low.bottom"]], x=0.0, y=None)
+    model.fix([middle["up.top"]], x=0.0, y=None)
+    return turn
+
+
+def solved(low, up, angle=0.0, plane="stress", slave="up", nlgeom=True, **options):
+    mesh = blocks(low, up, angle, options.pop("overhang", 0.0))
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=E, nu=NU)
+    how = {"material": material, "thickness": 0.5, "plane": plane}
+    # A uniform strain is exact at large deformation with the strain of the true gradient only.
+    how["local_strain"] = "modified" if nlgeom else "simplified"
+    model.section("low", element=low, **how)
+    model.section("up", element=up, **how)
+    turn = rigid_motion_held(model, mesh, angle)
+    push = turn @ [0.0, -P]
+    model.traction("up.top", x=push[0], y=push[1])
+    faces = ("up.bottom", "low.top")
+    model.contact(*(faces if slave == "up" else faces[::-1]), **options)
+    return ct.solve(model, ct.Static(nlgeom=nlgeom), threads=1), turn
+
+
+def stresses(results, turn):
+    """Stress at all points in the axes of the interface, shape (n, 3): along, across, shear."""
+    s = np.concatenate([b.values["S"].reshape(-1, 4) for b in results.frames[-1].fields])
+    full = np.array([[s[:, 0], s[:, 3]], [s[:, 3], s[:, 1]]])
+    local = np.einsum("ji,jkn,kl->iln", turn, full, turn)
+    return np.column_stack([local[0, 0], local[1, 1], local[0, 1]])
+
+
+@pytest.mark.parametrize("up", CELLS)
+@pytest.mark.parametrize("low", CELLS)
+def test_linear_patch_of_all_pairs(low, up):
+    index = list(CELLS).index(low) + list(CELLS).index(up)
+    angle, plane = (30.0, "strain") if index % 2 else (0.0, "stress")
+    results, turn = solved(low, up, angle, plane, "low" if index % 3 else "up", nlgeom=False)
+    found = stresses(results, turn)
+    assert np.abs(found - [0.0, -P, 0.0]).max() < 1e-10 * P
+
+
+def uniform(results, turn, rows=slice(None)):
+    """Whether the stress is one number, and across the interface only."""
+    found = stresses(results, turn)[rows]
+    assert np.abs(found[:, [0, 2]]).max() < 1e-10 * P
+    assert np.ptp(found[:, 1]) < 1e-10 * P
+    assert found[0, 1] == pytest.approx(-P, rel=0.02)  # per deformed area
+    return True
+
+
+@pytest.mark.parametrize(
+    ("low", "up"),
+    [("Q4I", "Q4I"), ("Q9", "T6"), ("Q4D", "Q8R"), ("T3", "Q4D"), ("Q8", "Q4"), ("T6", "T3")],
+)
+@pytest.mark.parametrize(("angle", "plane"), [(0.0, "strain"), (30.0, "stress")])
+def test_nonlinear_patch(low, up, angle, plane):
+    results, turn = solved(low, up, angle, plane)
+    assert uniform(results, turn)
+    sums = results.frames[-1].scalars
+    force = turn.T @ [sums["up.bottom-low.top: force x"], sums["up.bottom-low.top: force y"]]
+    assert force == pytest.approx([0.0, P * 2.0 * 0.5], abs=1e-10)
+
+
+@pytest.mark.parametrize("element", [e for e in CELLS if e != "OPT"])
+@pytest.mark.parametrize("slave", ["up", "low"])
+def test_patch_after_sliding_on_part_of_the_master(element, slave):
+    """The upper block slides over a wider one that is held altogether."""
+    low = ct.mesh.rectangle(4.0, 0.5, 7, 1, CELLS[element])
+    up = ct.mesh.rectangle(1.0, 0.8, 3, 2, CELLS[element], origin=(0.6, 0.5))
+    mesh = ct.mesh.move(ct.mesh.assembly(low=low, up=up), angle=30.0)
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=E, nu=NU), plane="strain",
+        local_strain="modified",
+    )  # fmt: skip
+    model.fix("low", x=0.0, y=0.0, rotation=True)
+    model.local_axes(mesh.node_sets["up.top"], angle=np.radians(30.0))
+    c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
+    turn = np.array([[c, -s], [s, c]])
+    model.fix([mesh.node_sets["up.top"][0]], x=1.13, y=None)
+    model.fix("up.top", x=None, y=None, rotation=True)
+    push = turn @ [0.0, -P]
+    model.traction("up.top", x=push[0], y=push[1])
+    names = ("up.bottom", "low.top")
+    model.contact(*(names if slave == "up" else names[::-1]))
+    results = ct.solve(model, ct.Static(increments=3), threads=1)
+    blocks = results.frames[-1].fields
+    inside = np.isin(np.concatenate([b.cells for b in blocks]), mesh.cell_sets["up"])
+    assert uniform(results, turn, np.repeat(inside, blocks[0].values["S"].shape[1]))
+
+
+@pytest.mark.parametrize("element", CELLS)
+def test_patch_on_a_rigid_line(element):
+    mesh = ct.mesh.rectangle(1.0, 0.8, 3, 2, CELLS[element])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=E, nu=NU))
+    model.fix([mesh.node_sets["top"][0]], x=0.0, y=None)
+    model.fix("top", x=None, y=None, rotation=True)
+    model.traction("top", y=-P)
+    model.contact("bottom", ct.RigidCurve.line([2.0, 0.0], [-1.0, 0.0]))
+    results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+    assert np.abs(stresses(results, np.eye(2)) - [0.0, -P, 0.0]).max() < 1e-10 * P
+    pressure = results.nodal("CPRESS")[mesh.nodes_of("bottom")]
+    assert pressure == pytest.approx(P, rel=1e-10)
