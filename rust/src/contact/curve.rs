@@ -1,8 +1,9 @@
 //! Element edges as curves: straight, quadratic, or bulged by the rotations of drilling nodes.
 //!
 //! All three are `m + d r + b (1 - r^2)`, `r` from -1 to 1, with `m` and `d` from the corners;
-//! `b` is zero, the offset of the middle node, or `alpha_b / 8` times the difference of the
-//! rotations times the chord turned outwards (the same bulge as in `loads::edge`).
+//! `b` is zero, the offset of the middle node, or `alpha_b l0 / 8` times the difference of the
+//! rotations along the chord's outward normal (the bulge of `loads::edge`; l0 is the undeformed
+//! length, so that a nominal pressure gives the moments `alpha_b p t l0^2 / 12`).
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::Smooth;
@@ -166,6 +167,8 @@ pub struct Edge {
     pub n_nodes: usize,
     /// Bulge factor of drilling elements, 0 for others.
     pub alpha_b: f64,
+    /// Undeformed length of the chord.
+    pub length: f64,
 }
 
 impl Edge {
@@ -193,8 +196,8 @@ impl Edge {
             c.b = sub([v[4], v[5]], c.m);
             c.straight = false;
         } else if self.alpha_b > 0.0 {
-            // The chord is 2 d.
-            c.b = times(outward(c.d), (v[5] - v[4]).scale(self.alpha_b / 4.0));
+            let height = (v[5] - v[4]).scale(self.alpha_b * self.length / 8.0);
+            c.b = times(unit(outward(c.d)), height);
             c.straight = false;
         }
         c

@@ -39,7 +39,7 @@ fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResul
     }
     let edge = |(row, &alpha_b): (&[i64; 3], &f64)| {
         let n_nodes = if row[2] < 0 { 2 } else { 3 };
-        let mut edge = Edge { nodes: [0; 3], n_nodes, alpha_b };
+        let mut edge = Edge { nodes: [0; 3], n_nodes, alpha_b, length: 0.0 };
         for a in 0..n_nodes {
             edge.nodes[a] = u32::try_from(row[a])
                 .ok()
@@ -47,7 +47,8 @@ fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResul
                 .ok_or_else(|| bad(format!("{side}: node {} is out of range", row[a])))?;
         }
         let d = edge.place(x).d;
-        if d[0].hypot(d[1]) <= 0.0 {
+        edge.length = 2.0 * d[0].hypot(d[1]);
+        if edge.length.is_nan() || edge.length <= 0.0 {
             return Err(bad(format!("{side}: edge {} - {} has no length", row[0], row[1])));
         }
         Ok(edge)
