@@ -267,6 +267,8 @@ class ContactPair:
     start : {"keep", "adjust", "ramp"}
         Overlap of the coordinates at the start: pushed out in the first increment, taken as
         the touching state without strain, or pushed out over the first step.
+    adjust : float
+        With ``start="adjust"``: gaps up to this at the start [length] are taken as touching too.
     stabilise : bool
         Damp the two surfaces in static steps until the end of each, so that bodies which
         nothing else holds find each other.
@@ -286,6 +288,7 @@ class ContactPair:
     reach: float = 0.0
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+    adjust: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -296,7 +299,11 @@ class ContactPair:
             raise InputError(
                 f"start must be one of {', '.join(STARTS)}, not {self.start!r}", self.where
             )
-        for what, value in (("friction", self.friction), ("reach", self.reach)):
+        for what, value in (
+            ("friction", self.friction),
+            ("reach", self.reach),
+            ("adjusted gap", self.adjust),
+        ):
             if not (math.isfinite(value) and value >= 0.0):
                 raise InputError(f"the {what} of a contact pair must be >= 0", self.where)
         if self.clearance is not None and not math.isfinite(self.clearance):

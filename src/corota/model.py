@@ -568,6 +568,7 @@ class Model(InitialFields):
         law: PressureLaw | None = None,
         clearance: float | None = None,
         start: Literal["keep", "adjust", "ramp"] = "keep",
+        adjust: float = 0.0,
         stabilise: bool = False,
         reach: float = 0.0,
         name: str = "",
@@ -581,7 +582,7 @@ class Model(InitialFields):
         self.contacts.append(
             ContactPair(
                 self._edges(slave), other, method, friction, law, clearance, start, stabilise,
-                reach, name,
+                reach, name, adjust=adjust,
             )
         )  # fmt: skip
 

@@ -10,7 +10,13 @@ from corota.drivers.arc_length import path_step
 from corota.drivers.increments import Increments
 from corota.drivers.newton import Outcome, Settings, newton
 from corota.drivers.touching_start import newton_with_contact
-from corota.errors import ConvergenceError, Interrupted, ModelError, SingularError
+from corota.errors import (
+    ConvergenceError,
+    Interrupted,
+    ModelError,
+    SingularError,
+    UnsupportedError,
+)
 from corota.paths import ArcLength
 from corota.results import Iteration
 
@@ -47,6 +53,12 @@ def static_step(
     """
     state.step_time = 0.0
     if step.path is not None:
+        if system.touching is not None:
+            raise UnsupportedError(
+                "a step that follows a path takes no contact pairs or ties: raise the load, or "
+                "prescribe a displacement",
+                step.where,
+            )
         path_step(system, step, number, state, observers, save, step.path)
         return
     control = Increments(step, stops)
@@ -141,6 +153,8 @@ def _go_along_path(
     ConvergenceError
         At the limit point, unless the step is to follow the path beyond it.
     """
+    if system.touching is not None:
+        return False  # arc length knows no contact
     try:
         system.conditions.check_proportional()
     except ModelError:

@@ -8,7 +8,6 @@ elements, loads and supports, and nothing of increments or iterations.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from corota.drivers.constraints import Link, Ties, extra_dofs
 from corota.drivers.newton import ElementFailure, Judgement
 from corota.drivers.thermal import FreeStrains
 from corota.drivers.tie_setup import carry_curves
+from corota.drivers.timer import Timer
 from corota.drivers.user_blocks import UserBlocks
 from corota.errors import ModelError, SingularError
 from corota.results import PointFields
@@ -40,22 +40,6 @@ NOTHING = 1e3
 EPS = float(np.finfo(float).eps)
 #: Names of the dofs in messages.
 DOF_NAMES = ("x", "y", "rotation")
-
-
-class Timer:
-    """Adds the time of a block to a profile; ten times lighter than a generator."""
-
-    __slots__ = ("begin", "phase", "profile")
-
-    def __init__(self, profile: dict[str, float], phase: str) -> None:
-        self.profile, self.phase = profile, phase
-
-    def __enter__(self) -> None:
-        self.begin = perf_counter()
-
-    def __exit__(self, *_: object) -> None:
-        spent = perf_counter() - self.begin
-        self.profile[self.phase] = self.profile.get(self.phase, 0.0) + spent
 
 
 @dataclass

@@ -85,7 +85,7 @@ class Pair:
         self.friction = 0.0 if isinstance(item, Tie) else item.friction
         self.law = None if isinstance(item, Tie) else item.law
         build: Any = tie_core if self.tied else contact_core
-        self.core, self.slave, self.master = build(system, item)
+        self.core, self.slave, self.master, self.reach = build(system, item)
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         self.full = np.asarray(self.core.full_area, float)
@@ -155,17 +155,29 @@ class Pair:
         gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), np.inf)
         return gap, np.where(seen, p - self.stiffness * np.where(seen, gap, 0.0), -np.inf)
 
-    def states(self, terms: Terms, p: Floats, q: Floats) -> NDArray[np.int8]:
-        """State of each constraint that its gap, slip and tractions ask for, shape (n,)."""
+    def states(
+        self, terms: Terms, p: Floats, q: Floats, last: NDArray[np.int8] | None = None
+    ) -> NDArray[np.int8]:
+        """State of each constraint that its gap, slip and tractions ask for, shape (n,).
+
+        What was closed in the last correction has no linearised gap left: its pressure alone
+        decides. The gap that is there is a rest of the nonlinearity, which in a slender body
+        is worth many times the pressure.
+        """
         if self.tied:
             return np.where(terms.area > COVERED * self.full, CLOSED, OPEN).astype(np.int8)
         _, push = self.trial(terms, p)
         # What touches without pressure holds, or nothing would hold a body that just rests.
-        rounding = 0.0 if self.law is not None else self.stiffness * self.noise
+        rounding = self.noise if self.law is not None else self.stiffness * self.noise
+        shear = self.shear(terms, q)
+        if last is not None and self.law is None:
+            seen = terms.area > COVERED * self.full
+            push = np.where((last != OPEN) & seen, p, push)
+            shear = np.where(last == CLOSED, q, shear)
         state = np.where(push > -rounding, CLOSED, OPEN).astype(np.int8)
         if self.friction:
             bound = self.friction * (p if self.law is not None else push)
-            state[(state == CLOSED) & (np.abs(self.shear(terms, q)) > bound)] = SLIPPING
+            state[(state == CLOSED) & (np.abs(shear) > bound)] = SLIPPING
         return state
 
     def shear(self, terms: Terms, q: Floats) -> Floats:
@@ -232,8 +244,8 @@ class Pair:
         rp = np.where(closed, terms.gap, -own * p)
         if self.law is not None and closed.any():
             area = self.area
-            value, slope, _ = self._pressure(terms.gap / area)
-            weight = area / np.where(slope > 0.0, slope, 1.0)
+            value, slope, _ = self.law(np.maximum(-terms.gap / area, self.law.start))
+            weight = area / np.where(slope > 0.0, slope, self.stiffness)
             dp = np.where(closed, -weight, dp)
             rp = np.where(closed, weight * (p - value), rp)
         if not self.two:
@@ -371,7 +383,8 @@ class Touching:
                     f"{-gap[deepest]:.4g} at node {label} at the start; this {how}"
                 )
             if item.start == "adjust":
-                pair.core.offset = pair.core.offset + pair.overlap
+                near = np.where(seen & (gap <= item.adjust), np.maximum(gap, 0.0), 0.0)
+                pair.core.offset = pair.core.offset + pair.overlap + near
 
     def _start_tie(self, pair: Pair, x: Floats) -> None:
         pair.core.search(x)

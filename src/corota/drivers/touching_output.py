@@ -32,7 +32,7 @@ def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
             continue
         terms, state = touch.terms[k], touch.states[k]
         seen = terms.area > COVERED * pair.full
-        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), _far(pair))
+        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
         # Positive when the slave is pulled along its own edges' direction.
         rows = np.column_stack([p, q, gap, pair.slid, state])
         if pair.tied:
@@ -50,11 +50,6 @@ def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
     sums["contact energy"] = law
     sums["stabilisation energy"] = touching.damping_work
     return values, sums
-
-
-def _far(pair: Pair) -> float:
-    """Gap of what sees nothing: the distance that was looked at."""
-    return float(getattr(pair.core, "reach", 0.0))
 
 
 def _spread(values: Floats, pair: Pair, rows: Floats, seen: NDArray[np.bool_]) -> None:

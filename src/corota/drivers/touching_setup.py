@@ -162,8 +162,8 @@ def along_contour(found: Surface) -> Surface:
     return found.take(np.array(order, np.int64))
 
 
-def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surface | None]:
-    """The core's pair and its surfaces.
+def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surface | None, float]:
+    """The core's pair, its surfaces and how far it looks.
 
     Raises
     ------
@@ -203,11 +203,11 @@ def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surfa
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
-    return core, slave, master
+    return core, slave, master, reach
 
 
-def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface]:
-    """The core's pair of a tie and its surfaces; slave edges out of tolerance are left out."""
+def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface, float]:
+    """The same for a tie; slave edges that are out of its tolerance stay free."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
     slave, master = surface(system, item.slave, item), surface(system, item.master, item)
@@ -221,7 +221,7 @@ def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface]:
         )  # fmt: skip
     except ValueError as error:
         raise ModelError(f"tie {item.name!r}: {error}", item.where) from None
-    return core, slave, master
+    return core, slave, master, reach
 
 
 def _check_pair(system: System, item: ContactPair | Tie, slave: Surface, master: Surface) -> None:

@@ -17,9 +17,12 @@ import numpy as np
 from corota.drivers.newton import Judgement, Outcome
 from corota.drivers.touching import CLOSED, OPEN, SLIPPING, Touch, Touching
 from corota.drivers.touching_linear import Bordered, Coupling, Triplets
+from corota.drivers.touching_passing import passed
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from corota.drivers.system import Evaluation, System
@@ -85,7 +88,10 @@ class TouchingSystem:
         self.inner, self.system, self.weight = inner, system, weight
         self.touching: Touching = system.touching
         self.n = system.n_dofs
+        # What was closed stays so while its pressure does.
         self.last: States | None = None
+        if self.touching.at is not None and self.touching.at.states:
+            self.last = [s.copy() for s in self.touching.at.states]
         self.seen: dict[bytes, int] = {}
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
@@ -119,7 +125,8 @@ class TouchingSystem:
         if size > judged.force:
             node = self.touching.pairs[pair].nodes[constraint]
             judged.worst = int(self.system.start[node])
-            judged.force = size
+            # Where all surfaces part the forces vanish, and with them the measure.
+            judged.force = max(judged.force, min(size, 1.0))
         return judged
 
     def lack(self, at: Touched) -> tuple[float, int, int]:
@@ -140,16 +147,13 @@ class TouchingSystem:
     def correct(self, at: Touched, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         states = self._choose(at.touch)
-        try:
-            du, dp, negative = self._solve(at, states, rhs, du_held)
-        except SingularError as error:
-            du, dp, negative, states = self._close_some(at, states, rhs, du_held, error)
+        du, dp, negative, states = self._held(at, states, rhs, du_held)
         for (pair, terms, (p, q)), state in zip(self._pairs(at.touch), states, strict=True):
             if pair.two:
                 # Slipping tractions follow the pressure; they are no unknowns of the solution.
                 ratio = pair.rows(terms, state, p, q)[4]
                 new = ratio * (p + dp[pair.first : pair.first + pair.n]) - q
-                slips = state == SLIPPING
+                slips = state != CLOSED
                 dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
         return np.concatenate([du, dp]), negative
 
@@ -160,6 +164,51 @@ class TouchingSystem:
         force = rhs[: self.n] + self.system.at_nodes(coupling.force)
         du, dp, negative = self.border.solve(at.at, coupling, force, own, du_held[: self.n])
         return du, dp, negative - expected if negative >= 0 else -1
+
+    def _held(
+        self, at: Touched, states: States, rhs: Floats, du_held: Floats
+    ) -> tuple[Floats, Floats, int, States]:
+        """Correction for states that hold the bodies, changed as little as that takes.
+
+        Where all nodes that held a body slip at once, nothing holds it: some must still stick.
+        """
+        stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
+        slipping = any((s == SLIPPING).any() for s in states)
+        tries = [states]
+        if slipping:
+            tries += [self._least_stick(at, states), stuck]
+        problem: SingularError | None = None
+        for tried in tries:
+            try:
+                du, dp, negative = self._solve(at, tried, rhs, du_held)
+            except SingularError as error:
+                problem = error
+                continue
+            if tried is not stuck and slipping and self._far(du):
+                continue
+            self.last = tried
+            return du, dp, negative, tried
+        assert problem is not None
+        return self._close_some(at, stuck if slipping else states, rhs, du_held, problem)
+
+    def _least_stick(self, at: Touched, states: States) -> States:
+        """States with the half that exceeds the friction least sticking again."""
+        out = []
+        for s, (pair, terms, (p, q)) in zip(states, self._pairs(at.touch), strict=True):
+            slips = np.flatnonzero(s == SLIPPING)
+            over = np.abs(pair.shear(terms, q))[slips] / np.maximum(p[slips], 1e-300)
+            s = s.copy()
+            s[slips[np.argsort(over, kind="stable")[: (len(slips) + 1) // 2]]] = CLOSED
+            out.append(s)
+        return out
+
+    def _far(self, du: Floats) -> bool:
+        """Whether a correction moves the surfaces farther than contact looks."""
+        moved = self.system.by_node(du)[:, :2]
+        for pair in self.touching.pairs:
+            if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach:
+                return True
+        return False
 
     def _close_some(
         self, at: Touched, states: States, rhs: Floats, du_held: Floats, error: SingularError
@@ -212,7 +261,11 @@ class TouchingSystem:
 
     def _choose(self, touch: Touch) -> States:
         """States for the next correction; single changes once a set comes back."""
-        wanted = [pair.states(terms, p, q) for pair, terms, (p, q) in self._pairs(touch)]
+        before: Sequence[NDArray[np.int8] | None] = self.last or [None] * len(self.touching.pairs)
+        wanted = [
+            pair.states(terms, p, q, last)
+            for (pair, terms, (p, q)), last in zip(self._pairs(touch), before, strict=True)
+        ]
         if self.last is not None:
             changed = [a != b for a, b in zip(wanted, self.last, strict=True)]
             for flips, new in zip(self.flips, changed, strict=True):
@@ -323,6 +376,8 @@ class TouchingSystem:
         """What became of an increment in terms of the system; explains failures."""
         u = outcome.u[: self.n].copy()
         at = None if outcome.at is None else outcome.at.at
+        if outcome.converged:
+            self._refuse_passing(outcome)
         settled: Outcome[Any] = replace(outcome, u=u, at=cast("Any", at))
         self.touch = None if outcome.at is None else outcome.at.touch
         if not outcome.converged:
@@ -331,6 +386,22 @@ class TouchingSystem:
         elif self.single:
             settled.note = f"{outcome.note}; {self.single} single changes of contact".strip("; ")
         return settled
+
+    def _refuse_passing(self, outcome: Outcome[Touched]) -> None:
+        """Give up an increment in which nodes went through the other surface."""
+        if not self.system.turning or outcome.at is None:
+            return
+        old = self.touching.positions(self.touching.u)
+        new = self.touching.positions(outcome.u[: self.n])
+        for pair, terms, (p, q) in self._pairs(outcome.at.touch):
+            found = passed(pair, old, new, pair.states(terms, p, q))
+            if len(found):
+                outcome.converged = False
+                outcome.reason = (
+                    f"node {self.touching.label(pair, int(found[0]))} went through the other "
+                    f"side of contact pair {pair.name!r} in one increment"
+                )
+                return
 
     def accept(self, u: Floats, step_time: float) -> None:
         """Commit contact with the increment."""
