@@ -33,6 +33,10 @@ class ElementFailure(Exception):
     """Elements could not be evaluated at a trial state; a smaller step may help."""
 
 
+class GiveUp(Exception):
+    """No correction of this increment can be of use; a smaller one may."""
+
+
 class EvaluationLike(Protocol):
     """What the method reads of an evaluation."""
 
@@ -177,6 +181,9 @@ def newton(
             # A trial state may be a mechanism, as in plastic collapse, where the start is not.
             outcome.reason = f"a trial state has a singular tangent ({error})"
             return outcome
+        except GiveUp as error:
+            outcome.reason = str(error)
+            return outcome
         if not np.isfinite(du).all():
             outcome.reason = "the linear solution is not finite"
             return outcome
@@ -256,4 +263,4 @@ def _search(
     return problem
 
 
-__all__ = ["ElementFailure", "Judgement", "Outcome", "Settings", "newton"]
+__all__ = ["ElementFailure", "GiveUp", "Judgement", "Outcome", "Settings", "newton"]

@@ -177,7 +177,14 @@ class Pair:
         state = np.where(push > -rounding, CLOSED, OPEN).astype(np.int8)
         if self.friction:
             bound = self.friction * (p if self.law is not None else push)
-            state[(state == CLOSED) & (np.abs(shear) > bound)] = SLIPPING
+            if last is not None:
+                # What slips goes on, unless it turned round: at the bound rounding would decide.
+                bound = np.where(last == SLIPPING, (1.0 - 1e-6) * bound, bound)
+            slips = (state == CLOSED) & (np.abs(shear) > bound)
+            if last is not None:
+                # And what turns round sticks first.
+                slips &= (last != SLIPPING) | (shear * q >= 0.0)
+            state[slips] = SLIPPING
         return state
 
     def shear(self, terms: Terms, q: Floats) -> Floats:
@@ -259,15 +266,15 @@ class Pair:
 
     # -- increments --------------------------------------------------------------------
 
-    def commit(self, terms: Terms, q: Floats) -> None:
-        """Accept a state."""
+    def commit(self, terms: Terms, q: Floats, before: Floats) -> None:
+        """Accept a state with shear tractions `q`, those at the start `before`."""
         self.core.commit()
         seen = terms.area > COVERED * self.full
         self.area = np.where(seen, terms.area, self.full)
         if self.friction:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
-            self.friction_work -= float(q @ terms.slip)
+            self.friction_work -= 0.5 * float((before + q) @ terms.slip)
 
 
 @dataclass
@@ -492,10 +499,11 @@ class Touching:
 
     def commit(self, u: Floats, touch: Touch, step_time: float) -> None:
         """Accept a state."""
-        for pair, terms, (_, q) in zip(
-            self.pairs, touch.terms, self.parts(touch.multipliers), strict=True
-        ):
-            pair.commit(terms, q)
+        for pair, terms, (_, q), (_, before) in zip(
+            self.pairs, touch.terms, self.parts(touch.multipliers), self.parts(self.committed),
+            strict=True,
+        ):  # fmt: skip
+            pair.commit(terms, q, before)
         if touch.damping is not None:
             self.damping_work += float(touch.damping @ (u - self.u) ** 2)
         self.u, self.committed, self.time = u.copy(), touch.multipliers.copy(), step_time

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from corota.drivers.newton import Judgement, Outcome
+from corota.drivers.newton import GiveUp, Judgement, Outcome
 from corota.drivers.touching import CLOSED, OPEN, SLIPPING, Touch, Touching
 from corota.drivers.touching_linear import Bordered, Coupling, Triplets
 from corota.drivers.touching_passing import passed
@@ -36,7 +36,8 @@ EPS = float(np.finfo(float).eps)
 MORE = 24
 #: How often a set of states may come back before single changes are made.
 RETURNS = 2
-NAMES = {OPEN: "open", CLOSED: "closed", SLIPPING: "slipping"}
+#: And how often before the increment is given up.
+HOPELESS = 7
 
 
 @dataclass
@@ -95,7 +96,7 @@ class TouchingSystem:
         self.seen: dict[bytes, int] = {}
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
-        self.single = 0
+        self.single = self.sliding = 0
 
     # -- the protocol of Newton's method -----------------------------------------------
 
@@ -183,8 +184,10 @@ class TouchingSystem:
                 du, dp, negative = self._solve(at, tried, rhs, du_held)
             except SingularError as error:
                 problem = error
+                self.sliding += slipping
                 continue
             if tried is not stuck and slipping and self._far(du):
+                self.sliding += 1
                 continue
             self.last = tried
             return du, dp, negative, tried
@@ -273,6 +276,8 @@ class TouchingSystem:
             if any(c.any() for c in changed):
                 key = b"".join(s.tobytes() for s in wanted)
                 self.seen[key] = self.seen.get(key, 0) + 1
+                if self.seen[key] > HOPELESS:
+                    raise GiveUp("the contact states go round in a circle")
                 self.cautious = self.cautious or self.seen[key] > RETURNS
                 if self.cautious:
                     wanted = self._one_change(touch, wanted, changed)
@@ -436,6 +441,8 @@ class TouchingSystem:
                 f"; the contact state kept changing at node{'s' if len(turning) > 1 else ''} "
                 f"{names}{', ...' if len(turning) > 5 else ''} of pair {turning[0][1].name!r}"
             )
+            if self.sliding > RETURNS:
+                said += "; friction does not hold the bodies: they slide"
             if self.single:
                 said += f"; {self.single} single changes were tried"
         return said
