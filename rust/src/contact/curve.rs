@@ -134,7 +134,9 @@ fn newton(start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (value, slope) = f(r);
         let step = (value / slope).clamp(-1.0, 1.0);
         r -= step;
-        if step.abs() < 1e-14 * (1.0 + r.abs()) {
+        // The next step would be its square. A bound near round-off is not safe: on a short
+        // edge far from the origin the digits of the coordinates end before it.
+        if step.abs() < 1e-7 {
             return r;
         }
         if r.is_nan() || r.abs() > 10.0 {

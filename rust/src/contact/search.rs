@@ -99,7 +99,8 @@ pub fn nodes(slave: &Slave, x: &[[f64; 3]]) -> Vec<Item> {
     slave.nodes.iter().zip(normals).map(place).collect()
 }
 
-/// Half the distance from each edge to the body's other face, inwards along the normal.
+/// Half the distance from each edge inwards to the body's other face, within 60 degrees of the
+/// normal.
 pub fn half_thickness(slave: &Slave, reference: &[[f64; 3]]) -> Vec<f64> {
     let curves: Vec<_> = slave.edges.iter().map(|e| e.place(reference)).collect();
     let boxes: Vec<_> = curves.iter().map(curve_box).collect();
@@ -109,23 +110,20 @@ pub fn half_thickness(slave: &Slave, reference: &[[f64; 3]]) -> Vec<f64> {
         .fold(boxes[0], |a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]);
     let far = (whole[2] - whole[0]).hypot(whole[3] - whole[1]);
     each(curves.len(), |i| {
-        let (p, t) = (curves[i].at(0.0), curves[i].slope(0.0));
-        let n = unit(outward(t));
-        let mut size = 2.0 * dot(t, t).sqrt();
-        // Lengthening rays, so that few boxes are met.
+        let (p, d) = (curves[i].at(0.0), curves[i].d);
+        let n = unit(outward(d));
+        let mut size = 4.0 * dot(d, d).sqrt();
+        // Growing boxes, so that few edges are met.
         loop {
-            let q = [p[0] - size * n[0], p[1] - size * n[1]];
-            let ray = [p[0].min(q[0]), p[1].min(q[1]), p[0].max(q[0]), p[1].max(q[1])];
             let mut least = f64::INFINITY;
-            tree.query(&ray, &mut |j| {
-                let j = j as usize;
-                if j == i {
-                    return;
-                }
-                let other = Master::Curve(curves[j]);
-                let hit = other.ray(p, t, n);
-                if hit.gap < 0.0 && hit.r.abs() <= 1.0 && dot(other.normal(&hit), n) < 0.0 {
-                    least = least.min(-hit.gap);
+            tree.query(&grown([p[0], p[1], p[0], p[1]], size), &mut |j| {
+                let other = &curves[j as usize];
+                let chord = Curve::line(other.at(-1.0), other.at(1.0));
+                let apart = sub(chord.at(chord.foot(p).clamp(-1.0, 1.0)), p);
+                let distance = dot(apart, apart).sqrt();
+                let inwards = -dot(apart, n) > 0.5 * distance;
+                if inwards && dot(outward(chord.d), n) < 0.0 {
+                    least = least.min(distance);
                 }
             });
             if least <= size || size > far {
