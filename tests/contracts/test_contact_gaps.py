@@ -23,7 +23,7 @@ def chain(
     ``bow`` moves the middle nodes outwards (to the right of the way of the chain).
     """
     n = len(points)
-    edges = np.column_stack([np.arange(n - 1), np.arange(1, n), np.full(n - 1, -1)]) + first
+    edges = np.column_stack([np.arange(n - 1), np.arange(1, n), np.full(n - 1, -1 - first)]) + first
     if kind == "quadratic":
         edges[:, 2] = first + n + np.arange(n - 1)
         chord = np.diff(points, axis=0)

@@ -154,3 +154,25 @@ impl<const D: usize> Smooth for Hyper<D> {
         (self.chain(s, c, -s), self.chain(c, -s, -c))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gradient and Hessian of `x sqrt(y) / x^2 - sin(x) cos(y)` worked out by hand.
+    #[test]
+    fn derivatives_are_those_by_hand() {
+        let (a, b) = (0.7_f64, 1.9_f64);
+        let (x, y) = (Hyper::<2>::variable(a, 0), Hyper::<2>::variable(b, 1));
+        let f = x * y.sqrt() / (x * x) - x.sin_cos().0 * y.sin_cos().1;
+        let (root, sa, ca, sb, cb) = (b.sqrt(), a.sin(), a.cos(), b.sin(), b.cos());
+        let near = |p: f64, q: f64| assert!((p - q).abs() < 1e-14 * (1.0 + q.abs()), "{p} {q}");
+        near(f.v, root / a - sa * cb);
+        near(f.d[0], -root / (a * a) - ca * cb);
+        near(f.d[1], 0.5 / (root * a) + sa * sb);
+        near(f.h[0][0], 2.0 * root / a.powi(3) + sa * cb);
+        near(f.h[0][1], -0.5 / (root * a * a) + ca * sb);
+        near(f.h[1][0], f.h[0][1]);
+        near(f.h[1][1], -0.25 / (b * root * a) + sa * cb);
+    }
+}

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which parts of boundaries meet: search, sight, self-contact, hand-over; slip across edges."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from corota._core import Contact
+
+Array = NDArray[np.float64]
+METHODS = ("mortar", "node_to_segment")
+
+
+def path(points: Array, first: int = 0, closed: bool = False) -> NDArray[np.int64]:
+    """Straight edges through points in their order."""
+    n = len(points)
+    start = np.arange(n if closed else n - 1)
+    return np.column_stack([start, (start + 1) % n, np.full(len(start), -1 - first)]) + first
+
+
+def nodes(*parts: Array) -> Array:
+    points = np.vstack(parts)
+    return np.column_stack([points, np.zeros(len(points))])
+
+
+def flat(x: Array, y: float) -> Array:
+    return np.column_stack([x, np.full(len(x), y)])
+
+
+def pair(slave: Array, master: Array, **options: object) -> tuple[Array, Contact]:
+    X = nodes(slave, master)
+    s, m = path(slave), path(master, len(slave))
+    options = {"reach": 0.5, "margin": 0.5, **options}
+    ones = np.ones(len(s))
+    return X, Contact.edges(X, s, 0 * ones, ones, m, np.zeros(len(m)), **options)
+
+
+def gap_of(contact: Contact, x: Array, old: Array | None = None) -> dict[str, Array]:
+    contact.search(x)
+    d = contact.evaluate(x, old)
+    with np.errstate(invalid="ignore"):
+        d["mean"] = d["total_gap"] / d["total_area"]
+        d["path"] = d["total_slip"] / d["total_area"]
+    return d
+
+
+def test_partly_covered_edges_integrate_only_the_covered_part() -> None:
+    """One edge from 1 to 0 under a master from 0.25 on, gap 0.1 + 0.2 x."""
+    slave = flat(np.array([1.0, 0.0]), 0.0)
+    master = np.array([[0.25, 0.15], [2.25, 0.55]])
+    X, contact = pair(slave, master, reach=2.0)
+    d = gap_of(contact, X)
+    x = np.polynomial.Polynomial([0, 1])
+    for k, psi in enumerate((x, 1 - x)):
+        area = psi.integ()(1.0) - psi.integ()(0.25)
+        gap = ((0.1 + 0.2 * x) * psi).integ()
+        np.testing.assert_allclose(d["total_area"][k], area, rtol=1e-14)
+        np.testing.assert_allclose(d["total_gap"][k], gap(1.0) - gap(0.25), rtol=1e-14)
+    np.testing.assert_allclose(contact.full_area, 0.5)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_offset_is_taken_off_the_gap(method: str) -> None:
+    slave = flat(np.linspace(1, 0, 4), 0.0)
+    X, contact = pair(slave, flat(np.linspace(-0.3, 1.4, 5), 0.25), method=method)
+    contact.offset = 0.1 * X[contact.nodes, 0]
+    d = gap_of(contact, X)
+    if method == "node_to_segment":
+        np.testing.assert_allclose(d["mean"], 0.25 - contact.offset)
+    np.testing.assert_allclose(d["total_gap"].sum(), 0.25 - 0.05)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_slip_runs_on_across_edges_and_a_rigid_motion_gives_none(method: str) -> None:
+    """A slave that slides over several master edges, itself carried away and turned."""
+    slave = flat(np.linspace(1, 0, 5), 0.0)
+    X, contact = pair(slave, flat(np.linspace(-2, 3, 40), 0.0), method=method, reach=2.0)
+    angle = 2.0
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    x = X.copy()
+    x[:5, 0] -= 0.77  # along the tangent of the slave edges, which run to the left
+    x[:, :2] = x[:, :2] @ turn + [5, -3]
+    d = gap_of(contact, x, X)
+    np.testing.assert_allclose(d["path"], 0.77, rtol=1e-13)
+    np.testing.assert_allclose(d["mean"], 0.0, atol=1e-14)
+    x = X.copy()
+    x[:, :2] = X[:, :2] @ turn + [5, -3]
+    np.testing.assert_allclose(gap_of(contact, x, X)["path"], 0.0, atol=1e-14)
+
+
+def test_search_finds_what_all_pairs_find() -> None:
+    rng = np.random.default_rng(5)
+    s = np.cumsum(rng.normal(size=(60, 2)), axis=0)
+    m = np.cumsum(rng.normal(size=(70, 2)), axis=0)
+    reach, margin = 0.4, 0.2
+    X, contact = pair(s, m, reach=reach, margin=margin)
+    contact.search(X)
+    found = {tuple(row) for row in contact.candidates()}
+
+    def boxes(p: Array) -> tuple[Array, Array]:
+        return np.minimum(p[:-1], p[1:]), np.maximum(p[:-1], p[1:])
+
+    (a0, a1), (b0, b1) = boxes(s), boxes(m)
+    grow = reach + margin
+    meet = ((a0[:, None] - grow <= b1) & (b0 <= a1[:, None] + grow)).all(axis=2)
+    unit = [np.diff(p, axis=0) for p in (s, m)]
+    unit = [u / np.linalg.norm(u, axis=1)[:, None] for u in unit]
+    meet &= unit[0] @ unit[1].T < 0.7
+    assert found == {tuple(row) for row in np.argwhere(meet)}
+    assert 0 < len(found) < 0.2 * meet.size
+
+
+def test_candidates_stay_while_nothing_moved_far() -> None:
+    X, contact = pair(flat(np.linspace(1, 0, 4), 0.0), flat(np.linspace(-2, 3, 40), 0.1))
+    assert contact.search(X)
+    x = X.copy()
+    x[:4, 0] += 0.24
+    assert not contact.search(x)
+    x[:4, 0] += 0.24
+    assert contact.search(x)
+
+
+def test_the_nearer_of_two_masters_hides_the_other() -> None:
+    slave = flat(np.linspace(1, 0, 3), 0.0)
+    near, far = flat(np.linspace(0.5, 3, 3), 0.1), flat(np.linspace(-1, 3, 3), 0.4)
+    X = nodes(slave, near, far)
+    m = np.vstack([path(near, 3), path(far, 6)])
+    ones = np.ones(2)
+    contact = Contact.edges(X, path(slave), 0 * ones, ones, m, np.zeros(4), reach=1.0, margin=0.1)
+    d = gap_of(contact, X)
+    np.testing.assert_allclose(d["total_area"], contact.full_area)
+    np.testing.assert_allclose(d["total_gap"].sum(), 0.5 * 0.1 + 0.5 * 0.4)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_strip_folded_on_itself_meets_its_face_not_its_back(method: str) -> None:
+    """A U-shaped strip of thickness 0.1 whose legs are 0.05 apart: only the inner faces meet."""
+    n = 20
+    outer, inner = np.linspace(0, 2, n + 1), np.linspace(0.2, 2, n + 1)
+    lower = [flat(outer, 0.0), flat(inner[::-1], 0.1)]
+    upper = [flat(inner, 0.15), flat(outer[::-1], 0.25)]
+    ring = np.vstack(lower + upper)
+    X, e = nodes(ring), path(ring, closed=True)
+    ones = np.ones(len(e))
+    contact = Contact.itself(X, e, 0 * ones, ones, method=method, reach=0.4, margin=0.1)
+    d = gap_of(contact, X)
+    seen = d["total_area"] > 1e-12
+    met = X[contact.nodes[seen]]
+    # The later face of the contour is the slave, so that each pair counts once.
+    np.testing.assert_allclose(met[:, 1], 0.15)
+    assert seen.sum() >= n - 1
+    np.testing.assert_allclose(d["mean"][seen], 0.05, rtol=1e-12)
+
+
+def test_nodes_keep_their_edge_until_clearly_past_its_end() -> None:
+    """A node beside a vertex of a bent master: the edge it had holds it for a twentieth."""
+    master = np.array([[-1.0, 0.1], [0.0, 0.0], [1.0, 0.1]])  # valley seen from below: ridge
+    slave = np.array([[0.2, -0.05], [-0.2, -0.05]])
+    X, contact = pair(slave, master, method="node_to_segment")
+
+    def edge(x0: float) -> int:
+        x = X.copy()
+        x[0, 0] = x0
+        contact.search(x)
+        d = contact.evaluate(x)
+        return int(contact.candidates()[d["pair"][d["constraint"] == 0][0], 1])
+
+    assert edge(0.1) == 1
+    contact.commit()
+    assert edge(0.0) == 1
+    assert edge(-0.01) == 1
+    assert edge(-0.1) == 0
+    assert edge(0.01) == 0
+    contact.restore()
+    assert edge(0.0) == 1
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_threads_do_not_change_a_bit(method: str) -> None:
+    x = np.linspace(1, 0, 101)
+    slave = np.column_stack([x, 0.03 * x * x])
+    X, contact = pair(slave, flat(np.linspace(-0.01, 1.02, 88), 0.02), method=method, reach=0.1)
+    results = []
+    for threads in (1, 2, 3):
+        contact.threads = threads
+        contact.search(X)
+        results.append(contact.evaluate(X, X))
+    for other in results[1:]:
+        for key, value in results[0].items():
+            assert np.array_equal(value, other[key])
+
+
+def test_bad_input_is_named() -> None:
+    slave, master = flat(np.linspace(1, 0, 3), 0.0), flat(np.linspace(0, 1, 3), 0.1)
+    with pytest.raises(ValueError, match="method must be"):
+        pair(slave, master, method="dual")
+    with pytest.raises(ValueError, match="reach and depth"):
+        pair(slave, master, reach=-1.0)
+    with pytest.raises(ValueError, match="edge 0 - 1 has no length"):
+        pair(0 * slave, master)
+    with pytest.raises(ValueError, match="ties are mortar"):
+        pair(slave, master, method="node_to_segment", tie=True)
