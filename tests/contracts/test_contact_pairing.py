@@ -177,6 +177,24 @@ def test_nodes_keep_their_edge_until_clearly_past_its_end() -> None:
     assert edge(0.0) == 1
 
 
+def test_short_edges_far_from_the_origin_stay_covered() -> None:
+    """A quadratic edge of length 0.08 at 8 and at 800, under the joint of two pieces of a disc."""
+    rng = np.random.default_rng(6)
+    for shift in (0.0, 8.0, 800.0):
+        X = nodes(np.array([[0.05, 0.0], [-0.03, 0.0], [0.01, 0.0], [0.0, 1.0]]))
+        X[:, 0] += shift
+        rows = np.array([[shift + 1, 1, 0, 0, shift, 1, 2 * np.pi]])
+        edge = np.array([[0, 1, 2]])
+        contact = Contact.rigid(
+            X, edge, np.zeros(1), np.ones(1), rows, 3, (0.0, 0.0), reach=0.4, margin=0.2
+        )
+        for _ in range(20):
+            x = X.copy()
+            x[:3, :2] += 1e-3 * rng.normal(size=(3, 2))
+            d = gap_of(contact, x)
+            np.testing.assert_allclose(d["total_area"], contact.full_area, rtol=1e-9)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_threads_do_not_change_a_bit(method: str) -> None:
     x = np.linspace(1, 0, 101)
