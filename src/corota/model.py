@@ -451,6 +451,21 @@ class Model(InitialFields):
         where = cells if isinstance(cells, str) else np.asarray(cells, dtype=np.int64)
         self.loads.append(BodyForce(where, "gravity", (x, y), amplitude))
 
+    def centrifugal(
+        self,
+        omega: float,
+        about: tuple[float, float] = (0.0, 0.0),
+        cells: str | ArrayLike = "",
+        amplitude: str = "",
+    ) -> None:
+        """Apply the centrifugal force of a steady spin [rad/time] to cells (default all).
+
+        It is that of the reference positions; an amplitude scales the force.
+        """
+        where = cells if isinstance(cells, str) else np.asarray(cells, dtype=np.int64)
+        value = (float(omega) ** 2, float(about[0]), float(about[1]))
+        self.loads.append(BodyForce(where, "centrifugal", value, amplitude))
+
     def velocity(
         self,
         nodes: str | ArrayLike = "",
