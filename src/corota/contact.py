@@ -150,7 +150,8 @@ class RigidCurve:
         rows: list[list[float]] = []
         for i in range(n if closed else n - 1):
             j = (i + 1) % n
-            if np.hypot(*(before[j] - after[i])) > 1e-12 * np.hypot(*(p[j] - p[i])):
+            left = np.hypot(*(before[j] - after[i]))
+            if not arcs or left > 1e-12 * np.hypot(*(p[j] - p[i])):
                 rows.append([*after[i], *before[j], 0.0, 0.0, 0.0])
             if j in arcs:
                 rows.append(arcs[j])

@@ -5,11 +5,8 @@ import numpy as np
 import pytest
 
 import corota as ct
+from tests.support.contact import CELLS, stresses
 
-CELLS = {
-    "T3": "tri3", "OPT": "tri3", "T6": "tri6", "Q4": "quad4", "Q4I": "quad4", "Q4D": "quad4",
-    "Q8": "quad8", "Q8R": "quad8", "Q9": "quad9",
-}  # fmt: skip
 E, NU, P = 1000.0, 0.3, 5.0
 
 
@@ -55,14 +52,6 @@ def solved(low, up, angle=0.0, plane="stress", slave="up", nlgeom=True, **option
     faces = ("up.bottom", "low.top")
     model.contact(*(faces if slave == "up" else faces[::-1]), **options)
     return ct.solve(model, ct.Static(nlgeom=nlgeom), threads=1), turn
-
-
-def stresses(results, turn):
-    """Stress at all points in the axes of the interface, shape (n, 3): along, across, shear."""
-    s = np.concatenate([b.values["S"].reshape(-1, 4) for b in results.frames[-1].fields])
-    full = np.array([[s[:, 0], s[:, 3]], [s[:, 3], s[:, 1]]])
-    local = np.einsum("ji,jkn,kl->iln", turn, full, turn)
-    return np.column_stack([local[0, 0], local[1, 1], local[0, 1]])
 
 
 @pytest.mark.parametrize("up", CELLS)

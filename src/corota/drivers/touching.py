@@ -187,6 +187,10 @@ class Pair:
             state[slips] = SLIPPING
         return state
 
+    def sense(self, terms: Terms, q: Floats) -> Floats:
+        """Sign of the shear traction if it slips, shape (n,)."""
+        return np.where(self.shear(terms, q) > 0.0, 1.0, -1.0)
+
     def shear(self, terms: Terms, q: Floats) -> Floats:
         """Trial shear traction, shape (n,)."""
         seen = terms.area > COVERED * self.full
@@ -234,11 +238,12 @@ class Pair:
         return float((self._pressure(gap)[2] * self.area)[seen].sum())
 
     def rows(
-        self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats
+        self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, sense: Floats
     ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """The constraints linearised: diagonals and right-hand sides of p and q, and the slope.
 
-        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
+        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone. `sense` is
+        the sign of slipping tractions.
 
         Returns
         -------
@@ -259,8 +264,7 @@ class Pair:
             return dp, rp, dp[:0], dp[:0], dp[:0]
         sticks = state == CLOSED
         dq = np.where(sticks, 0.0, own)
-        sign = np.where(self.shear(terms, q) > 0.0, 1.0, -1.0)
-        follow = np.where(state == SLIPPING, self.friction * sign, 0.0)
+        follow = np.where(state == SLIPPING, self.friction * sense, 0.0)
         rq = np.where(sticks, terms.slip, 0.0)
         return dp, rp, dq, rq, follow
 
@@ -274,7 +278,9 @@ class Pair:
         if self.friction:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
-            self.friction_work -= 0.5 * float((before + q) @ terms.slip)
+            # Where the traction turned round, sliding came after that.
+            mean = np.where(before * q < 0.0, q, 0.5 * (before + q))
+            self.friction_work -= float(mean @ terms.slip)
 
 
 @dataclass

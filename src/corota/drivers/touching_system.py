@@ -38,6 +38,8 @@ MORE = 24
 RETURNS = 2
 #: And how often before the increment is given up.
 HOPELESS = 7
+#: Share of the friction bound from which a correction is made anew with slip, and how often.
+BEYOND, SLIPS = 2.0, 3
 
 
 @dataclass
@@ -97,6 +99,7 @@ class TouchingSystem:
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
         self.single = self.sliding = 0
+        self.senses: dict[int, Floats] = {}  # of slipping tractions, by the pair's first multiplier
 
     # -- the protocol of Newton's method -----------------------------------------------
 
@@ -148,11 +151,14 @@ class TouchingSystem:
     def correct(self, at: Touched, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         states = self._choose(at.touch)
+        self.senses = {
+            pair.first: pair.sense(terms, q) for pair, terms, (p, q) in self._pairs(at.touch)
+        }
         du, dp, negative, states = self._held(at, states, rhs, du_held)
         for (pair, terms, (p, q)), state in zip(self._pairs(at.touch), states, strict=True):
             if pair.two:
                 # Slipping tractions follow the pressure; they are no unknowns of the solution.
-                ratio = pair.rows(terms, state, p, q)[4]
+                ratio = pair.rows(terms, state, p, q, self.senses[pair.first])[4]
                 new = ratio * (p + dp[pair.first : pair.first + pair.n]) - q
                 slips = state != CLOSED
                 dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
@@ -186,9 +192,10 @@ class TouchingSystem:
                 problem = error
                 self.sliding += slipping
                 continue
-            if tried is not stuck and slipping and self._far(du):
+            if tried is not stuck and slipping and self._far(du, du_held):
                 self.sliding += 1
                 continue
+            du, dp, negative, tried = self._let_slip(at, tried, rhs, du_held, (du, dp, negative))
             self.last = tried
             return du, dp, negative, tried
         assert problem is not None
@@ -205,11 +212,50 @@ class TouchingSystem:
             out.append(s)
         return out
 
-    def _far(self, du: Floats) -> bool:
+    def _let_slip(
+        self,
+        at: Touched,
+        states: States,
+        rhs: Floats,
+        du_held: Floats,
+        found: tuple[Floats, Floats, int],
+    ) -> tuple[Floats, Floats, int, States]:
+        """Let slip at once what a correction would load far beyond friction.
+
+        Otherwise a long motion of supports drags the mesh along before anything slips.
+        """
+        for _ in range(SLIPS):
+            new = [s.copy() for s in states]
+            senses = dict(self.senses)
+            for s, (pair, _, (p, q)) in zip(new, self._pairs(at.touch), strict=True):
+                if not pair.friction:
+                    continue
+                p1 = p + found[1][pair.first : pair.first + pair.n]
+                q1 = q + found[1][pair.first + pair.n : pair.first + pair.width]
+                over = (s == CLOSED) & (np.abs(q1) > BEYOND * pair.friction * np.maximum(p1, p))
+                s[over] = SLIPPING
+                sense = self.senses[pair.first]
+                senses[pair.first] = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), sense)
+            if all(np.array_equal(a, b) for a, b in zip(new, states, strict=True)):
+                break
+            before, self.senses = self.senses, senses
+            try:
+                other = self._solve(at, new, rhs, du_held)
+            except SingularError:
+                self.senses = before
+                break
+            if self._far(other[0], du_held):
+                self.senses = before
+                break
+            found, states = other, new
+        return *found, states
+
+    def _far(self, du: Floats, du_held: Floats) -> bool:
         """Whether a correction moves the surfaces farther than contact looks."""
         moved = self.system.by_node(du)[:, :2]
+        held = 2.0 * float(np.abs(self.system.by_node(du_held[: self.n])[:, :2]).max())
         for pair in self.touching.pairs:
-            if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach:
+            if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach + held:
                 return True
         return False
 
@@ -313,7 +359,7 @@ class TouchingSystem:
         expected = 0
         for (pair, terms, (p, q)), state in zip(self._pairs(touch), states, strict=True):
             first, n = pair.first, pair.n
-            dp, rp, dq, rq, ratio = pair.rows(terms, state, p, q)
+            dp, rp, dq, rq, ratio = pair.rows(terms, state, p, q, self.senses[first])
             diagonal[first : first + n], rhs[first : first + n] = dp, rp
             expected += int((state != OPEN).sum())
             where = touching.dofs(terms.variables)
