@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Share of its full area below which a node sees nothing of the other side.
 COVERED = 1e-9
+#: Share of its area below which a node leaves its part to a neighbour.
+WEAK = 0.2
 #: Damping of stabilised surfaces per stiffness of their nodes and period.
 STABILISE = 1e-3
 EPS = float(np.finfo(float).eps)
@@ -98,6 +100,16 @@ class Pair:
         self.fixed: Terms | None = None  # of geometrically linear steps
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
         self.overlap = self.base = np.zeros(self.n)  # of the start, and gap that counts as none
+        self.owner = np.arange(self.n)  # whose constraint a node's part belongs to
+        self.frozen = False  # whether that is settled for the increment
+        self.beside: tuple[Ints, Ints] | None = None
+        if isinstance(item, ContactPair) and item.method == "mortar":
+            place = np.full(len(system.per_node) + 1, -1, np.int64)
+            place[self.nodes] = np.arange(self.n)
+            ends = place[self.slave.nodes[:, :2]]
+            left, right = np.full(self.n, -1, np.int64), np.full(self.n, -1, np.int64)
+            right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
+            self.beside = (left, right)
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
         self.seen = False  # whether the surfaces were ever near each other
@@ -116,12 +128,36 @@ class Pair:
         return self._read(self.core.evaluate(x, old if self.friction else None))
 
     def _read(self, raw: dict[str, Any]) -> Terms:
-        area = raw["total_area"]
+        totals = [raw["total_gap"], raw["total_slip"], raw["total_area"]]
         self.seen = self.seen or bool(len(raw["constraint"]))
+        constraint = raw["constraint"]
+        if self.beside is not None:
+            if not self.frozen:
+                self.owner = self._owners(totals[2])
+            if (self.owner != np.arange(self.n)).any():
+                totals = [np.bincount(self.owner, t, self.n) for t in totals]
+                constraint = self.owner[constraint]
         return Terms(
-            raw["total_gap"], raw["total_slip"], area, raw["constraint"], raw["pair"],
+            *totals, constraint, raw["pair"],
             raw["variables"], raw["gap_gradient"], raw["slip_gradient"],
         )  # fmt: skip
+
+    def _owners(self, area: Floats) -> Ints:
+        """Constraint that each node's part belongs to: its own, or a neighbour's.
+
+        At the end of the other side a slave edge is covered in part. The node beyond would have
+        a constraint on next to nothing, with any pressure; its neighbour's pressure acts there.
+        """
+        own = np.arange(self.n)
+        assert self.beside is not None
+        cover = area / self.full
+        weak = cover < WEAK
+        if not weak.any():
+            return own
+        left, right = self.beside
+        a, b = (np.where(side >= 0, cover[side], 0.0) for side in (left, right))
+        best, which = np.maximum(a, b), np.where(a >= b, left, right)
+        return np.where(weak & (best >= WEAK), which, own)
 
     def _linear(self, x: Floats, old: Floats) -> Terms:
         """The pair as it is in the reference configuration, linear in displacement."""
@@ -270,16 +306,25 @@ class Pair:
 
     # -- increments --------------------------------------------------------------------
 
-    def commit(self, terms: Terms, q: Floats, before: Floats) -> None:
-        """Accept a state with shear tractions `q`, those at the start `before`."""
+    def commit(self, terms: Terms, q: Floats, before: Floats, stuck: NDArray[np.bool_]) -> None:
+        """Accept a state.
+
+        Parameters
+        ----------
+        q, before : ndarray, shape (n,)
+            Shear tractions, and those of the committed state.
+        stuck : ndarray of bool, shape (n,)
+            What stuck there.
+        """
         self.core.commit()
+        self.frozen = False
         seen = terms.area > COVERED * self.full
         self.area = np.where(seen, terms.area, self.full)
         if self.friction:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
-            # Where the traction turned round, sliding came after that.
-            mean = np.where(before * q < 0.0, q, 0.5 * (before + q))
+            # What stuck, or turned round, slid after its traction had grown.
+            mean = np.where(stuck | (before * q < 0.0), q, 0.5 * (before + q))
             self.friction_work -= float(mean @ terms.slip)
 
 
@@ -505,11 +550,14 @@ class Touching:
 
     def commit(self, u: Floats, touch: Touch, step_time: float) -> None:
         """Accept a state."""
-        for pair, terms, (_, q), (_, before) in zip(
+        states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
+        if self.at is not None:
+            states = self.at.states
+        for pair, terms, (_, q), (_, before), state in zip(
             self.pairs, touch.terms, self.parts(touch.multipliers), self.parts(self.committed),
-            strict=True,
+            states, strict=True,
         ):  # fmt: skip
-            pair.commit(terms, q, before)
+            pair.commit(terms, q, before, state == CLOSED)
         if touch.damping is not None:
             self.damping_work += float(touch.damping @ (u - self.u) ** 2)
         self.u, self.committed, self.time = u.copy(), touch.multipliers.copy(), step_time
@@ -525,6 +573,7 @@ class Touching:
         """Go back to the committed state."""
         for pair in self.pairs:
             pair.core.restore()
+            pair.frozen = False
 
     def output(self) -> tuple[Floats, dict[str, float]]:
         """Contact at the nodes of the committed state, and sums of the pairs.

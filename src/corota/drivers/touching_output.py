@@ -34,7 +34,7 @@ def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
         seen = terms.area > COVERED * pair.full
         gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
         # Positive when the slave is pulled along its own edges' direction.
-        rows = np.column_stack([p, q, gap, pair.slid, state])
+        rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]
         if pair.tied:
             rows[:] = 0.0
         _spread(values, pair, rows, seen)

@@ -38,6 +38,8 @@ MORE = 24
 RETURNS = 2
 #: And how often before the increment is given up.
 HOPELESS = 7
+#: Corrections after which partly covered nodes keep to whom they belong.
+SETTLED = 4
 #: Share of the friction bound from which a correction is made anew with slip, and how often.
 BEYOND, SLIPS = 2.0, 3
 
@@ -98,7 +100,7 @@ class TouchingSystem:
         self.seen: dict[bytes, int] = {}
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
-        self.single = self.sliding = 0
+        self.single = self.sliding = self.corrections = 0
         self.senses: dict[int, Floats] = {}  # of slipping tractions, by the pair's first multiplier
 
     # -- the protocol of Newton's method -----------------------------------------------
@@ -150,6 +152,9 @@ class TouchingSystem:
 
     def correct(self, at: Touched, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
+        self.corrections += 1
+        for pair in self.touching.pairs:
+            pair.frozen = self.corrections >= SETTLED
         states = self._choose(at.touch)
         self.senses = {
             pair.first: pair.sense(terms, q) for pair, terms, (p, q) in self._pairs(at.touch)
@@ -392,7 +397,7 @@ class TouchingSystem:
 
     def _bend(self, pair: Any, p: Floats, q: Floats) -> Triplets:
         with self.system.timed("contact"):
-            _, variables, values = pair.core.hessian(p, q)
+            _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
         where = self.touching.dofs(variables)
         v = where.shape[1]
         a, b = np.repeat(where, v, axis=1).ravel(), np.tile(where, (1, v)).ravel()
@@ -416,7 +421,7 @@ class TouchingSystem:
         for shift in (-2, -1, 0, 1, 2):
             close |= np.isin(key, key[used] + shift)
         variables, constraints = variables[close], constraints[close]
-        own = np.where(constraints >= 0, pair.first + constraints, -1)
+        own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
         if pair.two:
             own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
         return self.touching.dofs(variables), own
