@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.drivers.touching import COVERED, OPEN
+from corota.drivers.touching_pair import COVERED, OPEN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.drivers.touching import Pair, Terms, Touching
+    from corota.drivers.touching import Touching
+    from corota.drivers.touching_pair import Pair, Terms
 
     Floats = NDArray[np.float64]
 

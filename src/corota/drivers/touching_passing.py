@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.contact import RigidCurve
-from corota.drivers.touching import CLOSED, SLIPPING
+from corota.drivers.touching_pair import CLOSED, SLIPPING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.drivers.touching import Pair
+    from corota.drivers.touching_pair import Pair
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from corota.drivers.newton import GiveUp, Judgement, Outcome
-from corota.drivers.touching import CLOSED, OPEN, SLIPPING, Touch, Touching
+from corota.drivers.touching import Touch, Touching
 from corota.drivers.touching_linear import Bordered, Coupling, Triplets
+from corota.drivers.touching_pair import CLOSED, OPEN, SLIPPING
 from corota.drivers.touching_passing import passed
 from corota.errors import SingularError
 
