@@ -9,7 +9,12 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 #: What is not a benchmark by itself.
-HELPERS = {"__init__", "__main__", "common", "cantilever", "problems", "decks", "bench_figures"}
+HELPERS = {
+    "__init__", "__main__", "common", "cantilever", "problems", "decks", "bench_figures",
+    "fault_readers", "fault_runs", "fault_world",
+}  # fmt: skip
+#: What takes so long that it runs only when it is named.
+LONG = {"faults", "fuzz_readers"}
 
 
 def names() -> list[str]:
@@ -19,7 +24,7 @@ def names() -> list[str]:
 
 def main() -> int:
     """Run one after the other; the number of those that failed."""
-    wanted = sys.argv[1:] or names()
+    wanted = sys.argv[1:] or [name for name in names() if name not in LONG]
     unknown = sorted(set(wanted) - set(names()))
     if unknown:
         sys.stderr.write(f"no benchmark {', '.join(unknown)}; there are: {', '.join(names())}\n")

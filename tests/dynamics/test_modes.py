@@ -7,25 +7,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from tests.support.models import cell
-
-
-def tapered(element, nx=16, ny=8):
-    """Tapered membrane of NAFEMS FV32: 10 long, 5 to 1 high."""
-    mesh = ct.mesh.rectangle(1.0, 1.0, nx=nx, ny=ny, cell=cell(element))
-    s, t = mesh.points.T.copy()
-    mesh.points[:, 0] = 10.0 * s
-    mesh.points[:, 1] = (2.5 * (1.0 - s) + 0.5 * s) * (2.0 * t - 1.0)
-    model = ct.Model(mesh)
-    model.section(
-        "all", element=element, material=ct.Elastic(E=200e9, nu=0.3, rho=8000.0), thickness=0.05
-    )
-    model.fix("left")
-    return model
-
-
-#: Hz, Abbassian, Dawswell and Knowles, Free Vibration Benchmarks, NAFEMS 1987.
-FV32 = np.array([44.623, 130.03, 162.70, 246.05, 379.90, 391.44])
+from corota.verification.problems.tapered_membrane import EXACT as FV32
+from corota.verification.problems.tapered_membrane import tapered
 
 
 def frequencies(model, modes=6, **keys):
@@ -34,11 +17,6 @@ def frequencies(model, modes=6, **keys):
         .modes[-1]
         .factors
     )
-
-
-@pytest.mark.parametrize(("element", "tolerance"), [("Q8", 4e-5), ("Q9", 1e-4)])
-def test_tapered_membrane(element, tolerance):
-    assert frequencies(tapered(element)) == pytest.approx(FV32, rel=tolerance)
 
 
 @pytest.mark.parametrize("element", ["Q4I", "Q4D", "OPT"])

@@ -127,8 +127,13 @@ def mutate(deck: str, rng: random.Random) -> bytes:
         data = rng.choice(_TEXT)(data, rng)
     raw = data.encode("utf-8", "surrogatepass")
     if rng.random() < 0.25:
-        raw = rng.choice(_BYTES)(raw, rng)
+        raw = mutate_bytes(raw, rng)
     return raw
+
+
+def mutate_bytes(raw: bytes, rng: random.Random) -> bytes:
+    """One mutation that knows of bytes only."""
+    return rng.choice(_BYTES)(raw, rng)
 
 
 def _lines(deck: str) -> list[str]:

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from decks import DECK, MESH, SECTION, SUPPORT
+from decks import DECK, MESH, SECTION, STEP, SUPPORT
 
 ASSEMBLY = """*Part, name=Block
 *Node
@@ -140,7 +140,101 @@ foot, P, 2.
 )
 
 DRILLING = (
-    DECK.replace("CPS4", "Q4D").replace("3, 2, -5.", "3, 6, -5.").replace("1, 1, 2", "1, 1, 6")
+    DECK.replace("CPS4", "Q4D")
+    .replace("3, 2, -5.", "3, 6, -5.")
+    .replace("\n1, 1, 2\n4", "\n1, 1, 6\n4")
 )
 
-SEEDS = (DECK, FULL, FULL, ASSEMBLY, GMSH, DRILLING)
+#: The squares with density, loose nodes, a surface and hardening; then cards and steps.
+HEAD = (
+    MESH
+    + "*NODE\n20, 3., 0.5\n21, 3., 0.5\n*SURFACE, NAME=END\n2, S2\n*NSET, NSET=TIP\n3, 6\n"
+    + SECTION.replace("*SOLID", "*DENSITY\n7.8e-9\n*PLASTIC\n200., 0.\n250., .1\n*SOLID")
+)
+
+CONSTRAINED = (
+    HEAD
+    + """*EQUATION
+2
+3, 1, 1., 6, 1, -1.
+*TRANSFORM, NSET=nall, TYPE=R
+1., 0., 0., 0., 1., 0.
+*COUPLING, REF NODE=20, SURFACE=END, CONSTRAINT NAME=C1
+*DISTRIBUTING
+1, 2
+"""
+    + SUPPORT
+    + STEP
+)
+
+RIGID = (
+    HEAD
+    + "*RIGID BODY, NSET=TIP, REF NODE=20, ROT NODE=21\n"
+    + SUPPORT
+    + """*BOUNDARY
+21, 3, 3, .01
+*STEP, NLGEOM, INC=40
+*STATIC, RIKS
+.1, 1., 1e-5, .5, , 20, 2, -.1
+*CLOAD
+20, 2, -5.
+*END STEP
+"""
+)
+
+MOVING = (
+    HEAD
+    + """*DAMPING, ALPHA=.1, BETA=1e-6
+*INITIAL CONDITIONS, TYPE=VELOCITY
+nall, 2, 1.
+"""
+    + SUPPORT
+    + """*STEP, NLGEOM, INC=30
+*DYNAMIC, ALPHA=-.05, DIRECT
+1e-6, 1e-5
+*CLOAD
+3, 2, -5.
+*END STEP
+*STEP
+*FREQUENCY
+2
+*END STEP
+*STEP
+*MODAL DYNAMIC
+1e-6, 1e-5
+*MODAL DAMPING
+1, 2, .02
+*CLOAD
+3, 2, -5.
+*END STEP
+*STEP
+*STEADY STATE DYNAMICS
+100., 1e5, 5
+*CLOAD
+3, 2, -5.
+*END STEP
+"""
+)
+
+BUCKLING = (
+    DECK.split("*STEP")[0]
+    + """*STEP
+*BUCKLE
+1
+*CLOAD
+3, 1, -5.
+*END STEP
+*STEP, NLGEOM, INC=20
+*STATIC
+.5, 1.
+*CONTROLS, PARAMETERS=FIELD
+1e-6
+*CLOAD
+3, 1, -5.
+*END STEP
+"""
+)
+
+#: Those whose models can be written as decks.
+WRITABLE = (DECK, FULL, FULL, ASSEMBLY, GMSH, DRILLING)
+SEEDS = (*WRITABLE, CONSTRAINED, RIGID, MOVING, BUCKLING)

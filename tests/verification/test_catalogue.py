@@ -14,7 +14,7 @@ from corota.verification.catalogue import Value, problems
 
 #: Seconds: longer ones run with `corota verify` only, but for what nothing else tests.
 QUICK = 0.5
-ALWAYS = {"annulus_pressure", "cook_linear", "short_cantilever"}
+ALWAYS = {"annulus_pressure", "cook_linear", "manufactured_solutions", "short_cantilever"}
 
 
 @pytest.mark.parametrize(

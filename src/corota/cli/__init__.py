@@ -74,6 +74,9 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         return 5 if error.errno == errno.ENOMEM else 6
     except Exception as error:
         _trace()
+        if "can't start new thread" in str(error):
+            terminal.error("the system gives no more threads or memory for them")
+            return 5
         frame = error.__traceback__
         while frame is not None and frame.tb_next is not None:
             frame = frame.tb_next

@@ -28,7 +28,7 @@ NAMES = {
 }  # fmt: skip
 _DIMENSION = {"line2": 1, "line3": 1, "point1": 0}
 _LABEL_LIMIT = 2**53
-_PHYSICAL = re.compile(r'\s*(\d+)\s+(\d+)\s+"(.*)"\s*\Z')
+_PHYSICAL = re.compile(r'\s*(\d{1,15})\s+(\d{1,15})\s+"(.*)"\s*\Z', re.ASCII)
 
 
 @dataclass(slots=True)
@@ -425,7 +425,7 @@ class Reader:
     def _count_line(self, body: int) -> tuple[int, int]:
         end = self.data.find(b"\n", body)
         text = decode(self.data[body:end]).strip() if end >= 0 else ""
-        if not text.isdigit() or len(text) > 15:
+        if not (text.isascii() and text.isdigit()) or len(text) > 15:
             raise self.fault("expected the number of entries", body)
         return int(text), end + 1
 

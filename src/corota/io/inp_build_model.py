@@ -344,6 +344,10 @@ class ModelBuilder:
         found = self.sets.elements(root, draft.target, draft.row.at(0), draft.card, draft.row.text)
         if found is None or amplitude is None:
             return None
+        if not len(found.cells):
+            # Lines of a meshing program are no elements here; a set of them alone is empty too.
+            self.deck.row_error(draft.card, draft.row, 0, f"element set {draft.target} is empty")
+            return None
         if draft.kind == "pressure":
             edges = self.sets.faces(
                 found.cells, draft.index, draft.card, draft.row.at(1), draft.row.text

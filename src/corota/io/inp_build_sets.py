@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from corota.io.inp_lexer import Card
     from corota.mesh.data import Ints, Mesh
 
-_FACE = re.compile(r"S(\d+)\Z")
+_FACE = re.compile(r"S(\d{1,9})\Z", re.ASCII)
 _NONE: Ints = np.zeros(0, np.int64)
 
 

@@ -114,6 +114,13 @@ def modal_damping(deck: Deck, card: Card) -> None:
     now = open_step(deck, card)
     if now is None:
         return
+    if now.make not in (ModalDynamic, SteadyState):
+        deck.error(
+            card, card.where,
+            "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step",
+            hint="*DAMPING, ALPHA=, BETA= damps the other procedures",
+        )  # fmt: skip
+        return
     for row in card.rows():
         if card.has("RAYLEIGH"):
             alpha = deck.real(card, row, 2, "alpha", 0.0)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
+from corota.io import inp_numbers
 from corota.io.inp_cards_material import open_material
 from corota.io.inp_deck import PlasticDraft
 from corota.materials_plastic import Mises, Voce
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     from corota.errors import Location
     from corota.io.inp_deck import Deck, MaterialDraft
     from corota.io.inp_lexer import Card
+
+#: Back-stresses that one material may have.
+MOST_BACK_STRESSES = 20
 
 
 def plastic(deck: Deck, card: Card) -> None:
@@ -56,14 +60,15 @@ def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:
     count = 1
     if card.has("NUMBERBACKSTRESSES"):
         text = card.value("NUMBERBACKSTRESSES")
-        if not text.isdigit() or int(text) < 1:
+        count = int(text) if inp_numbers.is_integer(text) and len(text) < 4 else 0
+        if not 1 <= count <= MOST_BACK_STRESSES:
             deck.error(
                 card,
                 card.at("NUMBERBACKSTRESSES"),
-                f"NUMBER BACKSTRESSES must be a whole number >= 1, not {text}",
+                f"NUMBER BACKSTRESSES must be a whole number from 1 to {MOST_BACK_STRESSES}, "
+                f"not {inp_numbers.shown(text)}",
             )
             return False
-        count = int(text)
     rows = list(card.rows())
     wanted = 1 + 2 * count
     names = ["the yield stress"]

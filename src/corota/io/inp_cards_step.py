@@ -25,7 +25,7 @@ NAMED_SUPPORTS = {
     "YSYMM": (2, 4, 6), "ZSYMM": (3, 4, 5), "XASYMM": (2, 3, 4), "YASYMM": (1, 3, 5),
     "ZASYMM": (1, 2, 6),
 }  # fmt: skip
-_FACE = re.compile(r"P(\d+)\Z")
+_FACE = re.compile(r"P(\d{1,9})\Z", re.ASCII)
 
 
 def step(deck: Deck, card: Card) -> None:

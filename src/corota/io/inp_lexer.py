@@ -336,7 +336,8 @@ class Lexer:
         if self._bytes > MAX_BYTES:
             raise ValueError(f"the deck and its files exceed {MAX_BYTES >> 30} GB")
         with open(path, "rb") as file:
-            data = file.read(MAX_BYTES)
+            # Python reserves what may be read: no more than is there.
+            data = file.read(status.st_size)
         data = data.removeprefix(b"\xef\xbb\xbf")
         if b"\n" not in data:
             data = data.replace(b"\r", b"\n")

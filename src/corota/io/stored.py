@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -61,15 +62,29 @@ def read_results(path: str | PathLike[str]) -> StoredResults:
     except OSError:
         raise FileError(f"{name}: not an HDF5 file, or damaged") from None
     try:
-        if "corota" not in file or "VTKHDF" not in file:
-            raise FileError(f"{name}: an HDF5 file, but not one of Corota's results")
-        return StoredResults(file)
-    except (KeyError, OSError, ValueError, RuntimeError) as error:
-        file.close()
-        raise FileError(f"{name}: damaged or incomplete: {error}") from None
+        with _damage(name):
+            if "corota" not in file or "VTKHDF" not in file:
+                raise FileError(f"{name}: an HDF5 file, but not one of Corota's results")
+            return StoredResults(file)
     except FileError:
         file.close()
         raise
+
+
+@contextmanager
+def _damage(name: str | Path) -> Iterator[None]:
+    """Say of whatever HDF5 and the shapes of arrays object to that the file is damaged."""
+    try:
+        yield
+    except (FileError, MemoryError):
+        raise
+    except Exception as error:
+        raise FileError(f"{name}: damaged or incomplete: {error}") from None
+
+
+def _whole(good: bool, what: str) -> None:
+    if not good:
+        raise ValueError(what)
 
 
 class StoredFrames(Sequence[Frame]):
@@ -78,6 +93,8 @@ class StoredFrames(Sequence[Frame]):
     def __init__(self, file: Any) -> None:
         self._file = file
         self._count = int(file["VTKHDF/Steps"].attrs["NSteps"])
+        self._nodes = len(file["VTKHDF/Points"])
+        _whole(self._count >= 0, f"{self._count} frames")
         self._blocks = [file["corota/points"][k] for k in sorted(file["corota/points"], key=int)]
         self._fixed = [
             (str(b.attrs["element"]), b["cells"][:], b["shape functions"][:]) for b in self._blocks
@@ -100,18 +117,24 @@ class StoredFrames(Sequence[Frame]):
             return [self[i] for i in range(*index.indices(self._count))]
         number = range(self._count)[index]
         if self._last is None or self._last[0] != number:
-            self._last = (number, self._read(number))
+            with _damage(self._file.filename):
+                self._last = (number, self._read(number))
         return self._last[1]
 
     def scalars(self, name: str) -> Floats:
         """A scalar of all frames."""
-        return np.asarray(self._file["corota/frames"][name][:])
+        with _damage(self._file.filename):
+            values = np.asarray(self._file["corota/frames"][name][:], np.float64)
+            _whole(len(values) == self._count, f"{name} of {len(values)} frames")
+            return values
 
     def at_points(self, name: str, number: int) -> Floats:
         """An array of ``PointData`` in a frame."""
-        data = self._file["VTKHDF/PointData"][name]
-        rows = len(data) // self._count
-        return np.asarray(data[number * rows : (number + 1) * rows])
+        with _damage(self._file.filename):
+            data = self._file["VTKHDF/PointData"][name]
+            rows = len(data) // self._count
+            _whole(rows == self._nodes and data.dtype.kind == "f", f"{name} at {rows} nodes")
+            return np.asarray(data[number * rows : (number + 1) * rows])
 
     def _read(self, number: int) -> Frame:
         group = self._file["corota/frames"]
@@ -151,6 +174,9 @@ class StoredFrames(Sequence[Frame]):
             for name, data in group.items()
             if name not in ("cells", "shape functions", "reference volume", "position")
         }
+        points = len(shape)
+        for name, part in values.items():
+            _whole(part.shape[:2] == (n, points) and part.dtype.kind == "f", f"{name} at points")
         position = group["position"][number * n : (number + 1) * n]
         turns = self._file["VTKHDF/CellData/frame rotation"]
         rows = len(turns) // self._count
@@ -259,7 +285,12 @@ def _mesh(file: Any) -> Mesh:
             raise InputError(f"cell type {types[first]} is not one of Corota's")
         nodes = chain[offsets[first] : offsets[end]].reshape(-1, N_NODES[kind])
         cells.append(Cells(kind, nodes, labels[first:end]))
-    mesh = Mesh(root["Points"][:, :2], cells, node_labels=own["node labels"][:])
+    points = root["Points"][:, :2]
+    _whole(bool(np.isfinite(points).all()), "points that are no numbers")
+    for block in cells:
+        inside = block.nodes.size and block.nodes.min() >= 0 and block.nodes.max() < len(points)
+        _whole(bool(inside), "cells with nodes that are not there")
+    mesh = Mesh(points, cells, node_labels=own["node labels"][:])
     for kind in ("node", "cell", "edge"):
         group = own[f"{kind} sets"]
         getattr(mesh, f"{kind}_sets").update({k.replace("|", "/"): v[:] for k, v in group.items()})

@@ -1,0 +1,110 @@
+"""MacNeal and Harder's patch: constant strain on five distorted cells, for every element.
+
+0.24 x 0.12, thickness 0.001, E = 1e6, nu = 0.25; the boundary moves by u = 1e-3 (x + y/2),
+v = 1e-3 (y + x/2), drilling rotations with it. The stresses 4000/3, 4000/3 and 400 must come out
+to rounding everywhere. A second patch is loaded by its edge tractions instead, held at two nodes:
+drilling elements pass it with free rotations because their edge loads hold end moments.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.materials import Elastic
+from corota.mesh import Cells, Mesh
+from corota.model import EdgeLoad, Model
+from corota.results import Results
+from corota.steps import Static
+from corota.verification.catalogue import Picture, Problem, Value
+from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
+
+POINTS = np.array(
+    [[0, 0], [0.24, 0], [0.24, 0.12], [0, 0.12], [0.04, 0.02], [0.18, 0.03], [0.16, 0.08],
+     [0.08, 0.08]]
+)  # fmt: skip
+QUADS = np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]])
+STRESS = np.array([4000 / 3, 4000 / 3, 0.0, 400.0])
+SIDES = {(0, -1): (1, 0.0), (1, 0): (0, 0.24), (0, 1): (1, 0.12), (-1, 0): (0, 0.0)}
+
+
+def patch(element: str) -> Mesh:
+    """The five cells, as squares or triangles, with middle nodes where wanted."""
+    mesh = Mesh(POINTS, [Cells("quad4", QUADS, np.arange(1, 6))])
+    kind = cell(element)
+    if kind.startswith("tri"):
+        mesh = meshes.to_triangles(mesh)
+    if kind in ("tri6", "quad8", "quad9"):
+        mesh = meshes.to_quadratic(mesh, centre=kind == "quad9")
+    return mesh
+
+
+def _model(element: str) -> Model:
+    model = Model(patch(element))
+    material = Elastic(E=1e6, nu=0.25)
+    model.section("all", element=element, material=material, thickness=0.001)
+    return model
+
+
+def moved(element: str) -> Results:
+    """The patch with all of its boundary moved."""
+    model = _model(element)
+    x, y = model.mesh.points.T
+    u = 1e-3 * np.stack([x + y / 2, y + x / 2], axis=1)
+    edge = boundary(model.mesh)
+    prescribe(model, edge, u[edge], 0.0 if element in DRILLING else None)
+    return run(model, Static(nlgeom=False), fields=True)
+
+
+def pulled(element: str) -> Results:
+    """The patch under its edge tractions, held against rigid motion only."""
+    model = _model(element)
+    mesh, edges = model.mesh, model.mesh.boundary_edges()
+    ends = np.array([mesh.points[list(nodes)[:2]].mean(axis=0) for nodes in mesh.edge_nodes(edges)])
+    tensor = np.array([[STRESS[0], STRESS[3]], [STRESS[3], STRESS[1]]])
+    for normal, (axis, place) in SIDES.items():
+        mine = edges[np.abs(ends[:, axis] - place) < 1e-9]
+        t = tensor @ normal
+        model.loads.append(EdgeLoad(mine, "traction", (float(t[0]), float(t[1]))))
+    model.fix([0])
+    model.fix([1], x=None, y=0.5e-3 * 0.24)
+    return run(model, Static(nlgeom=False), fields=True)
+
+
+def stress_error(results: Results) -> float:
+    """Largest error of the stress at the points over the largest stress."""
+    worst = 0.0
+    for block in results.frames[-1].fields:
+        worst = max(worst, float(np.abs(block.values["S"] - STRESS).max()))
+    return worst / float(STRESS[0])
+
+
+def measure() -> Iterator[Value]:
+    """Stress of both patches."""
+    for element in ELEMENTS:
+        yield Value(f"stress error, moved boundary, {element}", 0.0, stress_error(moved(element)),
+                    1e-11, "absolute")  # fmt: skip
+    for element in ELEMENTS:
+        if element != "Q8R":
+            yield Value(f"stress error, edge tractions, {element}", 0.0,
+                        stress_error(pulled(element)), 1e-9, "absolute")  # fmt: skip
+
+
+def picture() -> Picture:
+    """The cells, displacements enlarged."""
+    return Picture(moved("Q8"), "U1", 100.0)
+
+
+PROBLEM = Problem(
+    title="Constant-strain patch",
+    group="linear statics",
+    source="R. H. MacNeal, R. L. Harder, Finite Elements in Analysis and Design 1 (1985)",
+    certainty="analytic",
+    why="rounding; with tractions rounding times the condition number",
+    measure=measure,
+    picture=picture,
+    seconds=0.3,
+)

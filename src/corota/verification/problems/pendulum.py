@@ -1,0 +1,110 @@
+"""Pendulum: a slender uniform rod released horizontally swings with the period of the rigid one.
+
+Length 1, depth 0.02, g = 9.81, E = 1e7, nu = 0, unit density, pinned at its lower corner. The rigid
+rod of that shape has the period 4 K(m) sqrt(2 R / (3 g)), R being the diagonal and K the complete
+elliptic integral; the energy is followed over the swing.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from scipy.special import ellipk
+
+from corota import mesh as meshes
+from corota.materials import Elastic
+from corota.model import Model
+from corota.results import Results
+from corota.steps import Dynamic
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.models import cell, run
+from corota.verification.motion_models import column
+
+LENGTH, DEPTH, GRAVITY = 1.0, 0.02, 9.81
+#: Angle of the centre above the pin's level at the start, from hanging.
+START = 0.5 * np.pi + np.arctan(DEPTH / LENGTH)
+PERIOD = float(
+    4.0 * ellipk(np.sin(0.5 * START) ** 2)
+    * np.sqrt(2.0 * np.hypot(LENGTH, DEPTH) / (3.0 * GRAVITY))
+)  # fmt: skip
+
+
+def pendulum(element: str) -> Model:
+    """The rod pinned at its lower left corner."""
+    model = Model(meshes.rectangle(LENGTH, DEPTH, nx=10, ny=1, cell=cell(element)))
+    model.section("all", element=element, material=Elastic(E=1e7, nu=0.0, rho=1.0))
+    model.fix([int(np.argmin(np.hypot(*model.mesh.points.T)))])
+    model.gravity(y=-GRAVITY)
+    return model
+
+
+def swing(element: str, periods: float = 1.6, per_period: int = 200, **keys: Any) -> Results:
+    """Swing with the energy-momentum scheme."""
+    step = Dynamic(
+        period=periods * PERIOD, increments=round(periods * per_period), scheme="energy_momentum",
+        tolerance=1e-10,
+    )  # fmt: skip
+    return run(pendulum(element), step, **keys)
+
+
+def tip(results: Results) -> tuple[np.ndarray, np.ndarray]:
+    """Time and position x of the end."""
+    nodes = results.mesh.nodes_of("right")
+    x = np.array([LENGTH + f.U[nodes, 0].mean() for f in results.frames])
+    return np.array([f.time for f in results.frames]), x
+
+
+def period(results: Results) -> float:
+    """Twice the time between two passages through the middle."""
+    time, x = tip(results)
+    k = np.flatnonzero(x[:-1] * x[1:] <= 0.0)
+    at = time[k] + (time[k + 1] - time[k]) * x[k] / (x[k] - x[k + 1])
+    return float(2.0 * np.diff(at).mean())
+
+
+def measure() -> Iterator[Value]:
+    """Period and energy."""
+    for element in ("Q4I", "Q4D", "OPT"):
+        results = swing(element)
+        yield Value(f"period, {element}", PERIOD, period(results), 2e-3)
+        kinetic = float(column(results, "kinetic energy").max())
+        drift = float(np.ptp(column(results, "energy balance"))) / kinetic
+        yield Value(f"drift of the energy, {element}", 0.0, drift, 1e-8, "absolute")
+
+
+def picture() -> Picture:
+    """Some moment of the swing."""
+    return Picture(swing("Q4D", 0.2, fields=True), "U2")
+
+
+def curve() -> Curve:
+    """Position of the end."""
+    time, x = tip(swing("Q4D"))
+    return Curve("time", "x of the end", {"Q4D": (time, x)},
+                 {"a quarter and three of the rigid period": ([PERIOD / 4, 3 * PERIOD / 4],
+                                                              [0.0, 0.0])})  # fmt: skip
+
+
+def study() -> Study:
+    """Error of the period against increments a period."""
+    counts = (25, 50, 100, 200)
+    errors = [abs(period(swing("Q4I", 1.6, n)) / PERIOD - 1.0) for n in counts]
+    return Study("error of the period, down to the flexibility", {
+        "Q4I": ([float(n) for n in counts], errors)}, "increments a period")  # fmt: skip
+
+
+PROBLEM = Problem(
+    title="Pendulum",
+    group="dynamics",
+    source="complete elliptic integral of the physical pendulum",
+    certainty="analytic",
+    why="flexibility of the rod and 200 increments a period",
+    measure=measure,
+    picture=picture,
+    curve=curve,
+    study=study,
+    seconds=6.0,
+)

@@ -1,0 +1,99 @@
+"""Thick cylinder of perfectly plastic material under inner pressure, plane strain.
+
+Radii 100 and 200, E = 210000, yield stress 240. Hill's solution, exact for incompressible
+material, gives pressure and outer displacement for a plastic zone up to radius c; it is met with
+nu = 0.4999, where elements that lock show it. With nu = 0.3 the references are converged values.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.materials_plastic import Mises
+from corota.model import Model
+from corota.results import Results
+from corota.steps import Static
+from corota.verification.catalogue import Picture, Problem, Study, Value
+from corota.verification.models import DRILLING, cell, run
+
+INNER, OUTER, YOUNG, YIELD = 100.0, 200.0, 210000.0, 240.0
+#: Elements that do not lock, with the options that keep them from it.
+ELEMENTS: dict[str, dict[str, Any]] = {
+    "Q4I": {}, "Q8R": {}, "Q4D": {"mean_dilatation": True}, "Q4": {"mean_dilatation": True},
+}  # fmt: skip
+#: Pressure and outer displacement of steel, nu = 0.3.
+STEEL = [(160.0, 0.111633), (180.0, 0.153985), (190.0, 0.20537)]
+
+
+def ring(
+    element: str, n: int, plane: Any, nu: float, p: float, sy: float = YIELD, **options: Any
+) -> tuple[Results, float]:
+    """Quarter of the ring under a pressure, `n` cells across; with the outer displacement."""
+    mesh = meshes.annulus(INNER, OUTER, n, 2 * n, 90.0, cell(element))
+    model = Model(mesh)
+    law = Mises(E=YOUNG, nu=nu, yield_stress=sy)
+    model.section("all", element=element, material=law, plane=plane, **options)
+    turn = 0.0 if element in DRILLING else None
+    model.fix("start", x=None, y=0.0, rotation=turn)
+    model.fix("end", x=0.0, y=None, rotation=turn)
+    model.pressure("inner", p)
+    results = run(model, Static(nlgeom=False, increments=8), fields=True)
+    outer = mesh.nodes_of("outer")
+    return results, float(np.linalg.norm(results.frames[-1].U[outer], axis=1).mean())
+
+
+def hill(c: float, nu: float) -> tuple[float, float]:
+    """Pressure and outer displacement of a cylinder that is plastic to radius c."""
+    strength = 2.0 * YIELD / 3.0**0.5
+    p = strength * (np.log(c / INNER) + 0.5 * (1.0 - (c / OUTER) ** 2))
+    return float(p), float(strength * c**2 * (1.0 - nu**2) / (YOUNG * OUTER))
+
+
+def measure() -> Iterator[Value]:
+    """Outer displacement, for Hill's material and for steel."""
+    for element, options in ELEMENTS.items():
+        for c in (120.0, 160.0):
+            p, exact = hill(c, 0.4999)
+            yield Value(f"outer displacement, plastic to {c:g}, {element} 12 x 24", exact,
+                        ring(element, 12, "strain", 0.4999, p, **options)[1], 0.01)  # fmt: skip
+    for p, exact in STEEL:
+        yield Value(f"outer displacement at {p:g}, nu = 0.3, Q8R 12 x 24", exact,
+                    ring("Q8R", 12, "strain", 0.3, p)[1], 3e-3)  # fmt: skip
+
+
+def picture() -> Picture:
+    """Equivalent plastic strain at the largest pressure."""
+    return Picture(ring("Q8R", 12, "strain", 0.3, 190.0)[0], "PEEQ", 100.0)
+
+
+def study() -> Study:
+    """Error of the outer displacement at c = 160."""
+    p, exact = hill(160.0, 0.4999)
+    cells = (3, 6, 12, 24)
+    series = {
+        e: (
+            [float(n) for n in cells],
+            [abs(ring(e, n, "strain", 0.4999, p, **o)[1] / exact - 1.0) for n in cells],
+        )
+        for e, o in ELEMENTS.items()
+    }
+    return Study("error of the outer displacement", series, "cells across")
+
+
+PROBLEM = Problem(
+    title="Thick cylinder beyond yield (Hill)",
+    group="plasticity",
+    source="R. Hill, The Mathematical Theory of Plasticity (1950), chapter V",
+    certainty="analytic",
+    why="the plastic front passes through cells, which leaves 1 % on 12 cells; steel: converged "
+    "values of another mesh",
+    measure=measure,
+    picture=picture,
+    study=study,
+    seconds=2.0,
+)

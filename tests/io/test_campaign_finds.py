@@ -1,0 +1,87 @@
+"""What the fault campaign found, mended and kept."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from decks import DECK, MESH, SECTION, SUPPORT, faults
+from seeds import SEEDS
+
+import corota as ct
+
+STEP = "*STEP\n*STATIC\n*DLOAD\n{}\n*END STEP\n"
+BUCKLE = "*STEP\n*BUCKLE\n1\n*MODAL DAMPING\n1, 2, .02\n*CLOAD\n3, 1, -5.\n*END STEP\n"
+HUGE = "9" * 5000
+COMBINED = (
+    "*PLASTIC, HARDENING=COMBINED, DATA TYPE=PARAMETERS, NUMBER BACKSTRESSES={}\n200., 1., 1.\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        # Options of modal damping went to a procedure that has none: TypeError.
+        (MESH + SECTION + SUPPORT + BUCKLE, "*MODAL DYNAMIC"),
+        # More digits than Python turns into a number: ValueError.
+        (MESH + SECTION + SUPPORT + STEP.format(f"eall, P{HUGE}, 1."), "unknown load type"),
+        (DECK.replace("*BOUNDARY", f"*SURFACE, NAME=f\neall, S{HUGE}\n*BOUNDARY", 1), "face"),
+        # Digits that are none: ValueError; and a count that reserved memory.
+        (DECK.replace("*SOLID", COMBINED.format("\u00b2") + "*SOLID"), "1 to 20"),
+        (DECK.replace("*SOLID", COMBINED.format("1000000000") + "*SOLID"), "1 to 20"),
+        # A load on nothing was accepted.
+        (
+            MESH + "*ELSET, ELSET=none\n,\n" + SECTION + SUPPORT + STEP.format("none, P1, 1."),
+            "element set none is empty",
+        ),
+    ],
+)
+def test_refused_with_a_message(tmp_path: Path, text: str, words: str) -> None:
+    said = "\n".join(str(d) for d in faults(tmp_path, text))
+    assert words in said
+    assert len(said) < 5000
+
+
+def test_reading_reserves_no_more_memory_than_the_deck_has(tmp_path: Path) -> None:
+    """It asked for the eight gigabytes that a deck may have at most."""
+    (tmp_path / "deck.inp").write_text(SEEDS[0])
+
+    def small() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+
+    command = [sys.executable, "-m", "corota", "run", "deck.inp", "-q", "--threads", "1"]
+    done = subprocess.run(
+        command, cwd=tmp_path, preexec_fn=small, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_damaged_results_are_refused(tmp_path: Path) -> None:
+    """Bytes flipped where numbers and shapes are: an error of files, whatever HDF5 thinks."""
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1), name="deck")
+    model.section("all", element="Q4I", material=ct.Elastic(E=1.0, nu=0.3))
+    model.fix("left")
+    model.force("right", y=1e-4)
+    ct.solve(model, ct.Static(), observers=[ct.JobFiles(tmp_path)], threads=1)
+    whole = (tmp_path / "deck.vtkhdf").read_bytes()
+    rng = np.random.default_rng(3)
+    outcomes = set()
+    for _ in range(60):
+        data = bytearray(whole)
+        for at in rng.integers(len(data), size=8):
+            data[at] = rng.integers(256)
+        (tmp_path / "bad.vtkhdf").write_bytes(bytes(data))
+        try:
+            with ct.read_results(tmp_path / "bad.vtkhdf") as results:
+                for frame in results.frames:
+                    assert frame.U.shape == (results.mesh.n_nodes, 2)
+                assert len(results.times) == len(results.frames)
+            outcomes.add("read")
+        except ct.errors.FileError:
+            outcomes.add("refused")
+    assert outcomes == {"read", "refused"}
