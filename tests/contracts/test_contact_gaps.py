@@ -178,3 +178,18 @@ def test_fixed_curve_equals_one_at_a_still_node(method: str) -> None:
             check_derivatives(against_rigid("solid", "linear", method, node)[1], x[:5], X[:5], rng)
     for key in ("total_gap", "total_slip", "total_area"):
         np.testing.assert_allclose(results[0][key], results[1][key], atol=1e-15)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("kind", ["linear", "quadratic", "drilling"])
+def test_self_contact_has_exact_derivatives(kind: str, method: str) -> None:
+    """A hairpin: both legs belong to one boundary."""
+    rng = np.random.default_rng(7)
+    there, back = np.linspace(1, 0, 4), np.linspace(-0.13, 1.1, 4)
+    path = np.vstack([arch(there, 0.0), arch(back, 0.05)])
+    X, edges, bulge = chain(kind, path, 0)
+    ones = np.ones(len(edges))
+    contact = Contact.itself(X, edges, bulge, ones, method=method, **LENGTHS)
+    x, old = moved(X, rng), moved(X, rng)
+    check_derivatives(contact, x, old, rng)
+    check_invariance(contact, x, old)

@@ -122,6 +122,17 @@ def test_candidates_stay_while_nothing_moved_far() -> None:
     assert contact.search(x)
 
 
+def test_a_turn_alone_renews_the_candidates() -> None:
+    """A short edge that turns on the spot from looking away to facing the master."""
+    X, contact = pair(flat(np.array([0.5, 0.51]), 0.0), flat(np.array([0.0, 1.0]), 0.1))
+    contact.search(X)
+    assert len(contact.candidates()) == 0
+    x = X.copy()
+    x[:2, 0] = 0.51, 0.5
+    assert contact.search(x)
+    assert gap_of(contact, x)["mean"] == pytest.approx(0.1)
+
+
 def test_the_nearer_of_two_masters_hides_the_other() -> None:
     slave = flat(np.linspace(1, 0, 3), 0.0)
     near, far = flat(np.linspace(0.5, 3, 3), 0.1), flat(np.linspace(-1, 3, 3), 0.4)

@@ -142,14 +142,14 @@ impl Contact {
             Method::Mortar => search::edges(slave, x),
             Method::NodeToSegment => search::nodes(slave, x),
         };
+        let count = items.len();
         let owners = (kind == Kind::Itself).then(|| slave.owners(method == Method::NodeToSegment));
         let allowed = |i: usize, j: usize| owners.as_ref().is_none_or(|o| slave.apart(&o[i], j));
         let Distances { reach, margin, .. } = self.distances;
-        let changed = self.search.update(&items, &self.master, x, reach, margin, allowed);
+        let changed = self.search.update(items, &self.master, x, reach, margin, allowed);
         if changed {
             let candidates = &self.search.candidates;
-            self.first =
-                (0..=items.len()).map(|i| candidates.partition_point(|c| c.0 < i)).collect();
+            self.first = (0..=count).map(|i| candidates.partition_point(|c| c.0 < i)).collect();
         }
         changed
     }

@@ -16,42 +16,47 @@ pub type Candidate = (usize, usize);
 /// Most of the cosine between the outward normals of two chords that may meet.
 const TURNED: f64 = 0.7;
 
-/// Candidates with the boxes they were found for.
+/// Least cosine of a turn since the search that still cannot make an unturned pair face.
+const STEADY: f64 = 0.92;
+
+/// Candidates with the places they were found for.
 #[derive(Default)]
 pub struct Search {
-    slave: Vec<Box2>,
-    master: Vec<Box2>,
+    slave: Vec<Item>,
+    master: Vec<Item>,
     pub candidates: Vec<Candidate>,
 }
 
 impl Search {
-    /// Renews the candidates if something has moved by more than half the margin; tells whether
-    /// they changed.
+    /// Renews the candidates if something has moved by more than half the margin or turned far;
+    /// tells whether they changed.
     pub fn update(
         &mut self,
-        items: &[Item],
+        slaves: Vec<Item>,
         master: &Surface,
         x: &[[f64; 3]],
         reach: f64,
         margin: f64,
         allowed: impl Fn(usize, usize) -> bool + Sync,
     ) -> bool {
-        let theirs: Vec<_> = (0..master.len()).map(|j| master.place(j, x)).collect();
-        let slaves: Vec<_> = items.iter().map(|i| i.0).collect();
-        let masters: Vec<_> = theirs.iter().map(master_box).collect();
+        let place = |j: usize| {
+            let shape = master.place(j, x);
+            (master_box(&shape), chord_normal(&shape))
+        };
+        let masters: Vec<Item> = (0..master.len()).map(place).collect();
         let first = self.slave.is_empty() && self.master.is_empty();
-        let moved = motion(&self.slave, &slaves).max(motion(&self.master, &masters));
-        if !first && moved <= 0.5 * margin {
+        let near = 0.5 * margin;
+        if !first && still(&self.slave, &slaves, near) && still(&self.master, &masters, near) {
             return false;
         }
-        let tree = Tree::new(&masters);
-        let normals: Vec<_> = theirs.iter().map(chord_normal).collect();
-        let found = each(items.len(), |i| {
-            let (around, n) = items[i];
+        let boxes: Vec<Box2> = masters.iter().map(|m| m.0).collect();
+        let tree = Tree::new(&boxes);
+        let found = each(slaves.len(), |i| {
+            let (around, n) = slaves[i];
             let mut list: Vec<Candidate> = Vec::new();
             tree.query(&grown(around, reach + margin), &mut |j| {
                 let j = j as usize;
-                if allowed(i, j) && dot(n, normals[j]) < TURNED {
+                if allowed(i, j) && dot(n, masters[j].1) < TURNED {
                     list.push((i, j));
                 }
             });
@@ -66,10 +71,12 @@ impl Search {
     }
 }
 
-/// Largest motion of a side of a box.
-fn motion(old: &[Box2], new: &[Box2]) -> f64 {
-    let sides = old.as_flattened().iter().zip(new.as_flattened());
-    sides.fold(0.0, |m, (a, b)| if (a - b).abs() <= m { m } else { (a - b).abs() })
+/// Whether no side of a box has moved farther than `near` and no normal turned far.
+fn still(old: &[Item], new: &[Item], near: f64) -> bool {
+    old.iter().zip(new).all(|(a, b)| {
+        let mut sides = a.0.iter().zip(&b.0);
+        sides.all(|(p, q)| (p - q).abs() <= near) && dot(a.1, b.1) >= STEADY
+    })
 }
 
 /// The body of a hollow arc is on the left as well, so the chord serves all kinds.
