@@ -24,11 +24,11 @@ class Output:
 
     Parameters
     ----------
-    kind : {"node print", "el print", "node file", "el file"}
+    kind : {"node print", "el print", "contact print", "node file", "el file", "contact file"}
     variables : tuple of str
-        Names as in decks: ``U RF S E ...``.
+        Names as in decks: ``U RF S E CSTR ...``.
     where : str
-        Node or cell set; empty for all.
+        Node or cell set, or name of a contact pair; empty for all.
     frequency : int
         Every so many increments; 0 only at the end of the step.
     totals : {"no", "yes", "only"}
@@ -37,7 +37,7 @@ class Output:
         Name of a list of times in ``Model.time_points``; empty for none.
     """
 
-    kind: Literal["node print", "el print", "node file", "el file"]
+    kind: Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
     variables: tuple[str, ...]
     where: str = ""
     frequency: int = 1

@@ -21,7 +21,7 @@ CASES = [
     ("*STATIC", "*STATIC, DIRCT", 20, 10, "did you mean DIRECT?"),
     ("*BOUNDARY", "*BOUNDARY, FIXED", 16, 12, "FIXED is not supported"),
     ("*BOUNDARY", "*BOUNDARY, OP=OLD", 16, 15, "expected NEW, MOD"),
-    ("*CLOAD", "*CONTACT PAIR, INTERACTION=i", 22, 1, "contact is not part"),
+    ("*CLOAD", "*CONTACT PAIR, INTERACTION=i", 22, 1, "inside a step"),
     ("*CLOAD", "*CLOAD, AMPLITUDE=up", 22, 19, "no amplitude named 'up'"),
     ("TYPE=CPS4, ELSET=eall", "ELSET=eall", 8, 1, "TYPE= is missing"),
     ("TYPE=CPS4", "TYPE=CPS5", 8, 16, "unknown element type 'CPS5'"),

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from decks import read
+from decks import MESH, SECTION, STEP, SUPPORT, read
 from seeds import WRITABLE
 
 import corota as ct
+from corota.contact import RigidCurve
 from corota.io.formats import write
 from corota.model import BodyForce, EdgeLoad
 
@@ -169,3 +170,70 @@ def test_nothing_is_left_out_in_silence(
     with pytest.raises(ct.UnsupportedError, match=words):
         write(model, tmp_path / "model.inp")
     assert not list(tmp_path.iterdir())
+
+
+CONTACT = """*SURFACE, NAME=LOW
+1, S3
+*SURFACE, NAME=RIGHT
+2, S2
+*SURFACE INTERACTION, NAME=I
+*FRICTION
+.25
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR
+0., 0.
+5., .01
+*SURFACE INTERACTION, NAME=J
+*SURFACE, TYPE=SEGMENTS, NAME=DIE
+START, 3., 4.
+LINE, 2., 4.
+CIRCL, 1., 3., 2., 3.
+*RIGID BODY, ANALYTICAL SURFACE=DIE, REF NODE=3
+*CONTACT PAIR, INTERACTION=I, TYPE=NODE TO SURFACE
+LOW, RIGHT
+*CLEARANCE, SLAVE=LOW, MASTER=RIGHT, VALUE=.5
+*CONTACT PAIR, INTERACTION=J, TYPE=MORTAR, ADJUST=.1
+RIGHT, DIE
+*CONTACT PAIR, INTERACTION=J, TYPE=MORTAR
+LOW, LOW
+LOW, DIE
+*TIE, NAME=T, POSITION TOLERANCE=2., ADJUST=NO
+LOW, RIGHT
+"""
+
+
+def test_contact(tmp_path: Path) -> None:
+    step = STEP.replace(
+        "*END STEP",
+        "*CONTACT INTERFERENCE, SHRINK\nLOW, LOW\n*CONTACT CONTROLS, STABILIZE, SLAVE=LOW, "
+        "MASTER=DIE\n*CONTACT PRINT, SLAVE=LOW, MASTER=DIE\nCF\n*END STEP",
+    )
+    first = read(tmp_path, MESH + SECTION + CONTACT + SUPPORT + step)
+    write(first, tmp_path / "again.inp")
+    second = ct.read(tmp_path / "again.inp")
+    assert second.ties == first.ties
+    assert len(second.contacts) == len(first.contacts) == 4
+    for a, b in zip(first.contacts, second.contacts, strict=True):
+        for name in ("slave", "method", "friction", "clearance", "start", "stabilise", "adjust"):
+            assert getattr(a, name) == getattr(b, name)
+        assert (a.law is None) == (b.law is None)
+        if a.law is not None and b.law is not None:
+            np.testing.assert_array_equal(a.law.pressure, b.law.pressure)
+            np.testing.assert_array_equal(a.law.overclosure, b.law.overclosure)
+        if isinstance(a.master, str):
+            assert a.master == b.master
+        else:
+            assert isinstance(b.master, RigidCurve)
+            np.testing.assert_allclose(a.master.segments, b.master.segments, atol=1e-15)
+            assert a.master.reference == b.master.reference == 2
+    (request,) = second.steps[0].outputs
+    assert (request.kind, request.where) == ("contact print", second.contacts[3].name)
+
+
+def test_full_circles_are_written_in_pieces(tmp_path: Path) -> None:
+    model = read(tmp_path, MESH + SECTION + "*SURFACE, NAME=LOW\n1, S3\n" + SUPPORT + STEP)
+    model.contact("LOW", RigidCurve.circle((0.5, 3.0), 1.0))
+    write(model, tmp_path / "again.inp")
+    curve = ct.read(tmp_path / "again.inp").contacts[0].master
+    assert isinstance(curve, RigidCurve)
+    assert curve.segments[:, 6].sum() == pytest.approx(2.0 * np.pi)
+    assert len(curve.segments) == 3

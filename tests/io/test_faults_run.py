@@ -56,7 +56,7 @@ CASES = [
     (2, 19, "INC", "*STEP, NLGEOM", "*STEP, NLGEOM, INC=0"),
     (2, 21, "must be > 0", ".1, 1.\n", "-1., 1.\n"),
     (2, 22, "OP", "*CLOAD", "*CLOAD, OP=OLD"),
-    (2, 22, "contact", "*CLOAD", "*CONTACT PAIR, INTERACTION=i\na, b\n*CLOAD"),
+    (2, 16, "'i'", "*BOUNDARY", "*CONTACT PAIR, INTERACTION=i\na, b\n*BOUNDARY"),
     (2, 16, "*EQUATION", "*BOUNDARY", "*CYCLIC SYMMETRY MODEL, N=3\n*BOUNDARY"),
     (2, 16, "itself", "*BOUNDARY", "*INCLUDE, INPUT=deck.inp\n*BOUNDARY"),
     (2, 16, "gone.inp", "*BOUNDARY", "*INCLUDE, INPUT=gone.inp\n*BOUNDARY"),

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from corota.errors import InputError
-from corota.io.dat import check_requests, dat_blocks, fortran
+from corota.io.dat import check_requests, dat_blocks
+from corota.io.dat_numbers import fortran
 from corota.io.job import JobFiles
 from corota.io.requests import due, due_now, in_force, last_of_steps, left_over
 from corota.io.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line

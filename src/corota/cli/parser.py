@@ -91,6 +91,10 @@ def make_parser() -> Parser:
         metavar="X,Y",
         help="a curve, such as 'U2@TIP,load factor'",
     )
+    plot.add_argument(
+        "--contact", nargs="?", const="", metavar="PAIR",
+        help="pressure along the slave surface of a contact pair, the first by default",
+    )  # fmt: skip
     plot.add_argument("--animate", action="store_true", help="all frames as a GIF or MP4")
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
 

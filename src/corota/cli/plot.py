@@ -43,6 +43,14 @@ def run(args: Any, terminal: Terminal) -> int:
             y, x = _axes(args.curve, results)
             plots.curve(y, x, path=path, dpi=args.dpi)
             return _tell(path, terminal)
+        if args.contact is not None:
+            path = Path(args.output or f"{source.stem}_contact.png")
+            plots.contact_line(results, args.contact, frame=args.frame, path=path, dpi=args.dpi)
+            return _tell(path, terminal)
+        if (args.field or "").upper() == "CSTATUS":
+            path = Path(args.output or f"{source.stem}_CSTATUS.png")
+            plots.status(results, frame=args.frame, scale=args.scale, path=path, dpi=args.dpi)
+            return _tell(path, terminal)
         field = args.field or ("MISES" if "MISES" in results.variables() else "U")
         options = {"scale": args.scale, "per_cell": args.per_cell, "edges": args.edges}
         moving = args.animate or (args.output or "").lower().endswith((".gif", ".mp4"))

@@ -45,6 +45,10 @@ def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
         sums[f"{pair.name}: moment"] = moment
         if not pair.tied:
             sums[f"{pair.name}: area"] = float(terms.area[state != OPEN].sum())
+        if pair.friction:
+            shear = resultant(pair, terms, np.zeros_like(p), q, x)
+            for name, value in zip(("x", "y", "moment"), shear, strict=True):
+                sums[f"{pair.name}: friction {name}"] = value
         friction += pair.friction_work
         law += pair.law_energy(terms)
     sums["friction energy"] = friction

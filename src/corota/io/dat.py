@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.dat_contact import VARIABLES as CONTACT_VARIABLES
+from corota.io.dat_contact import contact_tables
+from corota.io.dat_numbers import fortran, rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -48,16 +51,6 @@ ELEMENT_TITLES = {
 }
 
 
-def fortran(value: float, digits: int) -> str:
-    """A number as Fortran's ``E`` format writes it, with a leading zero: ``0.5000000E+00``."""
-    if value == 0.0:
-        return f"{0.0:.{digits}f}E+00"
-    mantissa, power = f"{value:.{digits - 1}e}".split("e")
-    exponent = int(power) + 1
-    sign = "-" if value < 0 else ""
-    return f"{sign}0.{mantissa.lstrip('-').replace('.', '')}E{exponent:+03d}"
-
-
 def check_requests(steps: list[Step]) -> None:
     """Refuse print requests for variables that are not printed.
 
@@ -70,13 +63,16 @@ def check_requests(steps: list[Step]) -> None:
         for output in step.outputs:
             if not output.kind.endswith("print"):
                 continue
-            node = output.kind == "node print"
-            valid = [*NODE_TITLES] if node else [*POINT_TITLES, *ELEMENT_TITLES]
+            valid = {
+                "node print": [*NODE_TITLES],
+                "el print": [*POINT_TITLES, *ELEMENT_TITLES],
+                "contact print": [*CONTACT_VARIABLES],
+            }[output.kind]
             for name in output.variables:
                 if name.upper() not in valid:
-                    card = "*NODE PRINT" if node else "*EL PRINT"
+                    known = ", ".join(valid)
                     raise InputError(
-                        f"{card}: no variable {name}; there are: {', '.join(valid)}",
+                        f"*{output.kind.upper()}: no variable {name}; there are: {known}",
                         output.source,
                     )
 
@@ -91,7 +87,9 @@ def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
         Others than print requests are passed over.
     frame : Frame
     """
-    tables = {"node print": _node_tables, "el print": _element_tables}
+    tables = {
+        "node print": _node_tables, "el print": _element_tables, "contact print": contact_tables,
+    }  # fmt: skip
     asked = (o for o in outputs if o.kind in tables)
     return "".join(text for o in asked for text in tables[o.kind](model, o, frame))
 
@@ -99,14 +97,6 @@ def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
 def _head(title: str, output: Output, frame: Frame) -> str:
     name = output.where.upper() or "ALL"
     return f"\n {title}for set {name} and time {fortran(frame.time, 7):>14}\n\n"
-
-
-def _rows(form: str, *columns: NDArray[np.generic]) -> str:
-    """Rows of a table; one formatting call for all of them."""
-    table: list[object] = []
-    for row in zip(*(c.tolist() for c in columns), strict=True):
-        table.extend(row)
-    return (form * len(columns[0])) % tuple(table)
 
 
 def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
@@ -119,7 +109,7 @@ def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
         only = output.totals == "only" and total
         if not only:
             yield _head(title + " ", output, frame)
-            yield _rows("%10d %13.6E %13.6E %13.6E\n", labels, *values.T)
+            yield rows("%10d %13.6E %13.6E %13.6E\n", labels, *values.T)
         if total and output.totals != "no":
             fx, fy = (math.fsum(values[:, i].tolist()) for i in range(2))
             yield _head(total + " ", output, frame)
@@ -150,20 +140,20 @@ def _element_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]
                 continue
             columns = [mesh.cell_labels[owner], point]
             if values.ndim == 1:
-                yield _rows("%10d %3d %13.6E\n", *columns, values)
+                yield rows("%10d %3d %13.6E\n", *columns, values)
                 continue
             values = values.copy()
             if name == "E":
                 values[:, 3] *= 0.5  # CalculiX prints tensor components
             form = "%10d %3d" + 4 * " %13.6E" + 2 * "  0.000000E+00" + "\n"
-            yield _rows(form, *columns, *values.T)
+            yield rows(form, *columns, *values.T)
             continue
         title, total = ELEMENT_TITLES[name]
         owner, sums = _per_element(frame, cells, name)
         if output.totals != "only":
             yield _head(title + " ", output, frame)
             if len(owner):
-                yield _rows("%10d %13.6E\n", mesh.cell_labels[owner], sums)
+                yield rows("%10d %13.6E\n", mesh.cell_labels[owner], sums)
         if output.totals != "no":
             yield _head(total + " ", output, frame)
             yield f"       {math.fsum(sums.tolist()):13.6E}\n"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from itertools import count
 from typing import TYPE_CHECKING
 
-from corota.io.dat import fortran
+from corota.io.dat_numbers import fortran
 
 if TYPE_CHECKING:
     from corota.results import Frame

@@ -146,7 +146,7 @@ class MeshBuilder:
             view.nodes = Lookup(own, np.arange(start, start + len(own)))
             view.node_offset = self._offset(view, own, largest, "nodes")
             largest = max(largest, int(own.max()) + view.node_offset)
-            points.append(_place(xyz[:, :2], view.instance))
+            points.append(placed(xyz[:, :2], view.instance))
             labels.append(own + view.node_offset)
             start += len(own)
         if start == 0:
@@ -417,7 +417,7 @@ def view_of(views: list[View], target: str) -> tuple[View, str] | None:
     return None
 
 
-def _place(points: Floats, instance: Instance | None) -> Floats:
+def placed(points: Floats, instance: Instance | None) -> Floats:
     """Shift, then turn."""
     if instance is None:
         return points

@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io import inp_numbers
+from corota.io.inp_build_contact import build_contacts
 from corota.io.inp_build_materials import build_material
 from corota.io.inp_build_mesh import MeshBuilder, View, view_of
 from corota.io.inp_build_sets import Elements, Sets
@@ -23,6 +24,8 @@ from corota.model import BodyForce, EdgeLoad, Fixed, InitialVelocity, Model, Nod
 from corota.steps import Static
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from corota.io.inp_cards_tie import TieDraft
     from corota.io.inp_deck import Deck, Draft, SectionDraft, StepDraft
     from corota.materials import Material
@@ -51,6 +54,7 @@ class ModelBuilder:
         self._sections()
         model, deck = self.model, self.deck
         build_ties(deck, model, self._nodes, self._tied, self.rotating)
+        build_contacts(deck, model, self.sets, self._nodes, self.rotating)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
         model.supports = self._supports(deck.supports)
         for item in deck.velocities:
@@ -412,10 +416,12 @@ class ModelBuilder:
             return None
 
     def _check_target(self, kind: str, where: str, draft: StepDraft) -> None:
-        tables = {
+        known: dict[str, Mapping[str, object]] = {
             "node print": self.mesh.node_sets,
             "el print": self.mesh.cell_sets,
-        }.get(kind, {**self.mesh.node_sets, **self.mesh.cell_sets})
+            "contact print": {pair.name: None for pair in self.model.contacts},
+        }
+        tables = known.get(kind, {**self.mesh.node_sets, **self.mesh.cell_sets})
         request = next(o for o in draft.outputs if o.kind == kind and o.where == where)
         if not where:
             return
@@ -423,7 +429,9 @@ class ModelBuilder:
             if key(name) == key(where):
                 request.where = name
                 return
-        what = {"node print": "node set", "el print": "element set"}.get(kind, "set")
+        what = {
+            "node print": "node set", "el print": "element set", "contact print": "contact pair",
+        }.get(kind, "set")  # fmt: skip
         self.deck.error(
             None, request.source, f"no {what} named {where!r}", hint=nearest(where, tables)
         )

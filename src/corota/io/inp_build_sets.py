@@ -89,6 +89,8 @@ class Sets:
                 )
         for full, (view, surface) in self.surfaces.items():
             name = view.prefix + surface.name
+            if key(surface.card.value("TYPE")) == "SEGMENTS":
+                continue
             if surface.nodes:
                 self.mesh.node_sets[name] = self._node_surface(view, surface)
             else:

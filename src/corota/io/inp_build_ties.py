@@ -61,7 +61,7 @@ def _build(
     if tie.kind == "same":
         _same(model, find, rotating, tie)
         return
-    single = [_single(deck, find, term) for term in tie.terms]
+    single = [single_node(deck, find, term) for term in tie.terms]
     if None in single:
         return
     numbers = cast("list[int]", single)
@@ -111,7 +111,8 @@ def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) 
                 model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def _single(deck: Deck, find: Find, draft: Draft) -> int | None:
+def single_node(deck: Deck, find: Find, draft: Draft) -> int | None:
+    """Index of the one node that a draft names; ``None`` after an error."""
     nodes = find(draft)
     if nodes is None:
         return None

@@ -10,6 +10,7 @@ import numpy as np
 from corota._core import parse_labels, parse_nodes, parse_table
 from corota.errors import Location
 from corota.io import inp_numbers
+from corota.io.inp_cards_contact import profile
 from corota.io.inp_deck import (
     Deck,
     ElementBlock,
@@ -288,11 +289,11 @@ def _generated(deck: Deck, card: Card, row: Row) -> Ints | None:
 
 
 def surface(deck: Deck, card: Card) -> None:
-    """``*SURFACE, NAME=[, TYPE=ELEMENT|NODE]``: element or set, face; or nodes."""
+    """``*SURFACE, NAME=[, TYPE=ELEMENT|NODE|SEGMENTS]``: element or set, face; or nodes."""
     name = deck.required(card, "NAME")
     if not name:
         return
-    kind = deck.choice(card, "TYPE", ("ELEMENT", "NODE"), "ELEMENT")
+    kind = deck.choice(card, "TYPE", ("ELEMENT", "NODE", "SEGMENTS"), "ELEMENT")
     found = deck.scope.surfaces.get(key(name))
     if found is not None:
         deck.error(
@@ -303,6 +304,9 @@ def surface(deck: Deck, card: Card) -> None:
         )
         return
     found = deck.scope.surfaces[key(name)] = Surface(name, card, kind == "NODE")
+    if kind == "SEGMENTS":
+        profile(deck, card, found)
+        return
     for row in card.rows():
         deck.extra_fields(card, row, 2)
         if not row.get(0):

@@ -13,10 +13,16 @@ if TYPE_CHECKING:
     from corota.io.inp_deck import Deck
     from corota.io.inp_lexer import Card
 
-Kind = Literal["node print", "el print", "node file", "el file"]
+Kind = Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
 
 #: Variables that are written, by the place where they live.
-WRITTEN = {"node": ("U", "RF", "UR"), "el": ("S", "E", "PEEQ", "ENER", "ELSE", "EVOL")}
+WRITTEN = {
+    "node": ("U", "RF", "UR"),
+    "el": ("S", "E", "PEEQ", "ENER", "ELSE", "EVOL"),
+    "contact": ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS"),
+}
+#: Names of Abaqus for the same.
+ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
 #: Known to CalculiX or Abaqus, not written here.
 KNOWN = {
     "node": (
@@ -27,6 +33,10 @@ KNOWN = {
         "ME", "PE", "ELKE", "EMAS", "COORD", "SDV", "ERR", "ZZS",
         "NOE", "LE", "EE", "MISES", "SP", "EP", "HFL", "HER", "MAXS", "MAXE", "PHS", "SF", "SVF",
         "PEMAG", "SENER", "ELEN", "STH", "NE", "THE", "CEEQ", "DG", "CENT",
+    ),
+    "contact": (
+        "PCON", "CSTATUS", "CAREA", "CNAREA", "CENER", "CTRQ", "CFNM", "CFSM", "CFTM", "CFT", "CM",
+        "PPRESS", "CSTRESSETOS", "HFL", "HFLA",
     ),
 }  # fmt: skip
 
@@ -53,6 +63,20 @@ def el_file(deck: Deck, card: Card) -> None:
     _request(deck, card, "el file", card.value("NSET") or card.value("ELSET"))
 
 
+def contact_print(deck: Deck, card: Card) -> None:
+    """``*CONTACT PRINT[, SLAVE=, MASTER=]``: tables of contact in ``<job>.dat``."""
+    slave, master = card.value("SLAVE"), card.value("MASTER")
+    if bool(slave) != bool(master):
+        deck.error(card, card.where, "SLAVE= and MASTER= belong together")
+        return
+    _request(deck, card, "contact print", f"{slave}-{master}" if slave else "")
+
+
+def contact_file(deck: Deck, card: Card) -> None:
+    """``*CONTACT FILE`` or ``*CONTACT OUTPUT``: contact fields, which are always written."""
+    _request(deck, card, "contact file", "")
+
+
 def output(deck: Deck, card: Card) -> None:
     """``*OUTPUT``: frequency of the ``*... OUTPUT`` cards below it."""
     if deck.step is None:
@@ -75,11 +99,12 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
     if deck.step is None:
         deck.error(card, card.where, "the card belongs inside a step")
         return
-    place = "node" if kind.startswith("node") else "el"
+    place = kind.split()[0]
     variables: list[str] = []
     for row in card.rows():
         for index, text in enumerate(row.fields):
             name = key(text)
+            name = ALIASES.get(name, name) if place == "contact" else name
             if not name:
                 continue
             if name in WRITTEN[place]:
@@ -123,7 +148,11 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
 
 
 def _frequency(deck: Deck, card: Card) -> int:
-    under = deck.step is not None and card.keyword in ("NODEOUTPUT", "ELEMENTOUTPUT")
+    under = deck.step is not None and card.keyword in (
+        "NODEOUTPUT",
+        "ELEMENTOUTPUT",
+        "CONTACTOUTPUT",
+    )
     default = deck.step.frequency if under and deck.step is not None else 1
     name = "FREQUENCYF" if card.has("FREQUENCYF") else "FREQUENCY"
     return deck.parameter_integer(card, name, default, 0)

@@ -99,9 +99,14 @@ def _parameter_row(card: Card, name: str) -> Row:
 
 
 def rigid_body(deck: Deck, card: Card) -> None:
-    """``*RIGID BODY, NSET= or ELSET=, REF NODE=[, ROT NODE=]``."""
+    """``*RIGID BODY, NSET= or ELSET= or ANALYTICAL SURFACE=, REF NODE=[, ROT NODE=]``."""
     deck.no_rows(card)
     reference = _reference(deck, card, "REFNODE")
+    if card.has("ANALYTICALSURFACE") and reference is not None:
+        deck.carriers[key(card.value("ANALYTICALSURFACE"))] = (card, reference)
+        _rotation_node(deck, card, reference)
+        if not card.has("NSET") and not card.has("ELSET"):
+            return
     if card.has("NSET") == card.has("ELSET"):
         deck.error(card, card.where, "either NSET= or ELSET= is expected")
         return
@@ -112,10 +117,14 @@ def rigid_body(deck: Deck, card: Card) -> None:
         tie.target = Draft("set", card, _parameter_row(card, "NSET"), card.value("NSET"), (0.0,))
     else:
         tie.elset = card.value("ELSET")
+    _rotation_node(deck, card, reference)
+    deck.ties.append(tie)
+
+
+def _rotation_node(deck: Deck, card: Card, reference: Draft) -> None:
     if card.has("ROTNODE"):
         # Its dof 3 is the rotation in the plane, its dofs 1 and 2 those out of it.
         deck.rotation_nodes[key(card.value("ROTNODE"))] = reference.target
-    deck.ties.append(tie)
 
 
 def coupling(deck: Deck, card: Card) -> None:

@@ -16,6 +16,7 @@ from corota.io.inp_lexer import Card, Row, key
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from corota.io.inp_cards_contact import InteractionDraft, PairDraft
     from corota.io.inp_cards_lines import LineDraft
     from corota.io.inp_cards_tie import TieDraft
     from corota.materials import Expansion
@@ -81,12 +82,17 @@ class SurfaceRow:
 
 @dataclass(slots=True)
 class Surface:
-    """A surface of element edges, or of nodes."""
+    """A surface of element edges, of nodes, or a rigid profile.
+
+    ``profile`` has rows x0, y0, x1, y1, cx, cy, sweep in the deck's order.
+    """
 
     name: str
     card: Card
     nodes: bool
     rows: list[SurfaceRow] = field(default_factory=list)
+    profile: Floats | None = None
+    fillet: float = 0.0
 
 
 @dataclass(slots=True)
@@ -233,6 +239,9 @@ class Deck:
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
     rotation_nodes: dict[str, str] = field(default_factory=dict)
+    pairs: list[PairDraft] = field(default_factory=list)
+    interactions: dict[str, InteractionDraft] = field(default_factory=dict)
+    carriers: dict[str, tuple[Card, Draft]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     hidden: int = 0
@@ -240,6 +249,7 @@ class Deck:
     step: StepDraft | None = None
     material: MaterialDraft | None = None
     instance: Instance | None = None
+    interaction: InteractionDraft | None = None
     in_assembly: bool = False
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from corota.io import inp_cards_assembly as assembly
+from corota.io import inp_cards_contact as contact
 from corota.io import inp_cards_dynamic as dynamic
 from corota.io import inp_cards_lines as lines
 from corota.io import inp_cards_material as material
@@ -67,7 +68,7 @@ KEYWORDS: dict[str, Keyword] = {
     "ELEMENT": Keyword(mesh.element, "TYPE ELSET", place="model"),
     "NSET": Keyword(mesh.nset, "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"),
     "ELSET": Keyword(mesh.elset, "ELSET GENERATE INSTANCE INTERNAL", place="model"),
-    "SURFACE": Keyword(mesh.surface, "NAME TYPE INTERNAL", place="model"),
+    "SURFACE": Keyword(mesh.surface, "NAME TYPE INTERNAL FILLETRADIUS", place="model"),
     "MATERIAL": Keyword(material.material, "NAME", place="model"),
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
     "DENSITY": Keyword(material.density, place="model"),
@@ -109,11 +110,44 @@ KEYWORDS: dict[str, Keyword] = {
     "INITIALCONDITIONS": Keyword(dynamic.initial_conditions, "TYPE", place="model"),
     "EQUATION": Keyword(tie.equation, place="model"),
     "MPC": Keyword(tie.mpc, place="model"),
-    "RIGIDBODY": Keyword(tie.rigid_body, "NSET ELSET REFNODE ROTNODE", place="model"),
+    "RIGIDBODY": Keyword(
+        tie.rigid_body, "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE", place="model"
+    ),
     "COUPLING": Keyword(tie.coupling, "REFNODE SURFACE", "CONSTRAINTNAME", place="model"),
     "KINEMATIC": Keyword(tie.kinematic, place="model"),
     "DISTRIBUTING": Keyword(tie.distributing, place="model"),
     "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
+    "CONTACTPAIR": Keyword(
+        contact.contact_pair, "INTERACTION TYPE ADJUST SMALLSLIDING",
+        "EXTENSIONZONE HCRIT SMOOTH TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS", place="model",
+    ),
+    "SURFACEINTERACTION": Keyword(
+        contact.surface_interaction, "NAME", "DEPVAR PROPERTIES UNSYMM", place="model"
+    ),
+    "SURFACEBEHAVIOR": Keyword(
+        contact.surface_behavior, "PRESSURE-OVERCLOSURE", "AUGMENTEDLAGRANGE DIRECT PENALTY",
+        place="model",
+    ),
+    "FRICTION": Keyword(contact.friction, "", "SLIPTOLERANCE LAGRANGE ELASTICSLIP", place="model"),
+    "CLEARANCE": Keyword(contact.clearance, "SLAVE MASTER VALUE", place="model"),
+    "TIE": Keyword(contact.tie, "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION", place="model"),
+    "CONTACTCONTROLS": Keyword(
+        contact.contact_controls, "STABILIZE SLAVE MASTER",
+        "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
+        "LAGRANGEMULTIPLIER",
+    ),
+    "CONTACTINTERFERENCE": Keyword(contact.contact_interference, "SHRINK", "TYPE OP"),
+    "CONTACTPRINT": Keyword(
+        output.contact_print, "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
+        "SUMMARY NSET",
+    ),
+    "CONTACTFILE": Keyword(
+        output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER", "NSET"
+    ),
+    "CONTACTOUTPUT": Keyword(
+        output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
+        "NSET VARIABLE CPSET SURFACE",
+    ),
     "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE", "LOADCASE"),
     "CLOAD": Keyword(step.cload, "OP AMPLITUDE", "LOADCASE"),
     "DLOAD": Keyword(step.dload, "OP AMPLITUDE", "LOADCASE"),
@@ -152,7 +186,8 @@ IGNORED: dict[str, str] = {
     "USERSUBROUTINE": "no user subroutine is called",
 }
 
-_CONTACT = "contact is not part of this version; model the parts as one"
+_CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
+_CHANGE = "pairs and what happens between their surfaces stay over the steps"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 _HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _PLASTIC = "the material laws are *ELASTIC and *PLASTIC; use these"
@@ -163,14 +198,17 @@ _LINE = "only planar solids, trusses, beams and springs are part of this version
 UNSUPPORTED: dict[str, str] = {
     **dict.fromkeys(
         (
-            "CONTACTPAIR", "CONTACT", "CONTACTINCLUSIONS", "CONTACTFILE", "CONTACTPRINT",
-            "CONTACTOUTPUT", "SURFACEINTERACTION", "SURFACEBEHAVIOR", "FRICTION", "TIE", "GAP",
-            "CLEARANCE", "CONTACTDAMPING", "CHANGEFRICTION", "CHANGECONTACTTYPE", "MODELCHANGE",
-            "CHANGESURFACEBEHAVIOR", "SURFACESMOOTHING", "CONTACTPROPERTYASSIGNMENT",
-            "CONTACTINITIALIZATIONDATA", "CONTACTCONTROLS",
+            "CONTACT", "CONTACTINCLUSIONS", "CONTACTEXCLUSIONS", "CONTACTPROPERTYASSIGNMENT",
+            "CONTACTINITIALIZATIONDATA", "CONTACTINITIALIZATIONASSIGNMENT", "GAP",
         ),
         _CONTACT,
     ),
+    **dict.fromkeys(
+        ("CHANGEFRICTION", "CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR", "MODELCHANGE"), _CHANGE
+    ),
+    "CONTACTDAMPING": "contact has no damping of its own; damp the bodies by *DAMPING",
+    "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
+    "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
     **dict.fromkeys(
         (
             "DISTRIBUTINGCOUPLING", "EMBEDDEDELEMENT", "CYCLICSYMMETRYMODEL",
@@ -252,6 +290,15 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SHELLSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
     ("SPRING", "ORIENTATION"): "give the springs global directions",
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
+    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces that touch may part; join them by *TIE",
+    ("FRICTION", "ROUGH"): "give a large friction coefficient",
+    ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
+    ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
+    ("FRICTION", "TAUMAX"): "the shear traction has no bound of its own",
+    ("FRICTION", "USER"): "no user subroutine is called",
+    ("CLEARANCE", "TABULAR"): "give one VALUE",
+    ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
+    ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
     ("ELASTIC", "DEPENDENCIES"): "constants that depend on fields are not part of this version",
 }
 
@@ -326,6 +373,7 @@ SPELLED = {
         "SOLID SECTION", "SHELL SECTION", "TIME POINTS", "END STEP", "NODE PRINT", "EL PRINT",
         "NODE FILE", "NODE OUTPUT", "EL FILE", "ELEMENT OUTPUT", "END PART", "END ASSEMBLY",
         "END INSTANCE", "CONTACT PAIR", "BEAM SECTION", "RIGID BODY", "SURFACE INTERACTION",
-        "SURFACE BEHAVIOR", "INITIAL CONDITIONS", "SECTION PRINT", "NODAL THICKNESS",
+        "SURFACE BEHAVIOR", "CONTACT PRINT", "CONTACT FILE", "CONTACT OUTPUT", "CONTACT CONTROLS",
+        "CONTACT INTERFERENCE", "INITIAL CONDITIONS", "SECTION PRINT", "NODAL THICKNESS",
     )
 }  # fmt: skip

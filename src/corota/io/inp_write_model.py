@@ -14,6 +14,7 @@ import numpy as np
 from corota.check.parts import cells_of
 from corota.errors import InputError, UnsupportedError
 from corota.io.inp_write import TYPES
+from corota.io.inp_write_contact import contact_cards, step_cards, surfaces
 from corota.io.inp_write_thermal import expansion_cards, initial_cards, temperatures
 from corota.io.twin import replace_text
 from corota.materials import Elastic, Orthotropic
@@ -73,13 +74,14 @@ class _Writer:
         self._sets: list[str] = []
         self._invented = 0
         self._materials: dict[int, str] = {}
+        self._edges: list[tuple[Ints, str]] = []  # surfaces that had to be invented
 
     def cards(self) -> Iterator[str]:
         model = self.model
         self._refuse()
         # The steps come first here since they may need sets of their own.
         steps = model.steps or ([Static()] if model.loads else [])
-        tail = [*self._materials_and_sections(), *self._tables()]
+        tail = [*self._materials_and_sections(), *self._tables(), *contact_cards(self)]
         tail += initial_cards(self, model)
         tail += _boundary(self, model.supports, False)
         for number, step in enumerate(steps):
@@ -212,6 +214,8 @@ class _Writer:
         yield f"*STATIC{', DIRECT' if step.fixed_increments else ''}\n"
         yield f"{_number(step.first_increment)}, {_number(step.period)}, "
         yield f"{_number(step.smallest_increment)}, {_number(step.largest_increment)}\n"
+        if number == 0:
+            yield from step_cards(self)
         yield from _boundary(self, step.supports, step.new_supports)
         if step.new_loads:
             yield "*CLOAD, OP=NEW\n"
@@ -219,7 +223,11 @@ class _Writer:
             yield from self._load(load)
         for request in step.outputs:
             yield f"*{request.kind.upper()}"
-            if request.where:
+            if request.kind == "contact print" and request.where:
+                pairs = {p.name: p for p in self.model.contacts}
+                slave, master = surfaces(self, pairs[request.where])
+                yield f", SLAVE={slave}, MASTER={master}"
+            elif request.where:
                 yield f", {'N' if 'node' in request.kind else 'EL'}SET={_plain(request.where)}"
             if request.frequency != 1:
                 yield f", FREQUENCY={request.frequency}"
@@ -237,7 +245,7 @@ class _Writer:
             for target in self.nodes(load.nodes):
                 yield f"{target}, {_dof(load.dof)}, {_number(load.value)}\n"
         elif isinstance(load, EdgeLoad):
-            name = self._edge_set(load.edges)
+            name = self.edge_set(load.edges)
             if load.kind == "pressure":
                 yield f"*DSLOAD{option}\n{name}, P, {_number(load.value[0])}\n"
                 return
@@ -283,14 +291,16 @@ class _Writer:
                 return _plain(name)
         return self._invent("ELSET", self.mesh.cell_labels[where])
 
-    def _edge_set(self, where: str | Ints) -> str:
+    def edge_set(self, where: str | Ints) -> str:
+        """Name of a surface, invented for an array."""
         if isinstance(where, str):
             return _plain(where)
-        for name, edges in self.mesh.edge_sets.items():
+        for edges, name in [*((e, n) for n, e in self.mesh.edge_sets.items()), *self._edges]:
             if np.array_equal(edges, where):
                 return _plain(name)
         self._invented += 1
         self._sets.append(_surface(self.mesh, f"_{self._invented}", where))
+        self._edges.append((where, f"_{self._invented}"))
         return f"_{self._invented}"
 
     def _invent(self, kind: str, labels: Ints) -> str:

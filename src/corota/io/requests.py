@@ -73,7 +73,7 @@ def wants_file(model: Model, steps: Sequence[Step], frame: Frame) -> bool:
 
 
 def _of_file(output: Output) -> bool:
-    return output.kind in ("node file", "el file")
+    return output.kind.endswith(" file")
 
 
 def last_of_steps(frames: Sequence[Frame]) -> list[bool]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from corota.io.dat import fortran
+from corota.io.dat_numbers import fortran
 
 if TYPE_CHECKING:
     from corota.results import Frame, Iteration

@@ -14,6 +14,7 @@ import numpy as np
 
 from corota import fields as vf
 from corota.errors import FileError, InputError
+from corota.io.contacts import stored_contacts
 from corota.io.vtkhdf import VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
@@ -198,6 +199,7 @@ class StoredResults(Results):
     def __init__(self, file: Any) -> None:
         own = file["corota"]
         model = Model(_mesh(file), str(own.attrs["job"]))
+        model.contacts = stored_contacts(own)
         info = json.loads(own.attrs["info"]) if "info" in own.attrs else {}
         super().__init__(model, info=info)
         self._file = file

@@ -13,6 +13,7 @@ import numpy as np
 
 from corota import fields as vf
 from corota.errors import CorotaError, FileError
+from corota.io.contacts import store_contacts
 from corota.io.finite import check_frame
 from corota.io.twin import TwinFile
 
@@ -181,6 +182,7 @@ class VtkhdfWriter:
             group = own.create_group(f"{kind} sets")
             for name, members in getattr(mesh, f"{kind}_sets").items():
                 group[name.replace("/", "|")] = members
+        store_contacts(own.create_group("contacts"), self.model)
         own.create_group("frames")
         own.create_group("points")
         group = root["CellData"]

@@ -1,4 +1,4 @@
-"""Pictures: contours on the deformed shape, curves, the model, animations.
+"""Pictures: contours on the deformed shape, curves, contact, the model, animations.
 
 All need matplotlib (``pip install corota[plot]``). Each function returns the figure; with ``path``
 it is written too, as PNG, SVG or PDF by the ending.
@@ -6,8 +6,9 @@ it is written too, as PNG, SVG or PDF by the ending.
 
 # SPDX-License-Identifier: BSD-3-Clause
 from corota.plots.animation import animate
+from corota.plots.contact import contact_line, status
 from corota.plots.contour import contour
 from corota.plots.curves import curve
 from corota.plots.model import model
 
-__all__ = ["animate", "contour", "curve", "model"]
+__all__ = ["animate", "contact_line", "contour", "curve", "model", "status"]

@@ -12,6 +12,7 @@ from corota import fields as vf
 from corota.errors import InputError
 from corota.plots.figure import INK, PALE, extent_size, look, new_figure, save
 from corota.plots.plastic import draw_boundary
+from corota.plots.rigid import draw_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
 
 if TYPE_CHECKING:
@@ -289,6 +290,7 @@ def paint(
             LineCollection(lines, colors=PALE, linewidths=0.8, linestyles=(0, (4, 3)), zorder=0.5)
         )
     ax.add_collection(LineCollection(outline(mesh, positions), colors=INK, linewidths=0.8))
+    draw_rigid(ax, results.model, results.frame(frame), scale)
     ax.set_aspect("equal")
     ax.set_xlabel("x")
     ax.set_ylabel("y")

@@ -11,6 +11,7 @@ from corota.fields import section_of_cells
 from corota.mesh import EDGES
 from corota.model import BodyForce, EdgeLoad, NodalForce
 from corota.plots.figure import COLORS, INK, extent_size, look, new_figure, save
+from corota.plots.rigid import draw_rigid
 from corota.plots.surface import edge_lines, outline, surface
 
 if TYPE_CHECKING:
@@ -85,6 +86,7 @@ def model(
                 )
             )
         ax.add_collection(LineCollection(outline(mesh, mesh.points), colors=INK, linewidths=0.9))
+        draw_rigid(ax, subject)
         if sets:
             _sets(ax, subject)
         _supports(ax, subject, size)

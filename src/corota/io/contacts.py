@@ -1,0 +1,45 @@
+"""Contact pairs in result files: as much as pictures need."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.contact import ContactPair, RigidCurve
+
+if TYPE_CHECKING:
+    from corota.model import Model
+
+
+def store_contacts(group: Any, model: Model) -> None:
+    """Write surfaces and rigid curves of the contact pairs into an HDF5 group."""
+    for number, pair in enumerate(model.contacts):
+        own = group.create_group(str(number))
+        own.attrs["name"] = pair.name
+        sets = model.mesh.edge_sets
+        own["slave"] = sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
+        if isinstance(pair.master, RigidCurve):
+            own["segments"] = pair.master.segments
+            if isinstance(pair.master.reference, int | np.integer):
+                own.attrs["reference"] = int(pair.master.reference)
+        else:
+            own["master"] = sets[pair.master] if isinstance(pair.master, str) else pair.master
+
+
+def stored_contacts(file: Any) -> list[ContactPair]:
+    """Contact pairs of a result file; none in those of versions without."""
+    pairs = []
+    group = file.get("contacts", {})
+    for number in sorted(group, key=int):
+        own = group[number]
+        master: Any = own["master"][:] if "master" in own else None
+        if master is None:
+            reference = own.attrs.get("reference")
+            master = RigidCurve(own["segments"][:], None if reference is None else int(reference))
+        pairs.append(ContactPair(own["slave"][:], master, name=str(own.attrs["name"])))
+    return pairs
+
+
+__all__ = ["store_contacts", "stored_contacts"]
