@@ -198,7 +198,7 @@ class Pair:
         shear = self.shear(terms, q)
         if last is not None and self.law is None:
             seen = terms.area > COVERED * self.full
-            push = np.where((last != OPEN) & seen, p, push)
+            push = np.where((last != OPEN) & seen, np.maximum(p, push), push)
             shear = np.where(last == CLOSED, q, shear)
         state = np.where(push > -rounding, CLOSED, OPEN).astype(np.int8)
         if self.friction:
