@@ -176,3 +176,23 @@ def test_contact_in_files(tmp_path):
         assert stored.history("punch: force y").values == pytest.approx(
             results.history("punch: force y").values
         )
+
+
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+def test_constraints_that_follow_from_others_are_left_out(method):
+    """The same wall twice, and a corner that is held on it."""
+    mesh = ct.mesh.rectangle(1.0, 0.5, 4, 2)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    corner = mesh.node_sets["bottom"][:1]
+    model.fix(corner)
+    model.traction("top", y=-2.0)
+    for name in ("wall", "again"):
+        wall = ct.RigidCurve.line((2.0, 0.0), (-1.0, 0.0))
+        model.contact("bottom", wall, method=method, name=name)
+    results = ct.solve(model, threads=1)
+    assert any("follows from others" in note for note in results.notes)
+    last = results.frames[-1]
+    on_walls = last.scalars["wall: force y"] + last.scalars["again: force y"]
+    assert on_walls + last.RF[corner, 1].sum() == pytest.approx(2.0, rel=1e-9)
+    assert np.abs(last.U[mesh.node_sets["bottom"], 1]).max() < 1e-9

@@ -113,7 +113,7 @@ def static_step(
             )
             continue
         if system.touching is not None:
-            touching.accept(outcome.u, target)
+            state.notes += touching.accept(outcome.u, target)
         _accept(system, state, outcome, target)
         dt = target - control.time
         attempts = control.attempt

@@ -97,6 +97,7 @@ class Touching:
         dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
         self._dof = np.append(dof, -1)
         self._stiff = False
+        self.told: set[int] = set()  # dropped constraints that were reported
         self.border: Bordered | None = None  # linear algebra with the multipliers, made when needed
 
     # -- steps -------------------------------------------------------------------------

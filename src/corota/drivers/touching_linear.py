@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 #: GMRES: relative residual that is enough, and steps after which LU takes over.
 ENOUGH, STEPS = 1e-10, 60
+#: Share of a constraint that does not follow from others, below which it is dropped, and most
+#: constraints among which that is looked for.
+DEPENDENT, MOST_DENSE = 1e-9, 2000
 #: Relative size of a product that is nothing but rounding.
 NULL = 1e-10
 
@@ -119,7 +122,8 @@ class Bordered:
         self._full: Callable[[Floats], Floats] | None = None
         #: Steps of GMRES so far and fall-backs to LU, for reports.
         self.steps = self.whole = 0
-        self._lu: Any = None
+        #: Multipliers of constraints that followed from others.
+        self.dropped: set[int] = set()
 
     # -- pattern -----------------------------------------------------------------------
 
@@ -146,7 +150,7 @@ class Bordered:
         counts = np.bincount(self.columns, minlength=self.size)
         self.indptr = np.concatenate([[0], np.cumsum(counts)])
         self.diagonal = self.indptr[1:] - 1
-        self._held, self._analyzed, self._lu = None, False, None
+        self._held, self._analyzed = None, False
 
     def _mask(self, held: NDArray[np.bool_]) -> Ints:
         """Places of the entries of held unknowns beside the diagonal."""
@@ -213,7 +217,16 @@ class Bordered:
         try:
             x, negative = self._solve(data, rest, b)
         except SingularError as error:
-            raise self._named(error) from None
+            dropped = self._drop_dependent(data, b)
+            if not dropped:
+                raise self._named(error) from None
+            try:
+                x, negative = self._solve(data, rest, b)
+            except SingularError as again:
+                raise self._named(again) from None
+            self.dropped.update(dropped)
+            if negative >= 0:
+                negative += len(dropped)  # each would have given one
         x[held] = moved[held]
         du = x[: self.nf]
         if link is not None:
@@ -221,6 +234,36 @@ class Bordered:
             out[self.free] = du
             du = link.move(out)
         return du, x[self.nf :], negative
+
+    def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
+        """Take constraints out that follow from others, in place; returns their multipliers."""
+        import scipy.linalg
+
+        own = self.columns >= self.nf
+        inner = np.flatnonzero(own & (self.rows < self.nf) & (data != 0.0))
+        bare = data[self.diagonal[self.nf :]] == 0.0
+        chosen = np.flatnonzero(bare)
+        if not len(chosen) or len(chosen) > MOST_DENSE:
+            return []
+        place = np.full(self.n, -1, np.int64)
+        place[chosen] = np.arange(len(chosen))
+        column = place[self.columns[inner] - self.nf]
+        inner, column = inner[column >= 0], column[column >= 0]
+        used, row = np.unique(self.rows[inner], return_inverse=True)
+        table = np.zeros((max(len(used), 1), len(chosen)))
+        table[row, column] = data[inner]
+        length = np.sqrt((table**2).sum(axis=0))
+        table /= np.where(length > 0.0, length, 1.0)
+        _, r, order = scipy.linalg.qr(table, mode="economic", pivoting=True)
+        size = np.zeros(len(chosen))
+        size[: min(r.shape)] = np.abs(np.diag(r))
+        gone = chosen[order[size <= DEPENDENT]]
+        if len(gone):
+            mine = np.isin(self.columns, gone + self.nf)
+            data[mine] = 0.0
+            data[self.diagonal[gone + self.nf]] = 1.0
+            b[gone + self.nf] = 0.0
+        return [int(k) for k in gone]
 
     def _named(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""

@@ -460,10 +460,20 @@ class TouchingSystem:
                 )
                 return
 
-    def accept(self, u: Floats, step_time: float) -> None:
-        """Commit contact with the increment."""
+    def accept(self, u: Floats, step_time: float) -> list[str]:
+        """Commit contact with the increment; returns remarks that are new."""
         assert self.touch is not None
         self.touching.commit(u, self.touch, step_time)
+        notes = []
+        for number in sorted(self.border.dropped - self.touching.told):
+            pair = next(p for p in reversed(self.touching.pairs) if p.first <= number)
+            label = self.touching.label(pair, (number - pair.first) % pair.n)
+            notes.append(
+                f"contact pair {pair.name!r}: the constraint at node {label} follows from others "
+                "(supports, ties or other pairs) and was left out"
+            )
+        self.touching.told |= self.border.dropped
+        return notes
 
     def explain(self, outcome: Outcome[Touched]) -> str:
         """Which pair and nodes a failed increment hung on, and what was tried."""

@@ -1,0 +1,85 @@
+"""The linearised equations of contact against differences of what they linearise."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.drivers.solvers import Faer
+from corota.drivers.system import System
+from corota.drivers.touching_pair import CLOSED, OPEN, SLIPPING
+from corota.drivers.touching_system import TouchingSystem
+
+STEP = 1e-6
+
+
+def problem(method, law):
+    low = ct.mesh.rectangle(3.0, 1.0, 4, 1)
+    up = ct.mesh.rectangle(1.3, 0.5, 3, 1, origin=(0.7, 0.98))
+    mesh = ct.mesh.assembly(low=low, up=up)
+    disc = ct.mesh.add_node(mesh, 1.3, 2.45)
+    model = ct.Model(mesh)
+    model.section("low", element="Q4D", material=ct.Elastic(E=10.0, nu=0.3))
+    model.section("up", element="Q4I", material=ct.Elastic(E=10.0, nu=0.3))
+    circle = ct.RigidCurve.circle((1.3, 2.45), 1.0, reference=disc)
+    model.contact("up.bottom", "low.top", method=method, friction=0.3, law=law)
+    model.contact("up.top", circle, method=method, friction=0.3)
+    system = System(model, Faer())
+    system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
+    return TouchingSystem(system, system)
+
+
+@pytest.mark.parametrize("law", [None, ct.PressureLaw("linear", 20.0)])
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+def test_rows_and_columns_are_derivatives(method, law):
+    self = problem(method, law)
+    n, m = self.n, self.touching.n
+    rng = np.random.default_rng(1)
+    z = np.concatenate([0.01 * rng.standard_normal(n), rng.uniform(0.5, 2.0, m)])
+    at = self.evaluate(z, 1.0)
+    for pair in self.touching.pairs:
+        pair.frozen = True
+        pair.area = pair.full * 0.9
+    states = []
+    for pair, terms, (p, q) in self._pairs(at.touch):
+        assert (terms.area > 0.1 * pair.full).sum() >= 2
+        state = pair.states(terms, p, q)
+        state[terms.area > 0.1 * pair.full] = [CLOSED, SLIPPING][pair.first > 0]
+        state[terms.area <= 0.1 * pair.full] = OPEN
+        states.append(state)
+        self.senses[pair.first] = pair.sense(terms, q)
+
+    def equations(z):
+        """Force of contact and the rows of all constraints, with the states as they are."""
+        touch = self.evaluate(z, 1.0).touch
+        out = []
+        for (pair, terms, (p, q)), s in zip(self._pairs(touch), states, strict=True):
+            _, rp, _, rq, ratio = pair.rows(terms, s, p, q, self.senses[pair.first])
+            out += [-rp, np.where(s == SLIPPING, q - ratio * p, -rq)]
+        return touch.force, np.concatenate(out)
+
+    def slope(dz):
+        up, down = equations(z + STEP * dz), equations(z - STEP * dz)
+        return tuple((a - b) / (2.0 * STEP) for a, b in zip(up, down, strict=True))
+
+    coupling, _, _ = self._coupling(at.touch, states)
+    dz = rng.standard_normal(n + m)
+    du, dp = dz[:n], dz[n:]
+    force, rows = np.zeros(n), coupling.diagonal * dp
+    for part, x in ((coupling.bend, du), (coupling.rows, dp), (coupling.follow, dp)):
+        np.add.at(force, part.rows, part.values * x[part.columns])
+    back = coupling.rows
+    np.add.at(rows, back.columns, back.values * du[back.rows])
+    # Tractions that the matrix has not: those of open nodes, and of slipping ones, which are a
+    # multiple of the pressure.
+    gone = np.zeros(m, bool)
+    for pair, s in zip(self.touching.pairs, states, strict=True):
+        first, second = pair.first, pair.first + pair.n
+        gone[first:second], gone[second : first + pair.width] = s == OPEN, s != CLOSED
+        slips = np.flatnonzero(s == SLIPPING)
+        follow = pair.friction * self.senses[first][slips] * dp[first + slips]
+        dz[n + first : n + second][s == OPEN] = 0.0
+        dz[n + second : n + first + pair.width][s != CLOSED] = 0.0
+        dz[n + second + slips] = follow
+    assert -slope(dz)[0] == pytest.approx(force, abs=1e-6 * np.abs(force).max())
+    assert slope(dz)[1][~gone] == pytest.approx(rows[~gone], abs=1e-6 * np.abs(rows).max())
