@@ -188,6 +188,9 @@ class Dynamic(Step):
     tolerance : float
         Largest residual relative to the force scale.
     max_iterations : int
+    redistribute : bool
+        Let the other nodes of their elements carry the mass of the slave nodes of contact, so
+        that contact neither creates energy nor chatters; see docs/contact.md.
     """
 
     increments: int = 0
@@ -200,6 +203,7 @@ class Dynamic(Step):
     error_tolerance: float = 1e-2
     tolerance: float = 1e-9
     max_iterations: int = 16
+    redistribute: bool = True
 
     procedure = "dynamic"
 

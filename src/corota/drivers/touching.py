@@ -91,6 +91,7 @@ class Touching:
         self.time = 0.0
         self.notes: list[str] = []
         self.damped = np.zeros(0)
+        self.static, self.persistent = True, False
         self.damping_work = 0.0
         # Dof of each variable 3 node + component, -1 where there is none.
         dof = np.full(3 * len(system.per_node), -1, np.int64)
@@ -106,10 +107,15 @@ class Touching:
         """Start a step."""
         self.number += 1
         self.period, self.time = step.period, 0.0
+        self.static = step.procedure == "static"
+        self.persistent = getattr(step, "scheme", "") == "energy_momentum"
         if self.number == 1:
             self._start()
+        x = self.positions(self.u)
         for pair in self.pairs:
-            pair.fixed = None
+            pair.fixed = pair.start = None
+            if self.persistent and not pair.tied and pair.law is None:
+                pair.persist(pair.evaluate(x, x, self.system.turning))
 
     def _start(self) -> None:
         """Look at the gaps of the start; report, adjust or note what to ramp."""
@@ -242,7 +248,7 @@ class Touching:
         self._stiff = True
 
     def _damping(self, step_time: float) -> Floats | None:
-        if not self.damped.any():
+        if not self.static or not self.damped.any():
             return None
         dt = step_time - self.time
         left = 1.0 - step_time / self.period
@@ -271,6 +277,10 @@ class Touching:
                 self.pairs, touch.terms, self.parts(self.committed), strict=True
             )
         ]
+        for i, (pair, terms) in enumerate(zip(self.pairs, touch.terms, strict=True)):
+            if pair.start is not None:
+                pair.persist(terms)
+            touch.terms[i] = terms.bare or terms
         self.at = touch
 
     def restore(self) -> None:

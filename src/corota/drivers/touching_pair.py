@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,6 +41,10 @@ class Terms:
     variables : ndarray of int, shape (m, v)
         ``3 node + component``, -1 for none.
     gap_gradient, slip_gradient : ndarray, shape (m, v)
+    parts : tuple of ndarray, shape (k,)
+        Gap and area of each node before neighbours share constraints.
+    bare : Terms or None
+        Gaps and areas as they are, where a condition on rates has changed them.
     """
 
     gap: Floats
@@ -51,6 +55,8 @@ class Terms:
     variables: Ints
     gap_gradient: Floats
     slip_gradient: Floats
+    parts: tuple[Floats, Floats]
+    bare: Terms | None = None
 
 
 class Pair:
@@ -89,6 +95,8 @@ class Pair:
         self.on_slave[self.slave.node_list] = True
         self.fixed: Terms | None = None  # of geometrically linear steps
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
+        #: Gaps and areas of the committed state where gaps must not fall below those.
+        self.start: tuple[Floats, Floats] | None = None
         self.overlap = self.base = np.zeros(self.n)  # of the start, and gap that counts as none
         self.owner = np.arange(self.n)  # whose constraint a node's part belongs to
         self.frozen = False  # whether that is settled for the increment
@@ -113,12 +121,34 @@ class Pair:
     def evaluate(self, x: Floats, old: Floats, turning: bool) -> Terms:
         """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3)."""
         if not turning:
-            return self._linear(x, old)
+            return self._since(self._linear(x, old))
         self.core.search(x)
-        return self._read(self.core.evaluate(x, old if self.friction else None))
+        return self._since(self._read(self.core.evaluate(x, old if self.friction else None)))
+
+    def _since(self, terms: Terms) -> Terms:
+        """Gaps as the persistency condition sees them (Laursen & Chawla 1997).
+
+        There is no contact before an increment begins in it, and from then on none deeper.
+        """
+        if self.start is None:
+            return terms
+        start, far = self.begun()
+        gap = terms.gap - np.where(far, 0.0, np.minimum(start, 0.0))
+        return replace(terms, gap=gap, area=np.where(far, 0.0, terms.area), bare=terms)
+
+    def begun(self) -> tuple[Floats, NDArray[np.bool_]]:
+        """Gaps that the increment began with, and where they were open."""
+        assert self.start is not None
+        gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
+        return gap, (gap > self.noise * self.full) | (area <= COVERED * self.full)
+
+    def persist(self, terms: Terms) -> None:
+        """Take the gaps of a state for the start of an increment."""
+        self.start = terms.parts
 
     def _read(self, raw: dict[str, Any]) -> Terms:
         gap, slip, area = raw["total_gap"], raw["total_slip"], raw["total_area"]
+        parts = (gap, area)
         self.seen = self.seen or bool(len(raw["constraint"]))
         constraint = raw["constraint"]
         if self.beside is not None:
@@ -129,7 +159,7 @@ class Pair:
                 constraint = self.owner[constraint]
         return Terms(
             gap, slip, area, constraint, raw["pair"],
-            raw["variables"], raw["gap_gradient"], raw["slip_gradient"],
+            raw["variables"], raw["gap_gradient"], raw["slip_gradient"], parts,
         )  # fmt: skip
 
     def _owners(self, area: Floats) -> Ints:
@@ -166,7 +196,7 @@ class Pair:
         slip = rise(at.slip_gradient, self.reference if self.tied else old)
         return Terms(
             gap, slip, at.area, at.constraint, at.pair, at.variables, at.gap_gradient,
-            at.slip_gradient,
+            at.slip_gradient, (gap, at.area),
         )  # fmt: skip
 
     # -- states ------------------------------------------------------------------------

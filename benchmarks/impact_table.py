@@ -1,0 +1,153 @@
+"""Impacts: schemes on an elastic bar, rings and bars that yield: the tables of docs/impact.md.
+
+The bar (200 elements, increments of half the time a wave takes through one) with every implicit
+scheme, with the mass of the contact nodes redistributed and without; then bars and rings that
+hit a wall at two speeds and yield, with four elements, consistent inertia and the energy-momentum
+scheme with automatic increments: rebound, energies, what their balance lacks, momentum along the
+wall, residual shape, iterations, time.
+
+``--quick`` runs coarser models; ``--write`` puts the tables between the marks in docs/impact.md
+and draws the picture there.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+import warnings
+from pathlib import Path
+
+from benchmarks.common import machine
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "examples" / "impact"))
+import bar  # noqa: E402
+import ring  # noqa: E402
+
+PAGE = ROOT / "docs" / "impact.md"
+PICTURE = ROOT / "docs" / "images" / "impact.png"
+BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
+SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
+ELEMENTS = ("Q4I", "Q8", "OPT", "Q4D")
+
+
+def say(line: str) -> str:
+    """Print a line at once."""
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+    return line
+
+
+def schemes(cells: int) -> list[str]:
+    """Table of schemes on the elastic bar."""
+    lines = [
+        f"Elastic bar, {cells} `Q4I`; each figure over its exact value but for the contacts.",
+        "",
+        "| scheme | mass of contact nodes | contacts | duration | rebound | energy | largest force "
+        "| iterations |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for line in lines:
+        say(line)
+    for scheme in SCHEMES:
+        for redistribute in (True, False):
+            hit = bar.strike("Q4I", scheme, cells=cells, redistribute=redistribute)
+            lines.append(
+                say(
+                    f"| {scheme} | {'redistributed' if redistribute else 'kept'} | {hit.contacts} "
+                    f"| {hit.duration:.4f} | {hit.rebound:.4f} | {hit.energy:.4f} "
+                    f"| {hit.force:.2f} | {hit.iterations:.2f} |"
+                )
+            )
+    return lines
+
+
+def yielding(around: int, cells: int) -> tuple[list[str], dict[str, ring.Flight]]:
+    """Table of the rings and bars that yield, and the flights of the rings."""
+    lines = [
+        f"Energies over that of the start. Ring: {around} x 2 elements; bar: {cells} x 4.",
+        "",
+        "| body | element | speed | rebound | kinetic | strain | plastic | lack | momentum along "
+        "wall | shape | increments | iterations | CPU s |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for line in lines:
+        say(line)
+    flights = {}
+    for body in ("ring", "bar"):
+        for speed in (0.5, 1.0):
+            for element in ELEMENTS:
+                begin = time.process_time()
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    if body == "ring":
+                        f = ring.fly(
+                            element, plastic=True, speed=speed, around=around, increments=0
+                        )
+                        flights[f"{element} {speed}"] = f
+                    else:
+                        f = ring.fly(
+                            element, plastic=True, speed=2.0 * speed, around=cells, through=4,
+                            body="bar", increments=0, period=0.4,
+                        )  # fmt: skip
+                assert f.results is not None
+                lines.append(
+                    say(
+                        f"| {body} | {element} | {speed if body == 'ring' else 2 * speed:g} "
+                        f"| {f.rebound:.4f} | {f.kinetic:.4f} "
+                        f"| {f.strain:.4f} | {f.plastic:.4f} | {f.lack:.2%} | {f.sideways:.0e} "
+                        f"| {f.squash:+.4f} | {len(f.results.frames) - 1} | {f.iterations:.1f} "
+                        f"| {time.process_time() - begin:.1f} |"
+                    )
+                )
+    return lines, flights
+
+
+def picture(flight: ring.Flight, path: Path) -> None:
+    """Energies and force over time of one flight."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    history = flight.history
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.2), layout="constrained")
+    t = history["time"]
+    left.stackplot(
+        t, history["kinetic"], history["strain"], history["plastic"],
+        labels=["kinetic", "elastic", "plastic"], colors=["#4477aa", "#ccbb44", "#cc6677"],
+    )  # fmt: skip
+    left.set(xlabel="time", ylabel="energy / energy of the start", xlim=(0, t[-1]), ylim=(0, 1.1))
+    left.axhline(1.0, color="black", linewidth=0.8)
+    left.legend(loc="lower left", frameon=True)
+    right.plot(t, history["force"], color="#333333", linewidth=0.9)
+    right.set(xlabel="time", ylabel="contact force", xlim=(0, t[-1]))
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="coarser models")
+    parser.add_argument("--write", action="store_true", help="write docs/impact.md")
+    args = parser.parse_args()
+    begin = time.perf_counter()
+    lines = schemes(50 if args.quick else 200)
+    table, flights = yielding(32 if args.quick else 64, 20 if args.quick else 40)
+    lines += ["", *table]
+    if args.write:
+        text = PAGE.read_text(encoding="utf-8")
+        head, rest = text.split(BEGIN)
+        tail = rest.split(END)[1]
+        command = f"`python -m benchmarks impact_table --write`, {machine()}"
+        body = "\n".join(["", command, "", *lines, ""])
+        PAGE.write_text(head + BEGIN + body + END + tail, encoding="utf-8", newline="\n")
+        picture(flights["Q4D 1.0"], PICTURE)
+    say(f"{time.perf_counter() - begin:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,103 @@
+"""Contact in motion: a bar and a ring on a wall, rest under gravity, friction."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import corota as ct
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "impact"))
+import bar
+import ring
+
+
+@pytest.mark.parametrize("scheme", ["newmark", "hht", "generalized_alpha", "energy_momentum"])
+def test_bar_touches_once_and_leaves_as_it_came(scheme):
+    hit = bar.strike("Q4I", scheme, cells=60)
+    assert hit.contacts == 1
+    assert hit.duration == pytest.approx(1.0, abs=0.02)
+    assert hit.rebound == pytest.approx(1.0, abs=0.01)
+    assert hit.energy == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("element", ["T3", "Q8", "OPT", "Q4D"])
+def test_bar_of_every_kind_of_edge(element):
+    hit = bar.strike(element, cells=60)
+    assert hit.contacts == 1
+    assert hit.duration == pytest.approx(1.0, abs=0.03)
+    assert hit.rebound == pytest.approx(1.0, abs=0.02)
+
+
+def test_mass_at_the_contact_creates_energy_and_chatters():
+    """Why the mass is redistributed: the same bar without."""
+    hit = bar.strike("Q4I", "newmark", cells=50, redistribute=False)
+    assert hit.contacts > 5
+    assert hit.energy > 1.5
+
+
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "OPT", "Q4D"])
+def test_ring_keeps_its_energy(element):
+    flight = ring.fly(element, around=24, increments=80, period=0.06)
+    assert flight.lack < 5e-4
+    assert flight.sideways < 1e-9
+
+
+def test_ring_in_metres_and_millimetres():
+    """Same increments, same iterations, same motion."""
+    runs = [ring.fly("Q4I", around=24, increments=30, period=0.15, unit=u) for u in (1.0, 1e3)]
+    assert runs[0].iterations == runs[1].iterations
+    assert runs[1].rebound == pytest.approx(runs[0].rebound, rel=1e-6)
+
+
+def test_yielding_ring_accounts_for_its_energy():
+    flight = ring.fly("Q4D", around=32, plastic=True, speed=1.0, period=0.15, increments=0)
+    assert flight.results is not None
+    assert flight.plastic > 0.1
+    assert flight.lack < 0.01
+    first = 0.5 * ring.mass_of(flight.results)
+    for frame in flight.results.frames[1:]:
+        assert abs(frame.scalars["energy balance"]) < 1e-3 * first
+
+
+def test_block_rests_on_a_wall_after_a_static_step():
+    """Weight, then motion: nothing moves, and the force stays the weight."""
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=4, ny=2)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.0, rho=1.0))
+    model.gravity(y=-1.0)
+    model.fix("left", y=None)
+    wall = ct.RigidCurve.line((3.0, 0.0), (-1.0, 0.0))
+    model.contact("bottom", wall, name="wall")
+    frames = ct.solve(
+        model,
+        [ct.Static(), ct.Dynamic(period=0.2, increments=20, scheme="newmark")],
+        fields=False,
+    ).frames
+    moving = [f for f in frames if f.step == 2 and f.increment > 0]
+    force = np.array([f.scalars["wall: force y"] for f in moving])
+    assert force == pytest.approx(2.0, rel=1e-6)
+    assert max(f.scalars["kinetic energy"] for f in moving) < 1e-12
+
+
+def test_block_slides_to_rest_by_friction():
+    """Deceleration mu g: it stops after v / (mu g), and friction has taken its energy."""
+    mu, g, v = 0.4, 10.0, 1.0
+    mesh = ct.mesh.rectangle(1.0, 0.5, nx=4, ny=2)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e6, nu=0.0, rho=1.0))
+    model.gravity(y=-g)
+    model.velocity(x=v)
+    wall = ct.RigidCurve.line((9.0, 0.0), (-9.0, 0.0))
+    model.contact("bottom", wall, name="wall", friction=mu)
+    period = 0.8 * v / (mu * g)
+    step = ct.Dynamic(period=period, increments=80, scheme="generalized_alpha", rho_inf=0.5)
+    frames = ct.solve(model, step, fields=False).frames
+    last = frames[-1].scalars
+    assert last["momentum x"] == pytest.approx(0.5 * v * 0.2, abs=0.5 * v * 0.02)
+    taken = 0.25 * v**2 * (1.0 - 0.2**2)
+    assert last["friction energy"] == pytest.approx(taken, rel=0.03)
