@@ -65,7 +65,7 @@ def test_affine_motion_is_carried_where_inner_nodes_allow_it(element):
 @pytest.mark.parametrize("element", ["Q4I", "Q8", "OPT", "Q4D"])
 def test_conserving_scheme_conserves_with_light_nodes(element, monkeypatch):
     monkeypatch.setattr(
-        dynamics, "Inertia", lambda system, kind: Inertia(system, kind, lower(system.model))
+        dynamics, "Inertia", lambda system, kind, _: Inertia(system, kind, lower(system.model))
     )
     step = ct.Dynamic(period=0.6, increments=30, scheme="energy_momentum")
     frames = ct.solve(flying(element), step, fields=False).frames[1:]

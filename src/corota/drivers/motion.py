@@ -313,9 +313,7 @@ class ConservingMotion:
         at = Evaluation(force, external, scale, values, stiffness, link)
         damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
         at.internal = force + damping
-        self.end = Moving(
-            u, v, 2.0 / dt * (v - b.v) - b.a, internal, external, force - internal, damping, link
-        )
+        self.end = Moving(u, v, (v - b.v) / dt, internal, external, force - internal, damping, link)
         return at
 
     def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
