@@ -165,6 +165,23 @@ def test_strip_folded_on_itself_meets_its_face_not_its_back(method: str) -> None
     np.testing.assert_allclose(d["mean"][seen], 0.05, rtol=1e-12)
 
 
+def test_side_of_a_tilted_block_is_not_its_foot() -> None:
+    """A rigid block that stands on one corner, 8 degrees askew: only its foot faces the slave."""
+    slave = flat(np.linspace(2, -2, 9), 0.0)
+    X = np.vstack([nodes(slave), [[0.0, 0.0, 0.0]]])
+    e = path(slave)
+    ones = np.ones(len(e))
+    rows = np.array([[-1, 1, -1, 0, 0, 0, 0], [-1, 0, 1, 0, 0, 0, 0], [1, 0, 1, 1, 0, 0, 0]], float)
+    contact = Contact.rigid(
+        X, e, 0 * ones, ones, rows, len(slave), (0.0, 0.0), reach=1.0, margin=0.5
+    )
+    x = X.copy()
+    x[-1, 2] = angle = np.radians(8.0)
+    d = gap_of(contact, x)
+    np.testing.assert_allclose(d["total_area"].sum(), 2 * np.cos(angle), rtol=1e-12)
+    np.testing.assert_allclose(d["total_gap"].sum(), 0.0, atol=1e-12)
+
+
 def test_nodes_keep_their_edge_until_clearly_past_its_end() -> None:
     """A node beside a vertex of a bent master: the edge it had holds it for a twentieth."""
     master = np.array([[-1.0, 0.1], [0.0, 0.0], [1.0, 0.1]])  # valley seen from below: ridge

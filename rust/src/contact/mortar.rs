@@ -12,8 +12,11 @@ use super::curve::{Curve, GAUSS, dot, lift, outward, sub, unit};
 use super::master::Master;
 use crate::base::Smooth;
 
-/// Least cosine between the slave normal and the opposite of the master's.
-const FACING: f64 = 0.05;
+/// Least cosine between the slave normal and the opposite of the master's: the side of a block
+/// that stands on the slave is no part of its foot, though the slave's dent tilts towards it.
+const FACING: f64 = 0.3;
+/// The same for arcs, which are left behind gradually.
+const FACING_ARC: f64 = 0.05;
 /// Common length of two overlaps, in the slave parameter, that is no more than rounding.
 const TOUCH: f64 = 1e-9;
 
@@ -62,6 +65,10 @@ pub fn overlap(
     if values[1] - values[0] <= TOUCH {
         return None;
     }
+    let steep = match master {
+        Master::Curve(_) => FACING,
+        Master::Arc(_) => FACING_ARC,
+    };
     let [mut least, mut most, mut distance] = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
     for (i, (r, _)) in GAUSS.iter().enumerate() {
         let xi = 0.5 * (values[0] + values[1]) + 0.5 * r * (values[1] - values[0]);
@@ -69,7 +76,7 @@ pub fn overlap(
         let n = unit(outward(t));
         let hit = master.ray(slave.at(xi), t, n);
         let facing = dot(master.normal(&hit), n);
-        if hit.gap.is_nan() || facing.is_nan() || facing > -FACING || hit.r.abs() > 1.5 {
+        if hit.gap.is_nan() || facing.is_nan() || facing > -steep || hit.r.abs() > 1.5 {
             return None;
         }
         least = least.min(hit.gap);
