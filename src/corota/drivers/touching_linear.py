@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 #: GMRES: relative residual that is enough, and steps after which LU takes over.
-ENOUGH, STEPS = 1e-10, 60
+ENOUGH, STEPS = 1e-9, 60
 #: Share of a constraint that does not follow from others, below which it is dropped, and most
 #: constraints among which that is looked for.
 DEPENDENT, MOST_DENSE = 1e-9, 2000

@@ -230,7 +230,7 @@ class TouchingSystem:
 
         Otherwise a long motion of supports drags the mesh along before anything slips.
         """
-        for _ in range(SLIPS):
+        for _ in range(SLIPS if self.corrections <= 2 else 0):
             new = [s.copy() for s in states]
             senses = dict(self.senses)
             for s, (pair, _, (p, q)) in zip(new, self._pairs(at.touch), strict=True):
