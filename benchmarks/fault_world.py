@@ -99,7 +99,7 @@ def little_memory(folder: Path) -> Counter[str]:
             resource.setrlimit(resource.RLIMIT_AS, (size, size))
             return command("run", "deck.inp", "-q", "--threads", "1")
 
-        code, _, said = forked(work, folder / "log", 60.0)
+        code, _, said = forked(work, folder / "log")
         outcome = judged(code, said, folder, "deck")
         outcomes[f"little memory: {outcome}"] += 1
     return outcomes
@@ -227,7 +227,7 @@ def threads(folder: Path) -> Counter[str]:
                 os.chdir(folder)
                 return command("run", "deck.inp", "-q", "--threads", str(number))
 
-            code, _, _ = forked(work, folder / "log", 120.0)
+            code, _, _ = forked(work, folder / "log")
             found.add(_digest(folder) if code == 0 else f"exit {code}")
         same = len(found) == 1 and not next(iter(found)).startswith("exit")
         outcomes[

@@ -5,53 +5,15 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.verification.problems import contact_patch
 from tests.support.contact import CELLS, stresses
 
-E, NU, P = 1000.0, 0.3, 5.0
+E, NU, P = contact_patch.YOUNG, contact_patch.POISSON, contact_patch.PRESSURE
 
 
-def blocks(low, up, angle=0.0, overhang=0.0, cuts=(3, 4)):
-    """Two blocks on each other, the upper one narrower by `overhang` at both sides."""
-    a = ct.mesh.rectangle(2.0, 1.0, cuts[0], 2, CELLS[low])
-    b = ct.mesh.rectangle(2.0 - 2.0 * overhang, 0.8, cuts[1], 2, CELLS[up], origin=(overhang, 1.0))
-    mesh = ct.mesh.assembly(low=a, up=b)
-    return ct.mesh.move(mesh, angle=angle)
-
-
-def rigid_motion_held(model, mesh, angle):
-    """Supports that let both blocks strain freely: the bottom slides, one corner is fixed."""
-    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    turn = np.array([[c, -s], [s, c]])
-    if angle:
-        model.local_axes(mesh.node_sets["low.bottom"], angle=np.radians(angle))
-        model.local_axes(mesh.node_sets["up.top"], angle=np.radians(angle))
-    # The uniform state needs moments at the corners of edges that bulge.
-    model.fix("low.bottom", x=None, y=0.0, rotation=True)
-    middle = {}
-    for name in ("low.bottom", "up.top"):
-        nodes = mesh.node_sets[name]
-        along = (mesh.points[nodes] @ turn)[:, 0]
-        middle[name] = nodes[np.argsort(along)[0]]
-    model.fix([middle["low.bottom"]], x=0.0, y=None)
-    model.fix([middle["up.top"]], x=0.0, y=None)
-    return turn
-
-
-def solved(low, up, angle=0.0, plane="stress", slave="up", nlgeom=True, **options):
-    mesh = blocks(low, up, angle, options.pop("overhang", 0.0))
-    model = ct.Model(mesh)
-    material = ct.Elastic(E=E, nu=NU)
-    how = {"material": material, "thickness": 0.5, "plane": plane}
-    # A uniform strain is exact at large deformation with the strain of the true gradient only.
-    how["local_strain"] = "modified" if nlgeom else "simplified"
-    model.section("low", element=low, **how)
-    model.section("up", element=up, **how)
-    turn = rigid_motion_held(model, mesh, angle)
-    push = turn @ [0.0, -P]
-    model.traction("up.top", x=push[0], y=push[1])
-    faces = ("up.bottom", "low.top")
-    model.contact(*(faces if slave == "up" else faces[::-1]), **options)
-    return ct.solve(model, ct.Static(nlgeom=nlgeom), threads=1), turn
+def solved(low, up, angle=0.0, plane="stress", slave="up", **options):
+    results = contact_patch.solved(low, up, angle, plane, slave, **options)
+    return results, contact_patch.axes(angle)
 
 
 @pytest.mark.parametrize("up", CELLS)

@@ -264,3 +264,16 @@ def test_bad_paths_are_refused():
     model.loads[0].amplitude = "A"
     with pytest.raises(ct.ModelError, match="amplitude 'A'"):
         ct.solve(model, ct.Static(path=ct.ArcLength()))
+
+
+def test_pivots_that_are_not_counted_make_no_critical_point():
+    """A following pressure beside a force: symmetric at rest, and never again."""
+    mesh = ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1, cell="quad8")
+    model = ct.Model(mesh)
+    model.section("all", element="Q8", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    model.pressure("top", 0.2)
+    model.force([node_at(mesh, 10.0, 1.0)], y=-0.1)
+    results = ct.solve(model, ct.Static(path=ct.ArcLength()), fields=False)
+    assert results.critical_points == []
+    assert not any("bifurcation" in note for note in results.notes)

@@ -135,3 +135,15 @@ def test_turning_changes_nothing(element: str, measure: str) -> None:
     force_2, tangent_2 = evaluate({**base, "u": turned.tolist()}, law)
     assert np.abs(force_2 - turn @ force).max() < 1e-11 * np.abs(force).max()
     assert np.abs(tangent_2 - turn @ tangent @ turn.T).max() < 1e-9 * np.abs(tangent).max()
+
+
+def test_incompatible_modes_that_do_not_settle_end_the_run_with_a_reason():
+    """Almost no hardening, all points flowing: the error of an element got out as it was."""
+    from corota.verification.problems import plasticity_patch
+
+    mesh = ct.mesh.distort(ct.mesh.rectangle(1.0, 1.0, 3, 3), 0.2, seed=1)
+    model = ct.Model(mesh)
+    law = ct.Mises(E=250e3, nu=0.25, yield_stress=5.0, isotropic=250.0)
+    model.section("all", element="Q4I", material=law, plane="strain")
+    with pytest.raises(ct.ConvergenceError, match="step"):
+        plasticity_patch.strained(model)

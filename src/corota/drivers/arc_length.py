@@ -14,7 +14,7 @@ import numpy as np
 
 from corota.drivers.controls import Row
 from corota.drivers.corrector import Point
-from corota.drivers.newton import Settings
+from corota.drivers.newton import ElementFailure, Settings
 from corota.drivers.path import End, Follower, PathStalled, Plan
 from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
 from corota.paths import ArcLength, CriticalPoint, DisplacementControl, Label, dof_index
@@ -146,7 +146,13 @@ class PathStep:
             counters["iterations"] = counters.get("iterations", 0) + follower.iterations
             # The factorisation has changed the tangent's held rows in place.
             system.conditions.end_time = self.factor * period
-            state.at = system.evaluate(state.u, self.factor * period)
+            try:
+                state.at = system.evaluate(state.u, self.factor * period)
+            except ElementFailure as error:
+                raise ConvergenceError(
+                    f"step {self.number} stopped on its path at load factor {self.factor:.6g}: "
+                    f"{error}"
+                ) from None
         return limit
 
     # -- increments --------------------------------------------------------------------

@@ -126,7 +126,7 @@ def softest_mode(
 
 def has_event(before: Tangent, now: Tangent) -> bool:
     """Whether a critical point lies between two neighbouring points."""
-    changed = before.negative >= 0 and now.negative != before.negative
+    changed = min(before.negative, now.negative) >= 0 and now.negative != before.negative
     return changed or turned(before, now)
 
 

@@ -1,0 +1,87 @@
+"""A block on a slope of 30 degrees sticks or slides as Coulomb's law says.
+
+1 x 0.4, E = 10000, nu = 0.3, unit density, gravity 10, on a rigid line. With a friction of 0.58,
+above tan 30 = 0.5774, it rests: the slope carries its weight and nothing across. With 0.57 no
+static equilibrium exists, and the step says that friction does not hold the body. A block under
+pressure that is dragged over another needs the friction times the pressure.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.contact import RigidCurve
+from corota.errors import ConvergenceError
+from corota.materials import Elastic
+from corota.model import Amplitude, Model
+from corota.results import Results
+from corota.steps import Static
+from corota.verification.catalogue import Picture, Problem, Value
+from corota.verification.models import run
+
+
+def incline(friction: float, method: Any = "mortar") -> Model:
+    """A block that lies on a slope of 30 degrees."""
+    model = Model(meshes.move(meshes.rectangle(1.0, 0.4, 4, 2), angle=30.0))
+    model.section("all", element="Q4I", material=Elastic(E=1e4, nu=0.3, rho=1.0))
+    model.gravity(y=-10.0)
+    c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
+    slope = RigidCurve.line((5 * c, 5 * s), (-5 * c, -5 * s))
+    model.contact("bottom", slope, friction=friction, method=method, name="slope")
+    return model
+
+
+def dragged(**keys: Any) -> Results:
+    """A block under a pressure of 10 is dragged over another, friction 0.3."""
+    low = meshes.rectangle(4.0, 0.5, 9, 1)
+    up = meshes.rectangle(1.0, 0.5, 3, 2, origin=(0.7, 0.5))
+    model = Model(meshes.assembly(low=low, up=up))
+    model.section("all", element="Q4I", material=Elastic(E=1e4, nu=0.3))
+    model.fix("low.bottom")
+    time = np.array([0.0, 0.2, 1.0])
+    model.amplitudes["push"] = Amplitude(time, np.array([0.0, 1.0, 1.0]))
+    model.amplitudes["drag"] = Amplitude(time, np.array([0.0, 0.0, 1.5]))
+    model.fix("up.top", x=1.0, y=None, amplitude="drag")
+    model.traction("up.top", y=-10.0, amplitude="push")
+    model.contact("up.bottom", "low.top", friction=0.3, name="pair")
+    return run(model, Static(first_increment=0.2, largest_increment=0.2), **keys)
+
+
+def measure() -> Iterator[Value]:
+    """Rest, slip, and the force that dragging takes."""
+    for method in ("mortar", "node_to_segment"):
+        sums = run(incline(0.58, method)).frames[-1].scalars
+        yield Value(f"force up, friction 0.58, {method}", 4.0, sums["slope: force y"], 1e-9)
+        yield Value(f"force across, friction 0.58, {method}", 0.0, sums["slope: force x"], 1e-8,
+                    "absolute")  # fmt: skip
+    try:
+        run(incline(0.57), Static(smallest_increment=0.1))
+        slides = 0.0
+    except ConvergenceError as error:
+        slides = float("friction does not hold" in str(error))
+    yield Value("refused as sliding, friction 0.57", 1.0, slides, 0.0, "absolute")
+    last = dragged().frames[-1].scalars
+    yield Value("normal force of the dragged block", 10.0, last["pair: force y"], 1e-8)
+    yield Value("friction of the dragged block", -3.0, last["pair: force x"], 2e-3)
+
+
+def picture() -> Picture:
+    """The end of the drag."""
+    return Picture(dragged(fields=True), "S22")
+
+
+PROBLEM = Problem(
+    title="Stick and slip of a block",
+    group="contact",
+    source="C. A. Coulomb (1785)",
+    certainty="analytic",
+    why="rounding; the dragged block's surface is bent a little by the pressure",
+    measure=measure,
+    picture=picture,
+    seconds=0.5,
+)
