@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import json
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pytest
@@ -96,3 +98,35 @@ def test_pages_are_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         assert f"figures/{name}" in page
         assert 2_000 < (tmp_path / "figures" / name).stat().st_size < 60_000
     assert "curved_beam.md" in (tmp_path / "index.md").read_text(encoding="utf-8")
+
+
+def test_a_process_that_ends_takes_only_its_own_problem_with_it(monkeypatch) -> None:
+    told: list[str] = []
+    chosen = [problems()[n] for n in ("straight_beam", "curved_beam")]
+
+    class Pool:
+        def __init__(self, *_: object, **__: object) -> None:
+            self.broken = False
+
+        def __enter__(self) -> Pool:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            pass
+
+        def submit(self, work, name, *rest):
+            future = Future()
+            self.broken |= name == "curved_beam"
+            if self.broken or (name == "straight_beam" and not told and len(submitted) == 0):
+                future.set_exception(BrokenProcessPool())
+            else:
+                future.set_result(runner.Outcome(name, [Value("x", 1.0, 1.0, 0.1)]))
+            submitted.append(name)
+            return future
+
+    submitted: list[str] = []
+    monkeypatch.setattr(runner, "ProcessPoolExecutor", Pool)
+    outcomes = runner.run(chosen, lambda outcome: told.append(outcome.name))
+    assert [o.ok for o in outcomes] == [True, False]
+    assert "ended" in outcomes[1].error
+    assert sorted(told) == ["curved_beam", "straight_beam"]

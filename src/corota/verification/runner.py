@@ -110,24 +110,36 @@ def run(
     jobs = min(jobs or _cores(), len(chosen)) or 1
     outcomes: dict[str, Outcome] = {}
     _single_threaded()
-    pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"))
-    try:
-        waiting: dict[Future[Outcome], str] = {
-            pool.submit(measure, p.name, full, pages): p.name
-            for p in sorted(chosen, key=lambda p: -p.seconds)
-        }
-        while waiting:
-            ready, _ = wait(waiting, return_when=FIRST_COMPLETED)
-            for future in ready:
-                name = waiting.pop(future)
-                try:
-                    outcome = future.result()
-                except BrokenProcessPool:
-                    outcome = Outcome(name, error="its process ended before it did")
-                outcomes[name] = outcome
-                done(outcome)
-    finally:
-        pool.shutdown(cancel_futures=True)
+
+    def attempt(names: list[str], jobs: int) -> list[str]:
+        """Measure in a pool; the names that a process took down with it."""
+        lost = []
+        with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+            waiting: dict[Future[Outcome], str] = {
+                pool.submit(measure, name, full, pages): name for name in names
+            }
+            try:
+                while waiting:
+                    ready, _ = wait(waiting, return_when=FIRST_COMPLETED)
+                    for future in ready:
+                        name = waiting.pop(future)
+                        try:
+                            outcomes[name] = future.result()
+                        except BrokenProcessPool:
+                            lost.append(name)
+                            continue
+                        done(outcomes[name])
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+        return lost
+
+    lost = attempt([p.name for p in sorted(chosen, key=lambda p: -p.seconds)], jobs)
+    for name in lost:
+        # One process that ends takes all of a pool with it: the others get another chance.
+        if attempt([name], 1):
+            outcomes[name] = Outcome(name, error="its process ended before it did")
+            done(outcomes[name])
     return [outcomes[p.name] for p in chosen]
 
 
