@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 #: The paper's four elements; its second one in both forms.
 ELEMENTS = ("Q4I", "Q8", "Q9", "OPT", "Q4D")
 #: Runs shorter than this [s] are repeated, and the shortest time is taken.
-SHORT = 1.0
+SHORT = 0.1
 
 
 @dataclass(frozen=True)
