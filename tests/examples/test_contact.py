@@ -98,3 +98,15 @@ def test_clip_snaps_in(load: Load) -> None:
     dissipated = np.array(results.history("friction energy"))
     assert (np.diff(dissipated) > -1e-9).all()
     assert dissipated[-1] > 0.0
+
+
+def test_bistable_beam_leaves_the_probe_where_its_force_vanishes(load: Load) -> None:
+    """After 4 h / 3 (Qiu, Lang, Slocum 2004, slender beams); then it hangs in its second shape."""
+    beam = load("contact/bistable_beam.py")
+    results = beam.run()
+    force = -2.0 * np.array(results.history("RF2", at="probe"))
+    way = -np.array(results.history("U2", at="probe"))
+    last = int(np.flatnonzero(force > 0.0)[-1])
+    assert way[last] == pytest.approx(4.0 / 3.0 * beam.HEIGHT, rel=0.02)
+    middle = -np.array(results.history("U2", at="left"))
+    assert middle[-1] > way[-1]
