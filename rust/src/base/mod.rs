@@ -4,6 +4,7 @@
 pub mod dual;
 pub mod hyper;
 pub mod pack;
+pub mod race;
 pub mod real;
 pub mod small;
 

@@ -13,6 +13,7 @@ use super::scaling::{
 };
 use super::symbolic::Symbolic;
 use super::{Inertia, LinearSolver, check_rhs};
+use crate::base::race::Race;
 
 /// Backward error above which one step of refinement is made.
 const REFINE_ABOVE: f64 = 1e-14;
@@ -24,10 +25,10 @@ const GROWTH_LIMIT: f64 = 1e15;
 /// Energy over squared length, relative to `|K|`, that is no more than rounding.
 const SINGULAR: f64 = 4e-16;
 
-/// Multiplications from which a factorisation is shared among threads.
-const SHARED_FACTOR: f64 = 3e7;
-/// Values of the factor from which a solve is shared among threads.
-const SHARED_SOLVE: usize = 2_000_000;
+/// Multiplications from which a factorisation may be, and from which it is always shared.
+const SHARED_FACTOR: [f64; 2] = [3e7, 2e9];
+/// Values of the factor from which a solve may be, and from which it is always shared.
+const SHARED_SOLVE: [f64; 2] = [5e5, 1e7];
 
 /// Guarded symmetric solver.
 #[derive(Default)]
@@ -43,28 +44,23 @@ pub struct Ldlt {
     ready: bool,
     work: Vec<f64>,
     permuted: Vec<f64>,
+    factor_race: Race,
+    solve_race: Race,
     /// Pivoting LU of the same matrix, made when a residual asks for it.
     fallback: Option<Box<Lu>>,
 }
 
 impl Ldlt {
-    /// Threads for a job of some size: waking others costs more than a small one takes.
-    fn team(&self, large: bool) -> usize {
-        match self.threads {
-            _ if !large => 1,
-            0 => pool::available(),
-            n => n,
-        }
-    }
-
     fn back_substitute(&mut self, x: &mut [f64]) {
-        let threads = self.team(self.symbolic.factor_len > SHARED_SOLVE);
-        let Self { symbolic, numeric, permuted, .. } = self;
+        let (size, threads) = (self.symbolic.factor_len as f64, self.threads);
+        let Self { symbolic, numeric, permuted, solve_race, .. } = self;
         for (p, &d) in permuted.iter_mut().zip(&symbolic.order) {
             *p = x[d as usize];
         }
-        let solve = Backsolve { symbolic, numeric, threads };
-        pool::run(threads, || solve.solve(permuted));
+        team(solve_race, threads, size, SHARED_SOLVE, |threads| {
+            let solve = Backsolve { symbolic, numeric, threads };
+            pool::run(threads, || solve.solve(permuted));
+        });
         for (p, &d) in permuted.iter().zip(&symbolic.order) {
             x[d as usize] = *p;
         }
@@ -207,10 +203,12 @@ impl LinearSolver for Ldlt {
 
     fn set_threads(&mut self, threads: usize) {
         self.threads = threads;
+        (self.factor_race, self.solve_race) = Default::default();
     }
 
     fn analyze(&mut self, pattern: &Pattern<'_>) -> Result<(), LinearError> {
         self.ready = false;
+        (self.factor_race, self.solve_race) = Default::default();
         pattern.check(true)?;
         self.symbolic = Symbolic::new(pattern)?;
         self.numeric = Numeric::new(&self.symbolic);
@@ -234,17 +232,21 @@ impl LinearSolver for Ldlt {
         self.ready = false;
         self.fallback = None;
         scale_of(&self.col_ptr, &self.row_idx, values, &mut self.scale);
-        let threads = self.team(self.symbolic.work > SHARED_FACTOR);
-        let Self { col_ptr, row_idx, scale, values: scaled, symbolic, numeric, .. } = self;
-        let size = pool::run(threads, || {
-            let share = threads > 1;
-            let mut size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
-            if size.entry > BALANCED {
-                balance(col_ptr, row_idx, values, scale);
-                size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
-            }
-            numeric.factorize(symbolic, scaled, threads);
-            Ok(size)
+        let threads = self.threads;
+        let Self {
+            col_ptr, row_idx, scale, values: scaled, symbolic, numeric, factor_race, ..
+        } = self;
+        let size = team(factor_race, threads, symbolic.work, SHARED_FACTOR, |threads| {
+            pool::run(threads, || {
+                let share = threads > 1;
+                let mut size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
+                if size.entry > BALANCED {
+                    balance(col_ptr, row_idx, values, scale);
+                    size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
+                }
+                numeric.factorize(symbolic, scaled, threads);
+                Ok(size)
+            })
         })?;
         self.norm = size.norm;
         self.refuse_singular()?;
@@ -277,6 +279,25 @@ impl LinearSolver for Ldlt {
             }
         }
         Ok(())
+    }
+}
+
+/// Does a job of some size with the threads it is worth: waking others costs more than a small
+/// one takes, and between the limits the faster way is found out.
+fn team<R>(
+    race: &mut Race,
+    threads: usize,
+    size: f64,
+    [least, most]: [f64; 2],
+    job: impl FnOnce(usize) -> R,
+) -> R {
+    let threads = if threads == 0 { pool::available() } else { threads };
+    if threads == 1 || size <= least {
+        job(1)
+    } else if size > most {
+        job(threads)
+    } else {
+        race.run(|shared| job(if shared { threads } else { 1 }))
     }
 }
 

@@ -56,8 +56,8 @@ impl<const N: usize> Shared<N> {
 pub trait Chunk: Send + Sync {
     /// Add forces and stiffnesses; returns the indices (in the block) of failed elements.
     fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize>;
-    /// Values at the points, written to the block's arrays.
-    fn recover(&mut self, context: &Context<'_>, out: &mut super::recover::Fields);
+    /// Values at the points, in the order of [`Chunk::elements`].
+    fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields);
     /// Add the nodal forces of a body force with mass per area `rho * thickness`; `mask` by
     /// element of the block.
     fn body_force(
@@ -103,6 +103,8 @@ pub trait Chunk: Send + Sync {
     /// Largest growth of the equivalent plastic strain from the committed to the trial state.
     fn plastic_increment(&self) -> f64;
     fn block(&self) -> usize;
+    /// Index of each element in the block.
+    fn elements(&self) -> &[u32];
     /// Nodes of all elements.
     fn nodes(&self) -> Vec<u32>;
     /// Committed history, for tests and restart.
@@ -374,7 +376,7 @@ where
         self.begin_trial();
         dispatch(context.lanes, Assemble { chunk: self, context, sink })
     }
-    fn recover(&mut self, context: &Context<'_>, out: &mut super::recover::Fields) {
+    fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields) {
         super::recover::chunk(self, context, out);
     }
     fn body_force(
@@ -479,6 +481,9 @@ where
     }
     fn block(&self) -> usize {
         self.shared.block
+    }
+    fn elements(&self) -> &[u32] {
+        &self.elements
     }
     fn nodes(&self) -> Vec<u32> {
         self.nodes.as_flattened().to_vec()

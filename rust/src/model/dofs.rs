@@ -103,24 +103,14 @@ impl Dofs {
         y
     }
 
-    /// Replace the rows and columns of held dofs by a positive diagonal of their own size, so
-    /// that the pattern stays, the scaling is kept and each counts as one positive pivot.
-    pub fn mask(&self, values: &mut [f64], held: &[bool]) {
-        for j in 0..self.n_dofs() {
-            let range = self.indptr[j]..self.indptr[j + 1];
-            let diagonal = range.end - 1;
-            for k in range {
-                let i = self.indices[k] as usize;
-                if k == diagonal {
-                    if held[j] {
-                        let size = values[k].abs();
-                        values[k] = if size > 0.0 { size } else { 1.0 };
-                    }
-                } else if held[i] || held[j] {
-                    values[k] = 0.0;
-                }
-            }
+    /// Values by node, `[n_nodes, 3]`, 0 where a node has no such dof.
+    pub fn by_node(&self, vector: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; 3 * self.n_nodes()];
+        for (ends, row) in self.start.windows(2).zip(out.chunks_exact_mut(3)) {
+            let own = &vector[ends[0] as usize..ends[1] as usize];
+            row[..own.len()].copy_from_slice(own);
         }
+        out
     }
 
     /// Node of each dof.

@@ -4,6 +4,7 @@
 pub mod chunk;
 pub mod dofs;
 pub mod dynamics;
+pub mod held;
 pub mod locality;
 pub mod problem;
 pub mod recover;

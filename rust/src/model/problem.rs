@@ -4,11 +4,13 @@
 use super::chunk::{CHUNK, Chunk, ChunkOf, Context, Shared as BlockData};
 use super::dofs::Dofs;
 use super::dynamics::{Between, Momenta, Motion};
+use super::held::Held;
 use super::locality;
 use super::recover::Fields;
 use super::registry;
 use super::scatter::{Shared, Sink};
 use crate::base::Lanes;
+use crate::base::race::Race;
 use crate::elements::Element;
 use crate::for_each_element;
 use crate::kinematics::inertia::MassKind;
@@ -68,6 +70,11 @@ impl Block {
 #[derive(Clone, Debug, Default)]
 pub struct Failed(pub Vec<(usize, usize)>);
 
+/// Elements from which threads always share the work; below, the faster way is found out.
+const SHARED: usize = 100_000;
+/// Chunks that threads recover before their values are gathered.
+const RECOVERED: usize = 64;
+
 pub struct Problem {
     pub x: Vec<[f64; 2]>,
     pub dofs: Dofs,
@@ -76,6 +83,9 @@ pub struct Problem {
     colours: Vec<Vec<Box<dyn Chunk>>>,
     pool: Option<rayon::ThreadPool>,
     lanes: Lanes,
+    held: Held,
+    assemble_race: Race,
+    recover_race: Race,
 }
 
 impl Problem {
@@ -105,11 +115,22 @@ impl Problem {
             chunks.extend(own);
         }
         let colours = colour(chunks, x.len());
-        Ok(Self { x, dofs, blocks, colours, pool: None, lanes: Lanes::Best })
+        Ok(Self {
+            x,
+            dofs,
+            blocks,
+            colours,
+            pool: None,
+            lanes: Lanes::Best,
+            held: Held::default(),
+            assemble_race: Race::default(),
+            recover_race: Race::default(),
+        })
     }
 
     /// Use so many threads from now on; results do not depend on it.
     pub fn set_threads(&mut self, n: usize) -> Result<(), String> {
+        (self.assemble_race, self.recover_race) = Default::default();
         self.pool = if n > 1 {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
             Some(pool.map_err(|e| e.to_string())?)
@@ -137,12 +158,11 @@ impl Problem {
         let tangent = !values.is_empty();
         let context =
             Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
-        // A pool costs more than it brings where no two chunks can run side by side.
-        let pool = self.pool.as_ref().filter(|_| self.colours.iter().any(|c| c.len() > 1));
+        let apart = self.colours.iter().any(|c| c.len() > 1);
         let colours = &mut self.colours;
-        let work = || {
+        let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
-                zero(array, pool.is_some());
+                zero(array, pool);
             }
             let sink = Sink {
                 force: Shared::new(force),
@@ -156,7 +176,7 @@ impl Problem {
             };
             let mut failed = Vec::new();
             for colour in colours {
-                if pool.is_some() && colour.len() > 1 {
+                if pool && colour.len() > 1 {
                     let bad: Vec<_> = colour.par_iter_mut().map(evaluate).collect();
                     failed.extend(bad.into_iter().flatten());
                 } else {
@@ -165,10 +185,9 @@ impl Problem {
             }
             failed
         };
-        let mut failed = match pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        };
+        // A pool costs more than it brings where no two chunks can run side by side.
+        let pool = self.pool.as_ref().filter(|_| apart);
+        let mut failed = share(&mut self.assemble_race, pool, &self.blocks, work);
         failed.sort_unstable();
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
     }
@@ -369,19 +388,75 @@ impl Problem {
 
     /// Values at the points of every block.
     pub fn recover(&mut self, u: &[f64], turning: bool) -> Vec<Fields> {
-        let mut fields: Vec<_> = self
-            .blocks
-            .iter()
-            .map(|b| Fields::new(b.n_elements, b.facts.n_points, &b.law, b.outputs().len()))
-            .collect();
-        let context =
-            Context { x: &self.x, u, dofs: &self.dofs, turning, tangent: false, lanes: self.lanes };
-        for chunk in self.colours.iter_mut().flatten() {
-            let block = chunk.block();
-            chunk.recover(&context, &mut fields[block]);
-        }
-        fields
+        let (blocks, lanes) = (&self.blocks, self.lanes);
+        let empty = |block: usize, n: usize| {
+            let b = &blocks[block];
+            Fields::new(n, b.facts.n_points, &b.law, b.outputs().len())
+        };
+        let context = Context { x: &self.x, u, dofs: &self.dofs, turning, tangent: false, lanes };
+        let evaluate = |chunk: &&dyn Chunk| {
+            let mut part = empty(chunk.block(), chunk.elements().len());
+            chunk.recover(&context, &mut part);
+            part
+        };
+        let chunks: Vec<&dyn Chunk> = self.colours.iter().flatten().map(AsRef::as_ref).collect();
+        let work = |pool: bool| {
+            let mut fields: Vec<_> =
+                blocks.iter().enumerate().map(|(k, b)| empty(k, b.n_elements)).collect();
+            // Threads compute some chunks at a time, so that little is held twice.
+            for chunks in chunks.chunks(if pool { RECOVERED } else { 1 }) {
+                let parts: Vec<Fields> = if pool {
+                    chunks.par_iter().map(evaluate).collect()
+                } else {
+                    chunks.iter().map(evaluate).collect()
+                };
+                for (chunk, part) in chunks.iter().zip(&parts) {
+                    fields[chunk.block()].place(part, chunk.elements());
+                }
+            }
+            fields
+        };
+        let pool = self.pool.as_ref().filter(|_| chunks.len() > 1);
+        share(&mut self.recover_race, pool, blocks, work)
     }
+
+    /// Replace the rows and columns of held dofs (see [`Held::mask`]).
+    pub fn mask(&mut self, values: &mut [f64], held: &[bool]) {
+        self.held.set(&self.dofs, held);
+        self.held.mask(values);
+    }
+
+    /// Make a linear system of a tangent and one or more right-hand sides for the free dofs: the
+    /// held ones move by `moved`, and what that takes is subtracted from `rhs`.
+    pub fn reduce(&mut self, values: &mut [f64], rhs: &mut [f64], moved: &[f64], held: &[bool]) {
+        self.held.set(&self.dofs, held);
+        let n = self.dofs.n_dofs().max(1);
+        for (b, move_) in rhs.chunks_exact_mut(n).zip(moved.chunks_exact(n)) {
+            if move_.iter().any(|&v| v != 0.0) {
+                let force = self.dofs.multiply(values, move_);
+                b.iter_mut().zip(force).for_each(|(b, f)| *b -= f);
+            }
+            for &d in &self.held.dofs {
+                b[d as usize] = 0.0;
+            }
+        }
+        self.held.mask(values);
+    }
+}
+
+/// Do work on the pool's threads, if there is one and they help; it is told whether they do.
+fn share<R: Send>(
+    race: &mut Race,
+    pool: Option<&rayon::ThreadPool>,
+    blocks: &[Block],
+    work: impl FnOnce(bool) -> R + Send,
+) -> R {
+    let Some(pool) = pool else { return work(false) };
+    let elements: usize = blocks.iter().map(|b| b.n_elements).sum();
+    if elements > SHARED {
+        return pool.install(|| work(true));
+    }
+    race.run(|shared| if shared { pool.install(|| work(true)) } else { work(false) })
 }
 
 /// Fill with zeros, by several threads if that is wanted.

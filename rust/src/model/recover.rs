@@ -18,6 +18,8 @@ pub struct Fields {
     pub stress: Vec<f64>,
     /// Local strain turned to global axes, engineering shear, `[n, p, 4]`.
     pub strain: Vec<f64>,
+    /// Equivalent stress of von Mises, `[n, p]`.
+    pub mises: Vec<f64>,
     /// Recoverable energy density, `[n, p]`.
     pub energy: Vec<f64>,
     /// Reference volume, `[n, p]`.
@@ -44,6 +46,7 @@ impl Fields {
             points: vec![0.0; 2 * p],
             stress: vec![0.0; 4 * p],
             strain: vec![0.0; 4 * p],
+            mises: vec![0.0; p],
             energy: vec![0.0; p],
             volume: vec![0.0; p],
             outputs: vec![vec![0.0; p]; outputs],
@@ -54,6 +57,47 @@ impl Fields {
             largest_strain: 0.0,
         }
     }
+
+    /// Take over the fields of some elements, given their places here.
+    pub fn place(&mut self, part: &Self, elements: &[u32]) {
+        let copy = |to: &mut [f64], from: &[f64]| {
+            let width = from.len() / elements.len().max(1);
+            if width == 0 {
+                return;
+            }
+            for (row, &e) in from.chunks_exact(width).zip(elements) {
+                to[e as usize * width..][..width].copy_from_slice(row);
+            }
+        };
+        copy(&mut self.points, &part.points);
+        copy(&mut self.stress, &part.stress);
+        copy(&mut self.strain, &part.strain);
+        copy(&mut self.mises, &part.mises);
+        copy(&mut self.energy, &part.energy);
+        copy(&mut self.volume, &part.volume);
+        copy(&mut self.thickness, &part.thickness);
+        copy(&mut self.rotation, &part.rotation);
+        copy(&mut self.penalty, &part.penalty);
+        for (to, from) in self.outputs.iter_mut().zip(&part.outputs) {
+            copy(to, from);
+        }
+        for (to, from) in self.tensors.iter_mut().zip(&part.tensors) {
+            copy(to, from);
+        }
+        self.largest_strain = self.largest_strain.max(part.largest_strain);
+    }
+
+    /// Strain energy of all elements.
+    pub fn total_energy(&self) -> f64 {
+        let stored: f64 = self.energy.iter().zip(&self.volume).map(|(e, v)| e * v).sum();
+        stored + self.penalty.iter().sum::<f64>()
+    }
+}
+
+/// Equivalent stress of von Mises, rows xx, yy, zz, xy.
+fn mises([xx, yy, zz, xy]: [f64; 4]) -> f64 {
+    let differences = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (0.5 * differences + 3.0 * xy * xy).sqrt()
 }
 
 /// Turn a symmetric tensor (xx, yy, xy) by an angle given by its cosine and sine.
@@ -65,6 +109,7 @@ fn turn(t: [f64; 3], c: f64, s: f64) -> [f64; 3] {
     ]
 }
 
+/// Fields of a chunk, in its own order of elements.
 pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     chunk: &ChunkOf<E, N, M, A>,
     context: &Context<'_>,
@@ -86,7 +131,6 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             [] => Vec::new(),
             from => (0..rows).map(|m| from[m * stride]).collect(),
         };
-        let element = chunk.elements[e] as usize;
         if E::LINE {
             let axial = initial.first().copied().unwrap_or(0.0);
             let found = E::resultants(&x, &frame.q, section, axial);
@@ -97,25 +141,25 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                     position[i] += (x[a][i] + u[a][i]) / N as f64;
                 }
             }
-            out.points[2 * element..2 * element + 2].copy_from_slice(&position);
+            out.points[2 * e..2 * e + 2].copy_from_slice(&position);
             let t = frame.to_global(found.axis);
             let tensor = [t[0] * t[0], t[1] * t[1], 0.0, t[0] * t[1]];
-            for i in 0..4 {
-                out.stress[4 * element + i] = found.stress * tensor[i];
-                out.strain[4 * element + i] = found.strain * tensor[i];
-            }
-            out.strain[4 * element + 3] *= 2.0;
+            let stress = tensor.map(|v| found.stress * v);
+            out.stress[4 * e..4 * e + 4].copy_from_slice(&stress);
+            out.strain[4 * e..4 * e + 4].copy_from_slice(&tensor.map(|v| found.strain * v));
+            out.strain[4 * e + 3] *= 2.0;
+            out.mises[e] = mises(stress);
             for (values, v) in out.outputs.iter_mut().zip(found.outputs) {
-                values[element] = v;
+                values[e] = v;
             }
-            out.volume[element] = volume;
+            out.volume[e] = volume;
             // Springs have no volume to spread their energy over.
             if volume > 0.0 {
-                out.energy[element] = found.energy / volume;
+                out.energy[e] = found.energy / volume;
             } else {
-                out.penalty[element] = found.energy;
+                out.penalty[e] = found.energy;
             }
-            out.rotation[element] = frame.angle();
+            out.rotation[e] = frame.angle();
             continue;
         }
         let old: Vec<f64> = (0..members * n_points).map(|m| chunk.old[m * stride + e]).collect();
@@ -172,7 +216,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);
             let s_global = turn([xx, yy, xy], frame.cos, frame.sin);
             let e_global = turn([total[0], total[1], 0.5 * total[2]], frame.cos, frame.sin);
-            let at = element * n_points + p;
+            let at = e * n_points + p;
             let mut position = [0.0; 2];
             for a in 0..N {
                 for i in 0..2 {
@@ -182,6 +226,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             out.points[2 * at..2 * at + 2].copy_from_slice(&position);
             let row = [s_global[0], s_global[1], zz, s_global[2]];
             out.stress[4 * at..4 * at + 4].copy_from_slice(&row);
+            out.mises[at] = mises(row);
             let row = [e_global[0], e_global[1], strain_zz, 2.0 * e_global[2]];
             out.strain[4 * at..4 * at + 4].copy_from_slice(&row);
             out.energy[at] = energy;
@@ -207,10 +252,10 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                     drill += 0.5 * (s.modes[m][0] * modes[m][1] - s.modes[m][1] * modes[m][0]);
                 }
                 let gamma = section.parameter * section.thickness * s.weight;
-                out.penalty[element] += 0.5 * gamma * drill * drill;
+                out.penalty[e] += 0.5 * gamma * drill * drill;
             }
         }
-        out.rotation[element] = frame.angle();
+        out.rotation[e] = frame.angle();
     }
 }
 

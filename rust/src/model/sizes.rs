@@ -20,7 +20,8 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }
 
-/// Sizes by dof; all arrays have one entry for each dof.
+/// Sizes by dof; all arrays have one entry for each dof. With `balance` the residual is what
+/// is left of `residual` against the external forces.
 pub fn sizes(
     dofs: &Dofs,
     residual: &[f64],
@@ -28,6 +29,7 @@ pub fn sizes(
     external: &[f64],
     u: &[f64],
     held: &[bool],
+    balance: bool,
 ) -> Sizes {
     let mut out = Sizes::default();
     for node in dofs.start.windows(2) {
@@ -35,7 +37,8 @@ pub fn sizes(
             let k = usize::from(d == node[0] as usize + 2);
             out.scale[k] = larger(larger(out.scale[k], scale[d].abs()), external[d].abs());
             out.displacement[k] = larger(out.displacement[k], u[d].abs());
-            let r = if held[d] { 0.0 } else { residual[d].abs() };
+            let left = if balance { residual[d] - external[d] } else { residual[d] };
+            let r = if held[d] { 0.0 } else { left.abs() };
             if r > out.residual[k] || r.is_nan() {
                 out.residual[k] = r;
                 out.worst[k] = d;
@@ -56,7 +59,7 @@ mod tests {
         let external = [0.0, -9.0, 1.0, 0.0, 0.0];
         let u = [0.1, -0.2, 0.9, 0.0, 0.0];
         let held = [false, false, false, true, false];
-        let s = sizes(&dofs, &residual, &scale, &external, &u, &held);
+        let s = sizes(&dofs, &residual, &scale, &external, &u, &held, false);
         let want = Sizes {
             scale: [9.0, 3.0],
             residual: [5.0, 7.0],
@@ -64,7 +67,10 @@ mod tests {
             displacement: [0.2, 0.9],
         };
         assert_eq!(s, want);
-        let s = sizes(&dofs, &[1.0, f64::NAN, 0.0, 2.0, 3.0], &scale, &external, &u, &held);
+        let internal: Vec<f64> = residual.iter().zip(external).map(|(r, e)| r + e).collect();
+        assert_eq!(sizes(&dofs, &internal, &scale, &external, &u, &held, true), want);
+        let broken = [1.0, f64::NAN, 0.0, 2.0, 3.0];
+        let s = sizes(&dofs, &broken, &scale, &external, &u, &held, false);
         assert!(s.residual[0].is_nan());
     }
 }

@@ -54,3 +54,22 @@ fn any_number_of_threads_gives_the_same_bits() {
         }
     }
 }
+
+#[test]
+fn any_number_of_threads_recovers_the_same_bits() {
+    let run = |threads: usize| {
+        let mut problem = sheet(60, true);
+        problem.set_threads(threads).unwrap();
+        let u: Vec<f64> = (0..problem.dofs.n_dofs()).map(|i| 0.1 * (i as f64).cos()).collect();
+        let f = problem.recover(&u, true).remove(0);
+        let sums = vec![f.total_energy(), f.largest_strain];
+        let all = [f.points, f.stress, f.strain, f.mises, f.energy, f.volume, f.rotation, sums];
+        all.map(|v| v.into_iter().map(f64::to_bits).collect::<Vec<_>>())
+    };
+    let one = run(1);
+    // Nothing is left out: neighbours differ.
+    assert!(one.iter().take(5).all(|v| v.windows(2).all(|w| w[0] != w[1])));
+    for threads in [2, 3, 8] {
+        assert!(run(threads) == one, "{threads} threads");
+    }
+}

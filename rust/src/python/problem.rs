@@ -10,7 +10,10 @@ use crate::model::dynamics::{Between, Motion};
 use crate::model::problem::{BlockInput, Failed, Options, Problem};
 use crate::model::registry;
 use crate::model::sizes;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArrayDyn, PyReadwriteArray1, PyReadwriteArrayDyn,
+};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -286,7 +289,9 @@ impl PyProblem {
     }
 
     /// Largest absolute values, each of displacement dofs and of rotations: forces (``scale`` and
-    /// ``external``), residual at free dofs, its place, displacements.
+    /// ``external``), residual at free dofs, its place, displacements. With ``balance`` the
+    /// external forces are taken from ``residual`` first.
+    #[allow(clippy::too_many_arguments)]
     fn sizes(
         &self,
         residual: PyReadonlyArray1<'_, f64>,
@@ -294,6 +299,7 @@ impl PyProblem {
         external: PyReadonlyArray1<'_, f64>,
         u: PyReadonlyArray1<'_, f64>,
         held: PyReadonlyArray1<'_, bool>,
+        balance: bool,
     ) -> PyResult<([f64; 2], [f64; 2], [usize; 2], [f64; 2])> {
         let dofs = &self.inner.dofs;
         let (r, s, e) = (residual.as_slice()?, scale.as_slice()?, external.as_slice()?);
@@ -302,7 +308,7 @@ impl PyProblem {
         if [r.len(), s.len(), e.len(), u.len(), held.len()] != [n; 5] {
             return Err(value_error("array lengths do not fit the problem"));
         }
-        let sizes = sizes::sizes(dofs, r, s, e, u, held);
+        let sizes = sizes::sizes(dofs, r, s, e, u, held, balance);
         Ok((sizes.scale, sizes.residual, sizes.worst, sizes.displacement))
     }
 
@@ -323,7 +329,7 @@ impl PyProblem {
 
     /// Replace the rows and columns of held dofs by those of a diagonal matrix.
     fn mask(
-        &self,
+        &mut self,
         py: Python<'_>,
         mut values: PyReadwriteArray1<'_, f64>,
         held: PyReadonlyArray1<'_, bool>,
@@ -333,8 +339,52 @@ impl PyProblem {
         if v.len() != dofs.indices.len() || held.len() != dofs.n_dofs() {
             return Err(value_error("array lengths do not fit the problem"));
         }
-        py.detach(|| dofs.mask(v, held));
+        let inner = &mut self.inner;
+        py.detach(|| inner.mask(v, held));
         Ok(())
+    }
+
+    /// Make a linear system for the free dofs, in place: ``values`` as by :meth:`mask`, and from
+    /// ``rhs`` (n,) or Fortran-ordered (n, k) the forces of the held dofs' motion ``moved``.
+    fn reduce(
+        &mut self,
+        py: Python<'_>,
+        mut values: PyReadwriteArray1<'_, f64>,
+        mut rhs: PyReadwriteArrayDyn<'_, f64>,
+        moved: PyReadonlyArrayDyn<'_, f64>,
+        held: PyReadonlyArray1<'_, bool>,
+    ) -> PyResult<()> {
+        let (v, held) = (values.as_slice_mut()?, held.as_slice()?);
+        let (mut rhs, moved) = (rhs.as_array_mut(), moved.as_array());
+        let dofs = &self.inner.dofs;
+        let fits = v.len() == dofs.indices.len() && held.len() == dofs.n_dofs();
+        let shape = rhs.shape().first() == Some(&dofs.n_dofs()) && rhs.shape() == moved.shape();
+        // Transposed, columns lie one after the other.
+        let (Some(b), Some(m)) =
+            (rhs.view_mut().reversed_axes().into_slice(), moved.t().to_slice())
+        else {
+            return Err(value_error("right-hand sides must stand one after the other"));
+        };
+        if !fits || !shape {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let inner = &mut self.inner;
+        py.detach(|| inner.reduce(v, b, m, held));
+        Ok(())
+    }
+
+    /// Values by node, shape (n_nodes, 3), 0 where a node has no such dof.
+    fn by_node<'py>(
+        &self,
+        py: Python<'py>,
+        vector: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let v = vector.as_slice()?;
+        if v.len() != self.inner.dofs.n_dofs() {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let rows = self.inner.dofs.by_node(v);
+        rows.into_pyarray(py).reshape([self.inner.dofs.n_nodes(), 3])
     }
 
     /// Nodal force by dof of a body force: ``kind`` gravity with value (bx, by), or centrifugal
@@ -360,7 +410,7 @@ impl PyProblem {
         Ok(self.inner.body_force(field, &rho, &masks).into_pyarray(py))
     }
 
-    /// Point fields of every block: a list of dicts of flat arrays.
+    /// Point fields of every block: a list of dicts of arrays by element and point.
     fn recover<'py>(
         &mut self,
         py: Python<'py>,
@@ -372,28 +422,30 @@ impl PyProblem {
         let fields = py.detach(|| inner.recover(u, turning));
         let mut all = Vec::new();
         for (f, block) in fields.into_iter().zip(&self.inner.blocks) {
+            let (n, p) = (block.n_elements, f.n_points);
+            let scalar = |values: Vec<f64>| values.into_pyarray(py).reshape([n, p]);
+            let rows = |values: Vec<f64>, k: usize| values.into_pyarray(py).reshape([n, p, k]);
             let d = PyDict::new(py);
-            d.set_item("n_points", f.n_points)?;
-            d.set_item("points", f.points.into_pyarray(py))?;
-            d.set_item("stress", f.stress.into_pyarray(py))?;
-            d.set_item("strain", f.strain.into_pyarray(py))?;
-            d.set_item("energy", f.energy.into_pyarray(py))?;
-            d.set_item("volume", f.volume.into_pyarray(py))?;
-            d.set_item("rotation", f.rotation.into_pyarray(py))?;
-            d.set_item("penalty", f.penalty.into_pyarray(py))?;
-            d.set_item("shape", block.shape.clone().into_pyarray(py))?;
+            d.set_item("total_energy", f.total_energy())?;
             d.set_item("largest_strain", f.largest_strain)?;
-            let outputs = PyDict::new(py);
-            for (name, values) in block.outputs().iter().zip(f.outputs) {
-                outputs.set_item(name, values.into_pyarray(py))?;
+            d.set_item("points", rows(f.points, 2)?)?;
+            d.set_item("volume", scalar(f.volume)?)?;
+            d.set_item("rotation", f.rotation.into_pyarray(py))?;
+            let shape = block.shape.clone().into_pyarray(py);
+            d.set_item("shape", shape.reshape([p, block.shape.len() / p.max(1)])?)?;
+            let values = PyDict::new(py);
+            values.set_item("S", rows(f.stress, 4)?)?;
+            values.set_item("E", rows(f.strain, 4)?)?;
+            values.set_item("MISES", scalar(f.mises)?)?;
+            values.set_item("ENER", scalar(f.energy)?)?;
+            for (name, output) in block.outputs().iter().zip(f.outputs) {
+                values.set_item(name, scalar(output)?)?;
             }
-            d.set_item("outputs", outputs)?;
-            let tensors = PyDict::new(py);
-            for (kind, values) in block.law.tensors().iter().zip(f.tensors) {
-                tensors.set_item(kind.name, values.into_pyarray(py))?;
+            for (kind, tensor) in block.law.tensors().iter().zip(f.tensors) {
+                values.set_item(kind.name, rows(tensor, 4)?)?;
             }
-            d.set_item("tensors", tensors)?;
-            d.set_item("thickness", f.thickness.into_pyarray(py))?;
+            values.set_item("STH", scalar(f.thickness)?)?;
+            d.set_item("values", values)?;
             all.push(d);
         }
         Ok(all)

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 #: Procedures whose state stays as it is.
 LINEAR = ("modal dynamic", "steady state")
+#: Times whose external forces are kept: those an increment goes from and to.
+KNOWN = 2
 
 
 class Course:
@@ -78,12 +80,18 @@ class Conditions:
     ----------
     held : ndarray of bool, shape (n_dofs,)
         Dofs with a prescribed value.
+    fixed : ndarray of int
+        Their numbers.
     """
 
     def __init__(self, system: System) -> None:
         n = system.n_dofs
         self.system = system
         self.held = np.zeros(n, bool)
+        self.fixed: Ints = np.zeros(0, np.int64)
+        #: External forces that do not follow the displacement, by the times asked for last.
+        self._known: dict[float, Floats] = {}
+        self._following = False
         self.support = Course(n)
         self.force = Course(n)
         #: Nodal forces with an amplitude: their values at factor one, by amplitude.
@@ -143,6 +151,7 @@ class Conditions:
             self.fading[released] = reaction[released]
         self.period, self.time, self.end_time = step.period, time, step.period
         self.ramp = getattr(step, "ramp", True)
+        self._known = {}
         if step.procedure in LINEAR and self.heating.any():
             raise UnsupportedError(
                 f"temperatures do not change in a {step.procedure} step; heat in a static or "
@@ -154,6 +163,7 @@ class Conditions:
         """Add loads and supports that grow from zero, apart from any step."""
         self._set_supports(supports)
         self._set_loads(loads)
+        self._known = {}
 
     def prescribed(self, step_time: float, u: Floats) -> Floats:
         """Values at held dofs, and `u` elsewhere; shape (n_dofs,)."""
@@ -163,15 +173,19 @@ class Conditions:
     def external(
         self, step_time: float, u: Floats
     ) -> tuple[Floats, tuple[Ints, Ints, Floats] | None]:
-        """External force at a time and displacement, and its derivative as triplets."""
-        force = self._nodal(step_time)
-        force += (1.0 - self._ramp(step_time)) * self.fading
+        """External force at a time and displacement, and its derivative as triplets.
+
+        The force is for reading only.
+        """
+        force = self._known.get(step_time)
+        if force is None:
+            force = self._dead(step_time)
+        if not self._following:
+            return force, None
+        force = force.copy()
         triplets: list[tuple[Ints, Ints, Floats]] = []
         for load in self.spread:
-            scale = self._scale(load, step_time)
-            if load.vector is not None:
-                force += scale * load.vector
-            elif scale != 0.0:
+            if load.vector is None and (scale := self._scale(load, step_time)) != 0.0:
                 turning = self.system.turning
                 moved = self.system.by_node(u)[:, :2] if turning else 0.0
                 x = np.ascontiguousarray(self.system.model.mesh.points + moved)
@@ -195,6 +209,20 @@ class Conditions:
     def heating(self) -> Floats:
         """Change of temperature per unit of load factor, shape (n_nodes,)."""
         return self.temperature.end - self.temperature.begin
+
+    def _dead(self, step_time: float) -> Floats:
+        """External forces at a time that do not follow the displacement."""
+        force = self._nodal(step_time)
+        force += (1.0 - self._ramp(step_time)) * self.fading
+        for load in self.spread:
+            if load.vector is not None:
+                force += self._scale(load, step_time) * load.vector
+        force.flags.writeable = False
+        if len(self._known) >= KNOWN:
+            self._known.clear()
+        self._known[step_time] = force
+        self._following = any(load.vector is None for load in self.spread)
+        return force
 
     def rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of external forces and of held dofs per unit of load factor, at `u`.
@@ -305,6 +333,7 @@ class Conditions:
             self.held[dofs] = True
             self.support.end[dofs] = item.value
             self.support.amplitude[dofs] = self._amplitude(item.amplitude, item.where)
+        self.fixed = np.flatnonzero(self.held)
 
     def _set_loads(self, loads: list[Load]) -> None:
         forces = [item for item in loads if isinstance(item, NodalForce)]

@@ -250,6 +250,10 @@ class NewmarkMotion:
         """Size of the residual."""
         return self.system.judge(at, u)
 
+    def release(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back."""
+        self.system.release(at)
+
 
 class ConservingMotion:
     """One increment of the energy-momentum scheme.
@@ -285,7 +289,7 @@ class ConservingMotion:
         system, b, dt = self.system, self.start, self.dt
         n = system.n_dofs
         force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
-        values = np.empty(len(system.indices))
+        values = system.room()
         if system.ties is not None:
             system.ties.complete(u)
         x1, x0, v0 = (system.in_space(x) for x in (u, b.u, b.v))
@@ -323,3 +327,7 @@ class ConservingMotion:
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
         """Size of the residual."""
         return self.system.judge(at, u)
+
+    def release(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back."""
+        self.system.release(at)

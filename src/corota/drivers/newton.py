@@ -7,6 +7,7 @@ linear solve, so that the elements at the moved edge do not take all of it.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
@@ -27,6 +28,11 @@ FLOOR = 10.0
 DIVERGED = 1e6
 #: Shortest line search step.
 SHORTEST = 1.0 / 64.0
+
+
+def larger(a: float, b: float) -> float:
+    """The larger of two; unlike ``max`` this passes on what is not a number."""
+    return a if a > b or a != a else b
 
 
 class ElementFailure(Exception):
@@ -59,6 +65,7 @@ class SystemLike(Protocol[E]):
     def evaluate(self, u: Floats, step_time: float) -> E: ...
     def predict(self, at: E, du_held: Floats) -> tuple[Floats, int]: ...
     def judge(self, at: E, u: Floats) -> Judgement: ...
+    def release(self, at: E) -> None: ...
 
 
 @dataclass
@@ -73,8 +80,7 @@ class Judgement:
 
     @property
     def size(self) -> float:
-        # Unlike max(), this passes a value that is not a number on.
-        return float(np.maximum(self.force, self.moment))
+        return larger(self.force, self.moment)
 
     def rounding(self, tolerance: float) -> bool:
         """Whether what is left, of forces and of moments, is small or rounding."""
@@ -165,14 +171,14 @@ def newton(
     du_held = prescribed - u
     moved = bool(np.any(du_held))
     judged = system.judge(at, u)
-    outcome.sizes.append(judged.size)
+    size = judged.size
+    outcome.sizes.append(size)
     # With moving supports the first residual says nothing about the one to be reached.
-    if not moved and judged.size <= settings.tolerance:
+    if not moved and size <= settings.tolerance:
         outcome.converged = True
         return outcome
-    best = judged.size
+    best = size
     for iteration in range(1, settings.max_iterations + 1):
-        residual = at.residual
         try:
             du, outcome.negative = system.predict(at, du_held)
         except SingularError as error:
@@ -184,40 +190,42 @@ def newton(
         except GiveUp as error:
             outcome.reason = str(error)
             return outcome
-        if not np.isfinite(du).all():
+        if not math.isfinite(du.sum()):
             outcome.reason = "the linear solution is not finite"
             return outcome
-        before = judged.size
-        trial = _search(system, u, du, du_held, residual, step_time, before, iteration)
+        before = size
+        trial = _search(system, u, du, at, step_time, before, iteration)
         if isinstance(trial, str):
             outcome.reason = trial
             return outcome
+        system.release(at)
         u, at, length = trial
         if moved:
             du_held = (1.0 - length) * du_held
             moved = bool(np.any(du_held))
         judged = system.judge(at, u)
+        size = judged.size
         outcome.u, outcome.at, outcome.iterations = u, at, iteration
-        outcome.sizes.append(judged.size)
-        note = f"step {length:.3g}" if length != 1.0 else ""
+        outcome.sizes.append(size)
         if report is not None:
             # Unknowns beyond the dofs are multipliers, of another unit.
             largest = float(np.abs(du[: len(at.internal)]).max())
+            note = f"step {length:.3g}" if length != 1.0 else ""
             report(iteration, judged, length * largest, note)
-        if not np.isfinite(judged.size):
+        if not math.isfinite(size):
             outcome.reason = "the residual is not finite"
             return outcome
-        if not moved and judged.size <= settings.tolerance:
+        if not moved and size <= settings.tolerance:
             outcome.converged = True
             return outcome
-        if not moved and judged.rounding(settings.tolerance) and judged.size >= 0.1 * before:
+        if not moved and judged.rounding(settings.tolerance) and size >= 0.1 * before:
             outcome.converged = True
-            outcome.note = f"residual {judged.size:.1e} is at the rounding floor"
+            outcome.note = f"residual {size:.1e} is at the rounding floor"
             return outcome
-        if iteration > 1 and judged.size > DIVERGED * max(best, 1e-6):
-            outcome.reason = f"diverges: the residual grew to {judged.size:.1e}"
+        if iteration > 1 and size > DIVERGED * max(best, 1e-6):
+            outcome.reason = f"diverges: the residual grew to {size:.1e}"
             return outcome
-        best = min(best, judged.size)
+        best = min(best, size)
     outcome.reason = (
         f"no convergence in {settings.max_iterations} iterations (residual {outcome.sizes[-1]:.1e})"
     )
@@ -228,8 +236,7 @@ def _search(
     system: SystemLike[E],
     u: Floats,
     du: Floats,
-    du_held: Floats,
-    residual: Floats,
+    start: E,
     step_time: float,
     before: float,
     iteration: int,
@@ -242,7 +249,7 @@ def _search(
     length = 1.0
     problem = ""
     while length >= SHORTEST:
-        trial = u + length * du
+        trial = u + (du if length == 1.0 else length * du)
         try:
             at = system.evaluate(trial, step_time)
         except ElementFailure as error:
@@ -255,12 +262,13 @@ def _search(
         if after <= 2.0 * before:
             return trial, at, length
         # Zero of the work of the residual along the step, by one regula falsi.
-        first, last = float(du @ residual), float(du @ at.residual)
+        first, last = float(du @ start.residual), float(du @ at.residual)
         if first < 0.0 < last:
             length = min(max(first / (first - last), 0.1), 0.9)
+            system.release(at)
             continue
         return trial, at, length
     return problem
 
 
-__all__ = ["ElementFailure", "GiveUp", "Judgement", "Outcome", "Settings", "newton"]
+__all__ = ["ElementFailure", "GiveUp", "Judgement", "Outcome", "Settings", "larger", "newton"]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from corota.drivers.arc_length import path_step
 from corota.drivers.increments import Increments
 from corota.drivers.newton import Outcome, Settings, newton
+from corota.drivers.system import Evaluation
 from corota.drivers.touching_start import newton_with_contact
 from corota.errors import (
     ConvergenceError,
@@ -23,11 +24,16 @@ from corota.results import Iteration
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from corota.drivers.newton import Judgement
     from corota.drivers.observers import Observers
     from corota.drivers.state import State
-    from corota.drivers.system import Evaluation, System
+    from corota.drivers.system import System
     from corota.steps import Static
+
+    Floats = NDArray[np.float64]
 
 #: Failed attempts under growing negative pivots after which a limit point is looked for.
 STALLED = 3
@@ -70,10 +76,16 @@ def static_step(
                 f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
             )
         target = control.target()
-        begin = _at_time(system, state, target)
-        if begin is not None:
+        begin = None
+        # Temperatures that change need a new evaluation.
+        heated = system.free.expands and not system.free.follows(
+            system.conditions.temperatures(target)
+        )
+        if state.at is not None and not heated and system.touching is None:
+            begin = _with_loads(system, state.at, state.u, target)
             # Newton's method overwrites the tangent; a further attempt needs it again.
-            begin = replace(begin, values=begin.values.copy())
+            begin.values = system.room()
+            begin.values[:] = state.at.values
         report = iteration_reporter(observers, system, number, control)
         prescribed = system.conditions.prescribed(target, state.u)
         try:
@@ -187,39 +199,36 @@ def _go_along_path(
     )
 
 
-def _at_time(system: System, state: State, time: float) -> Evaluation | None:
-    """The committed evaluation with the loads of another time; None if that heats."""
-    if state.at is None or not system.free.follows(system.conditions.temperatures(time)):
-        return None
-    external, stiffness = system.conditions.external(time, state.u)
-    return replace(state.at, external=external, load_stiffness=stiffness)
+def _with_loads(system: System, at: Evaluation, u: Floats, time: float) -> Evaluation:
+    """An evaluation at `u` with the loads of another time."""
+    external, stiffness = system.conditions.external(time, u)
+    return Evaluation(at.internal, external, at.scale, at.values, stiffness, at.link)
 
 
 def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: float) -> None:
-    from corota.drivers.system import Evaluation
-
-    assert isinstance(outcome.at, Evaluation)
-    du = outcome.u - state.u
-    held = system.conditions.held
-    before = state.at
-    if before is not None:
+    new = outcome.at
+    assert new is not None
+    if state.at is not None:
         # Forces do work on all dofs, reactions on those that are moved; trapezoidal rule.
-        new = outcome.at
-        external = system.conditions.external(state.step_time, state.u)[0]
-        old = replace(before, external=external)
-        mean = 0.5 * (external + new.external)
-        mean[held] += 0.5 * (system.reaction(old) + system.reaction(new))[held]
-        state.work += float(mean @ du)
+        fixed = system.conditions.fixed
+        old = _with_loads(system, state.at, state.u, state.step_time)
+        mean = old.external + new.external
+        mean[fixed] += system.reaction(old)[fixed] + system.reaction(new)[fixed]
+        state.work += 0.5 * float(mean @ (outcome.u - state.u))
+        if system.touching is None:
+            system.release(state.at)
     system.commit()
-    state.u, state.at = outcome.u, outcome.at
+    state.u, state.at = outcome.u, new
     state.step_time = target
     state.negative = outcome.negative
 
 
 def iteration_reporter(
     observers: Observers, system: System, number: int, control: Increments
-) -> Callable[[int, Judgement, float, str], None]:
-    """Pass Newton's iterations on to the observers."""
+) -> Callable[[int, Judgement, float, str], None] | None:
+    """Pass Newton's iterations on to the observers, if there are any."""
+    if not observers.each:
+        return None
 
     def report(iteration: int, judged: Judgement, correction: float, note: str) -> None:
         observers.iteration(

@@ -7,7 +7,9 @@ elements, loads and supports, and nothing of increments or iterations.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,10 +18,11 @@ from corota import _core, elements
 from corota.drivers.cells import blocks_of, check_shapes
 from corota.drivers.conditions import Conditions
 from corota.drivers.constraints import Link, Ties, extra_dofs
-from corota.drivers.newton import ElementFailure, Judgement
+from corota.drivers.newton import ElementFailure, Judgement, larger
 from corota.drivers.thermal import FreeStrains
 from corota.drivers.tie_setup import carry_curves
 from corota.drivers.timer import Timer
+from corota.drivers.unsymmetric import FullMatrix, MaskedLu
 from corota.drivers.user_blocks import UserBlocks
 from corota.errors import ModelError, SingularError
 from corota.results import PointFields
@@ -38,6 +41,10 @@ if TYPE_CHECKING:
 #: Forces below this many rounding errors of the coordinates are none.
 NOTHING = 1e3
 EPS = float(np.finfo(float).eps)
+#: Tangents whose memory is kept for the next ones.
+SPARE = 2
+#: Values of a tangent that was given back.
+NOWHERE = np.empty(0)
 #: Names of the dofs in messages.
 DOF_NAMES = ("x", "y", "rotation")
 
@@ -143,13 +150,14 @@ class System:
         self.touching: Touching | None = None
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
-        self.profile: dict[str, float] = {}
+        self._timers: defaultdict[str, Timer] = defaultdict(Timer)
         self._analyzed = False
-        self._last: LinearSolver = solver
+        self._last: LinearSolver | MaskedLu = solver
         self._stiffest = 0.0
         #: Largest force and moment of the state judged last, and of the committed one.
-        self._sizes = self._committed_sizes = (0.0, 0.0)
-        self._keys: Ints | None = None
+        self._sizes = self._committed_sizes = [0.0, 0.0]
+        self._lu = MaskedLu()
+        self._spare: list[Floats] = []
         if model.contacts or model.ties:
             from corota.drivers.touching import Touching
 
@@ -164,8 +172,7 @@ class System:
 
     def by_node(self, vector: Floats) -> Floats:
         """Values by node and global component, shape (n_nodes, 3), 0 where there is no dof."""
-        out = np.zeros((len(self.per_node), 3))
-        out[self.node_of_dof, self.component] = self.in_space(vector)
+        out: Floats = self.core.by_node(np.ascontiguousarray(self.in_space(vector)))
         return out
 
     def in_space(self, vector: Floats) -> Floats:
@@ -198,6 +205,16 @@ class System:
         if self.touching is not None:
             self.touching.begin(step)
 
+    def room(self) -> Floats:
+        """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
+        return self._spare.pop() if self._spare else np.empty(len(self.indices))
+
+    def release(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back that nobody looks at any more."""
+        if len(self._spare) < SPARE:
+            self._spare.append(at.values)
+        at.values = NOWHERE
+
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and tangent at a trial state; dependent dofs of `u` are set, in place.
 
@@ -206,19 +223,21 @@ class System:
         ElementFailure
             If an element turned inside out or its material did not converge.
         """
-        internal, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
-        values = np.empty(len(self.indices))
+        internal, scale, values = np.empty(self.n_dofs), np.empty(self.n_dofs), self.room()
         if self.ties is not None:
             self.ties.complete(u)
         self.heat(step_time)
         try:
             with self.timed("assemble"):
                 here = self.in_space(u)
-                self.user.assemble(
-                    here,
-                    self.turning,
-                    lambda: self.core.assemble(here, self.turning, internal, scale, values),
-                )
+                if self.user.blocks:
+                    self.user.assemble(
+                        here,
+                        self.turning,
+                        lambda: self.core.assemble(here, self.turning, internal, scale, values),
+                    )
+                else:
+                    self.core.assemble(here, self.turning, internal, scale, values)
         except RuntimeError as error:
             raise failure(self._labels(error.args[1])) from None
         external, stiffness = self.conditions.external(step_time, u)
@@ -267,7 +286,12 @@ class System:
 
     def timed(self, phase: str) -> Timer:
         """Add the time of a block to the profile."""
-        return Timer(self.profile, phase)
+        return self._timers[phase]
+
+    @property
+    def profile(self) -> dict[str, float]:
+        """Seconds by phase."""
+        return {phase: timer.seconds for phase, timer in self._timers.items()}
 
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
         """Size of the residual against its scale, forces and moments apart.
@@ -277,14 +301,16 @@ class System:
         to compare with. A moment is also small against the forces times a millionth of the
         model's size, since moments may vanish altogether.
         """
-        scale, external = at.scale, at.external
+        scale, internal, external = at.scale, at.internal, at.external
         if at.link is not None:
+            internal = self.reaction(at)
             scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
         size, residual, worst, displacement = self.core.sizes(
-            self.reaction(at), scale, external, u, self.conditions.held
+            internal, scale, external, u, self.conditions.held, at.link is None
         )
-        self._sizes = (size[0], size[1])
-        force, moment = np.maximum(self._sizes, self._committed_sizes).tolist()
+        self._sizes = size
+        force = larger(size[0], self._committed_sizes[0])
+        moment = larger(size[1], self._committed_sizes[1])
         moment = max(moment, 1e-6 * force * self.length)
         if not self._stiffest:
             self._stiffest = float(np.abs(at.values[self.indptr[1:] - 1]).max(initial=0.0))
@@ -351,7 +377,7 @@ class System:
         SingularError
             Naming the node and dof that nothing holds.
         """
-        return self.correct(at, -at.residual, du_held)
+        return self._correct(at, at.external - at.internal, du_held)
 
     def correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Factorise the tangent at a state and solve for one or several right-hand sides.
@@ -376,6 +402,10 @@ class System:
         SingularError
             Naming the node and dof that nothing holds.
         """
+        return self._correct(at, np.array(rhs, order="F"), np.asfortranarray(du_held))
+
+    def _correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
+        """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
         held = self.conditions.held
         unsymmetric = None
         if at.load_stiffness is not None:
@@ -385,12 +415,7 @@ class System:
         if unsymmetric is not None:
             du = self._solve_unsymmetric(unsymmetric, rhs, du_held, held, self.node_of_dof)
             return du, -1
-        rhs = rhs.copy()
-        for column, moved in zip(_columns(rhs), _columns(du_held), strict=True):
-            if np.any(moved):
-                column -= self.core.multiply(at.values, np.ascontiguousarray(moved))
-        self.core.mask(at.values, held)
-        rhs[held] = 0.0
+        self.core.reduce(at.values, rhs, du_held, held)
         if not self._analyzed:
             with self.timed("order"):
                 self.solver.analyze(self.indptr, self.indices, self.node_of_dof)
@@ -403,7 +428,8 @@ class System:
                 du = self.solver.solve(rhs)
         except SingularError as error:
             raise self.singular(error) from None
-        du[held] = du_held[held]
+        fixed = self.conditions.fixed
+        du[fixed] = du_held[fixed]
         return du, (inertia[1] if inertia is not None else -1)
 
     def solve_again(self, rhs: Floats) -> Floats:
@@ -491,47 +517,30 @@ class System:
         skew = (extra - extra.T).multiply(inside[:, None]).multiply(inside[None, :])
         size = abs(extra).max() if extra.nnz else 0.0
         if skew.nnz and abs(skew).max() > 1e-9 * size:
-            upper = sp.csc_array((at.values, self.indices, self.indptr), shape=(n, n))
-            return False, (upper + sp.triu(upper, 1).T + extra).tocsc()
+            return False, self._full.build(at.values, rows, columns, -values)
         upper_extra = sp.triu(0.5 * (extra + extra.T)).tocoo()
-        places = self._positions(upper_extra.row, upper_extra.col)
-        known = self.indices[np.minimum(places, len(self.indices) - 1)] == upper_extra.row
-        known &= places < self.indptr.astype(np.int64)[upper_extra.col + 1]
+        places, known = self._full.places(upper_extra.row, upper_extra.col)
         if not known.all():
             # Nodes that share no element: the pattern has no place for them.
-            upper = sp.csc_array((at.values, self.indices, self.indptr), shape=(n, n))
-            return False, (upper + sp.triu(upper, 1).T + extra).tocsc()
+            return False, self._full.build(at.values, rows, columns, -values)
         at.values[places] += upper_extra.data
         return True, None
 
-    def _positions(self, rows: Ints, columns: Ints) -> Ints:
-        """Places of entries (row <= column) in the upper triangle."""
-        if self._keys is None:
-            start = self.indptr.astype(np.int64)
-            counts = start[1:] - start[:-1]
-            column = np.repeat(np.arange(self.n_dofs, dtype=np.int64), counts)
-            self._keys = column * self.n_dofs + self.indices
-        wanted = np.asarray(columns, np.int64) * self.n_dofs + np.asarray(rows, np.int64)
-        return np.searchsorted(self._keys, wanted)
+    @cached_property
+    def _full(self) -> FullMatrix:
+        return FullMatrix(self.indptr, self.indices)
 
     def _solve_unsymmetric(
         self, matrix: Any, rhs: Floats, du_held: Floats, held: NDArray[np.bool_], node: Ints
     ) -> Floats:
-        import scipy.sparse as sp
-
-        from corota.drivers.solvers import Faer
-
         rhs = rhs - matrix @ du_held
         rhs[held] = 0.0
-        free = sp.diags_array((~held).astype(float))
-        diagonal = np.where(held, np.abs(matrix.diagonal()) + (matrix.diagonal() == 0), 0.0)
-        masked = (free @ matrix @ free + sp.diags_array(diagonal)).tocsc()
-        masked.sort_indices()
-        self._last = Faer(symmetric=False)
-        self._last.analyze(masked.indptr, masked.indices, node)
+        self._last = self._lu
         try:
-            self._last.factorize(masked.data)
-            du = self._last.solve(rhs)
+            with self.timed("factor"):
+                self._lu.factorize(matrix, held, node)
+            with self.timed("solve"):
+                du = self._lu.solve(rhs)
         except SingularError as error:
             raise self.singular(error) from None
         du[held] = du_held[held]
@@ -542,42 +551,20 @@ class System:
     def recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
         """Fields at the quadrature points, and sums over them."""
         fields, energy, strain = [], 0.0, 0.0
-        for block, raw in zip(
-            self.blocks, self.core.recover(self.in_space(u), self.turning), strict=True
-        ):
-            n, p = len(block.cells), raw["n_points"]
-            stress = raw["stress"].reshape(n, p, 4)
-            xx, yy, zz, xy = np.moveaxis(stress, 2, 0)
-            mises = np.sqrt(
-                np.maximum(
-                    0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2, 0.0
-                )
-            )
-            values = {
-                "S": stress,
-                "E": raw["strain"].reshape(n, p, 4),
-                "MISES": mises,
-                "ENER": raw["energy"].reshape(n, p),
-            }
-            for name, flat in raw["outputs"].items():
-                values[name] = flat.reshape(n, p)
-            for name, flat in raw["tensors"].items():
-                values[name] = flat.reshape(n, p, 4)
-            values["STH"] = raw["thickness"].reshape(n, p)
-            volume = raw["volume"].reshape(n, p)
-            energy += float((values["ENER"] * volume).sum() + raw["penalty"].sum())
+        raw = self.core.recover(self.in_space(u), self.turning)
+        for block, own in zip(self.blocks, raw, strict=True):
+            energy += own["total_energy"]
             if self.turning and block.section.local_strain == "simplified":
-                strain = max(strain, raw["largest_strain"])
-            shape = raw["shape"].reshape(p, -1)
+                strain = max(strain, own["largest_strain"])
             fields.append(
                 PointFields(
                     block.section.element,
                     block.cells,
-                    raw["points"].reshape(n, p, 2),
-                    shape,
-                    raw["rotation"],
-                    volume,
-                    values,
+                    own["points"],
+                    own["shape"],
+                    own["rotation"],
+                    own["volume"],
+                    own["values"],
                 )
             )
         return fields, {"strain energy": energy, "largest simplified strain": strain}

@@ -136,6 +136,9 @@ class TouchingSystem:
             judged.force = max(judged.force, min(size, 1.0))
         return judged
 
+    def release(self, at: Touched) -> None:
+        """Keep the tangent: states of contact are looked back at."""
+
     def lack(self, at: Touched) -> tuple[float, int, int]:
         """Largest lack of the contact conditions as a force; its pair and constraint."""
         worst = (0.0, 0, 0)
