@@ -1,8 +1,8 @@
-"""A whole Newton iteration against factorising and solving alone, at 250 thousand equations.
+"""A whole Newton iteration against factorising and solving alone, up to a million equations.
 
 Between two reports of Newton's method lie assembly, boundary conditions, factorisation, solution,
 line search and the judgement of the residual: everything that an iteration costs. Target: at most
-1.6 times factorisation and solution (``Q4I``).
+1.3 times factorisation and solution (``Q4I``, 250 thousand and a million).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -21,8 +21,8 @@ from benchmarks.common import report
 from corota.mesh import Cells
 from corota.results import Iteration, Silent
 
-#: Elements through the height of the cantilever: about 4, 40 and 250 thousand equations.
-SIZES = {"4k": 14, "40k": 45, "250k": 112}
+#: Elements through the height of the cantilever: about 4, 40, 250 and 1000 thousand equations.
+SIZES = {"4k": 14, "40k": 45, "250k": 112, "1m": 223}
 
 
 class Watch(Silent):
@@ -62,7 +62,7 @@ def measure(size: str, element: str, threads: int) -> list[object]:
 
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    options.add_argument("--sizes", nargs="+", default=list(SIZES), choices=list(SIZES))
+    options.add_argument("--sizes", nargs="+", default=list(SIZES)[:3], choices=list(SIZES))
     options.add_argument("--elements", nargs="+", default=["Q4I", "Q4D"])
     options.add_argument("--threads", type=int, default=1)
     chosen = options.parse_args()
