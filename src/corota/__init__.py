@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from corota.io.formats import read
     from corota.io.job import JobFiles
     from corota.io.stored import read_results
-    from corota.materials import Elastic, Orthotropic
+    from corota.materials import Elastic, Expansion, Orthotropic
     from corota.materials_plastic import Mises, Voce
     from corota.materials_user import UserMaterial
     from corota.mesh import Mesh
@@ -45,6 +45,7 @@ _HOMES = {
     "DisplacementControl": "paths",
     "Dynamic": "steps",
     "Elastic": "materials",
+    "Expansion": "materials",
     "Frequency": "steps",
     "InputError": "errors",
     "JobFiles": "io.job",
@@ -79,6 +80,7 @@ __all__ = [
     "DisplacementControl",
     "Dynamic",
     "Elastic",
+    "Expansion",
     "Frequency",
     "InputError",
     "JobFiles",

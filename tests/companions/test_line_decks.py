@@ -3,12 +3,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 import corota as ct
+from corota.io.formats import write
+from corota.mesh.data import Cells
+from support.lines import chain
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -180,3 +184,42 @@ def test_pin_and_tie_of_two_beams(tmp_path: Path, type_: str, turns: bool) -> No
 )  # fmt: skip
 def test_faults_are_named(tmp_path: Path, text: str, said: str) -> None:
     assert said in fault(tmp_path, text)
+
+
+def test_lines_are_written_and_read_back(tmp_path: Path) -> None:
+    """Every kind of companion beside a plate: the deck gives the same answer."""
+    plate = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    n, c = plate.n_nodes, plate.n_cells
+    points = np.vstack([plate.points, [[3.0, 1.0], [4.0, 1.0], [3.0, 2.0]]])
+    top = int(np.argmin(np.hypot(*(plate.points - [2.0, 1.0]).T)))
+    ends = np.array([[top, n], [n, n + 1], [top, n + 2], [n + 2, n], [n + 2, n + 1]])
+    lines = Cells("line2", ends, np.arange(c + 1, c + 6))
+    ground = Cells("point1", np.array([[n + 1], [n + 2]]), np.arange(c + 6, c + 8))
+    mesh = replace(
+        plate, points=points, cells=[*plate.cells, lines, ground],
+        node_labels=np.arange(1, len(points) + 1), cell_sets={},
+    )  # fmt: skip
+    model = ct.Model(mesh)
+    steel = ct.Elastic(1000.0, 0.25, expansion=1e-4)
+    model.section("all", element="Q4D", material=steel)
+    model.beam([c], material=steel, area=0.4, inertia=0.03, shear_area=0.4 * 5.0 / 6.0)
+    model.beam([c + 1], material=ct.Elastic(900.0, 0.25), area=0.4, inertia=0.03)
+    model.truss([c + 2], material=steel, area=0.2)
+    model.spring([c + 3], [[-1.0, -4.0], [0.0, 0.0], [1.0, 9.0]])
+    model.spring([c + 4], 3.0, "x y")
+    model.spring([c + 5], 2.0, "theta")
+    model.spring([c + 6], 5.0, "y")
+    model.fix("left", rotation=True)
+    model.force([n + 1], y=-0.2)
+    write(model, tmp_path / "out.inp")
+    again = ct.read(tmp_path / "out.inp")
+    assert {s.element for s in again.sections} == {s.element for s in model.sections}
+    one, two = last(model), last(again)
+    assert pytest.approx(one.U, rel=1e-9, abs=1e-12) == two.U
+
+
+def test_a_beam_without_a_card_is_refused(tmp_path: Path) -> None:
+    model = ct.Model(chain(1, 1.0))
+    model.beam([0], material=ct.Elastic(1.0), area=1.0, inertia=1.0, shear_area=0.3)
+    with pytest.raises(ct.UnsupportedError, match="shear area"):
+        write(model, tmp_path / "out.inp")

@@ -15,9 +15,11 @@ from corota.check.parts import cells_of
 from corota.errors import InputError, UnsupportedError
 from corota.io.inp_write import TYPES
 from corota.io.inp_write_contact import contact_cards, step_cards, surfaces
+from corota.io.inp_write_lines import LINE_TYPES, line_cards
 from corota.io.inp_write_thermal import expansion_cards, initial_cards, temperatures
 from corota.io.twin import replace_text
 from corota.materials import Elastic, Orthotropic
+from corota.mesh import EDGES
 from corota.model import BodyForce, EdgeLoad, NodalForce, Temperature
 from corota.steps import Static
 
@@ -114,15 +116,16 @@ class _Writer:
             yield f"{label}, {_number(x)}, {_number(y)}\n"
         names = np.full(mesh.n_cells, "", dtype="U8")
         for section in self.model.sections:
-            names[cells_of(mesh, section.cells)] = section.element
+            names[cells_of(mesh, self._cells(section.cells))] = section.element
         for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
-            if block.kind not in TYPES:
-                continue
             mine = names[offset : offset + len(block)]
             nodes = mesh.node_labels[block.nodes].tolist()
             rows = zip(mine.tolist(), block.labels.tolist(), nodes, strict=True)
             for name, run in groupby(rows, key=lambda row: row[0]):
-                yield f"*ELEMENT, TYPE={name or TYPES[block.kind]}\n"
+                type_ = LINE_TYPES.get(name, name) or TYPES.get(block.kind)
+                if type_ is None:
+                    continue
+                yield f"*ELEMENT, TYPE={type_}\n"
                 for _, label, row in run:
                     yield f"{label}, {', '.join(map(str, row))}\n"
         for name, members in mesh.node_sets.items():
@@ -138,6 +141,11 @@ class _Writer:
         lines: list[str] = []
         angles: dict[float, str] = {}
         for section in self.model.sections:
+            if section.element in LINE_TYPES:
+                spring = section.element.startswith("SPRING")
+                name = "" if spring else self._material(section.material, lines)
+                lines.append(line_cards(section, self.cell_set(section.cells), name))
+                continue
             name = self._material(section.material, lines)
             options = f"ELSET={self.cell_set(section.cells)}, MATERIAL={name}"
             if section.plane == "strain":
@@ -282,8 +290,18 @@ class _Writer:
             return [_plain(where)]
         return [self._invent("NSET", self.mesh.node_labels[self.mesh.nodes_of(where)])]
 
+    def _cells(self, where: str | Ints) -> str | Ints:
+        """Cells of a section: all are the planar ones, where there are lines too."""
+        blocks = list(zip(self.mesh.offsets, self.mesh.cells, strict=False))
+        planar = [o + np.arange(len(c)) for o, c in blocks if EDGES[c.kind]]
+        named = not isinstance(where, str) or (where or "all") in self.mesh.cell_sets
+        if named or len(planar) == len(blocks) or not planar:
+            return where
+        return np.concatenate(planar)
+
     def cell_set(self, where: str | Ints) -> str:
         """Name of an element set, invented for an array."""
+        where = self._cells(where)
         if isinstance(where, str):
             return _plain(where or "all")
         for name, cells in self.mesh.cell_sets.items():
