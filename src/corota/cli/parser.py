@@ -95,6 +95,9 @@ def make_parser() -> Parser:
         "--contact", nargs="?", const="", metavar="PAIR",
         help="pressure along the slave surface of a contact pair, the first by default",
     )  # fmt: skip
+    plot.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
+    plot.add_argument("--response", action="store_true", help="steady-state response")
+    plot.add_argument("--energies", action="store_true", help="energies of a motion over time")
     plot.add_argument("--animate", action="store_true", help="all frames as a GIF or MP4")
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
 

@@ -38,6 +38,8 @@ def run(args: Any, terminal: Terminal) -> int:
             path = Path(args.output or f"{source.stem}_model.png")
             plots.model(results.model, edges=args.edges, path=path, dpi=args.dpi)
             return _tell(path, terminal)
+        if args.modes or args.response or args.energies:
+            return _of_motion(args, source, results, terminal)
         if args.curve:
             path = Path(args.output or f"{source.stem}_curve.png")
             y, x = _axes(args.curve, results)
@@ -60,6 +62,23 @@ def run(args: Any, terminal: Terminal) -> int:
         else:
             path = Path(args.output or f"{source.stem}_{field}.png")
             plots.contour(results, field, frame=args.frame, path=path, dpi=args.dpi, **options)
+    return _tell(path, terminal)
+
+
+def _of_motion(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
+    """Modes, response or energies; modes lie in a file of their own."""
+    from corota import plots
+    from corota.io.stored import read_results
+
+    kind = next(k for k in ("modes", "response", "energies") if getattr(args, k))
+    path = Path(args.output or f"{source.stem}_{kind}.png")
+    beside = source.with_name(f"{source.stem}.modes{source.suffix}")
+    draw = getattr(plots, kind)
+    if kind == "modes" and beside.exists():
+        with read_results(beside) as found:
+            draw(found, path=path, dpi=args.dpi)
+    else:
+        draw(results, path=path, dpi=args.dpi)
     return _tell(path, terminal)
 
 

@@ -1,4 +1,4 @@
-"""Pictures: contours on the deformed shape, curves, contact, the model, animations.
+"""Pictures: contours on the deformed shape, curves, contact, the model, animations, motion.
 
 All need matplotlib (``pip install corota[plot]``). Each function returns the figure; with ``path``
 it is written too, as PNG, SVG or PDF by the ending.
@@ -10,5 +10,8 @@ from corota.plots.contact import contact_line, status
 from corota.plots.contour import contour
 from corota.plots.curves import curve
 from corota.plots.model import model
+from corota.plots.motion import energies, modes, response
 
-__all__ = ["animate", "contact_line", "contour", "curve", "model", "status"]
+__all__ = [
+    "animate", "contact_line", "contour", "curve", "energies", "model", "modes", "response", "status",
+]  # fmt: skip
