@@ -106,6 +106,8 @@ class Material:
         Mass density [mass/length^3]; 0 means that none was given.
     expansion : float, tuple of three floats or Expansion
         Thermal expansion [1/temperature], or that along the material axes.
+    rayleigh : tuple of float
+        Damping of this material per mass [1/time] and per stiffness [time].
     name : str
         The user's name.
     where : Location, optional
@@ -114,6 +116,7 @@ class Material:
 
     rho: float = field(default=0.0, kw_only=True)
     expansion: float | tuple[float, float, float] | Expansion = field(default=0.0, kw_only=True)
+    rayleigh: tuple[float, float] = field(default=(0.0, 0.0), kw_only=True)
     name: str = field(default="", kw_only=True)
     where: Location | None = field(default=None, kw_only=True, compare=False, repr=False)
 
@@ -141,6 +144,24 @@ class Material:
         """
         raise TypeError(f"{type(self).__name__} has no parameters")
 
+    def _check_isotropic(self, E: float, nu: float) -> None:
+        _positive(E, "Young's modulus E", self.where)
+        if not -1.0 < nu < 0.5:
+            raise InputError(
+                f"Poisson's ratio {nu} is outside -1 < nu < 0.5; "
+                "for a nearly incompressible material use e.g. 0.4999",
+                self.where,
+            )
+
+    def _check_motion(self) -> None:
+        """Density and damping."""
+        if not (math.isfinite(self.rho) and self.rho >= 0.0):
+            raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+        if not (len(self.rayleigh) == 2 and all(0.0 <= c < math.inf for c in self.rayleigh)):
+            raise InputError(
+                f"rayleigh damping is a pair of numbers >= 0, not {self.rayleigh}", self.where
+            )
+
 
 @dataclass
 class Elastic(Material):
@@ -165,15 +186,8 @@ class Elastic(Material):
     law = "elastic"
 
     def __post_init__(self) -> None:
-        _positive(self.E, "Young's modulus E", self.where)
-        if not -1.0 < self.nu < 0.5:
-            raise InputError(
-                f"Poisson's ratio {self.nu} is outside -1 < nu < 0.5; "
-                "for a nearly incompressible material use e.g. 0.4999",
-                self.where,
-            )
-        if not (math.isfinite(self.rho) and self.rho >= 0.0):
-            raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+        self._check_isotropic(self.E, self.nu)
+        self._check_motion()
 
     def compliance(self) -> NDArray[np.float64]:
         return isotropic_compliance(self.E, self.nu)
@@ -234,8 +248,7 @@ class Orthotropic(Material):
                 f"too large (|nu12| must be below {math.sqrt(self.E1 / self.E2):g})",
                 self.where,
             )
-        if not (math.isfinite(self.rho) and self.rho >= 0.0):
-            raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+        self._check_motion()
 
     def compliance(self) -> NDArray[np.float64]:
         s = np.diag([1.0 / self.E1, 1.0 / self.E2, 1.0 / self.E3, 1.0 / self.G12])

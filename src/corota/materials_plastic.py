@@ -107,15 +107,8 @@ class Mises(Material):
     law = "mises"
 
     def __post_init__(self) -> None:
-        _positive(self.E, "Young's modulus E", self.where)
-        if not -1.0 < self.nu < 0.5:
-            raise InputError(
-                f"Poisson's ratio {self.nu} is outside -1 < nu < 0.5; "
-                "for a nearly incompressible material use e.g. 0.4999",
-                self.where,
-            )
-        if not (math.isfinite(self.rho) and self.rho >= 0.0):
-            raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+        self._check_isotropic(self.E, self.nu)
+        self._check_motion()
         if (self.yield_curve is None) == (self.yield_stress is None):
             raise InputError("give either yield_curve or yield_stress", self.where)
         if self.yield_curve is not None:

@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -78,8 +77,7 @@ class UserMaterial(Material):
                 f"initial must have {self.members} numbers, not shape {np.shape(self.initial)}",
                 self.where,
             )
-        if not (math.isfinite(self.rho) and self.rho >= 0.0):
-            raise InputError(f"the density must be >= 0, not {self.rho}", self.where)
+        self._check_motion()
 
     def start(self, n: int, p: int) -> Floats:
         """History of n elements with p points at the start, shape (n, p, members)."""

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+import corota as ct
+
 if TYPE_CHECKING:
     from conftest import Load
 
@@ -77,3 +79,50 @@ def test_frame_that_yields_rests_elsewhere(load: Load) -> None:
     assert lost[-1] > 0.5 * work
     assert np.diff(lost).min() > -1e-3 * work
     assert np.abs([s["energy balance"] for s in scalars]).max() < 5e-3 * work
+
+
+def polar_stress(results: object, frame: object) -> tuple[np.ndarray, np.ndarray]:
+    """Radius in the reference, and radial, hoop and shear stress at the points of a frame."""
+    block = frame.fields[0]
+    x = np.einsum(
+        "pa,nai->npi", block.shape, results.model.mesh.points[results.model.mesh.cells[0].nodes]
+    )
+    u = np.einsum("pa,nai->npi", block.shape, frame.U[results.model.mesh.cells[0].nodes])
+    angle = np.arctan2((x + u)[..., 1], (x + u)[..., 0])
+    c, s = np.cos(angle), np.sin(angle)
+    xx, yy, _, xy = np.moveaxis(block.values["S"], 2, 0)
+    radial = c * c * xx + s * s * yy + 2.0 * c * s * xy
+    hoop = s * s * xx + c * c * yy - 2.0 * c * s * xy
+    shear = c * s * (yy - xx) + (c * c - s * s) * xy
+    return np.hypot(*np.moveaxis(x, 2, 0)), np.array([radial, hoop, shear])
+
+
+def test_stresses_of_the_rotor_are_those_of_the_formula(load: Load) -> None:
+    example = load("motion/rotor.py")
+    errors = []
+    for cells in (6, 12):
+        model = example.annulus(cells)
+        results = ct.solve(model, ct.Static(nlgeom=False))
+        radius, found = polar_stress(results, results.frames[-1])
+        exact = np.array([*example.stresses(radius), np.zeros_like(radius)])
+        errors.append(np.abs(found - exact).max() / np.abs(exact).max())
+    assert errors[1] < 0.01
+    # The largest error is at the outermost points, which move to the edge: 1.5th order is seen.
+    assert errors[1] < 0.4 * errors[0]
+
+
+def test_rotor_keeps_its_stresses_while_it_turns(load: Load) -> None:
+    example = load("motion/rotor.py")
+    results = example.turn(increments=60)
+    model = results.model
+    start = next(f for f in results.frames if f.increment > 0)
+    radius, steady = polar_stress(results, start)
+    exact = np.array([*example.stresses(radius), np.zeros_like(radius)])
+    size = np.abs(exact).max()
+    assert np.abs(steady - exact).max() < 0.05 * size
+    for frame in (f for f in results.frames if f.step == 2):
+        _, found = polar_stress(results, frame)
+        assert np.abs(found - steady).max() < 0.005 * size
+    # It has turned by half a turn.
+    last = results.frames[-1]
+    assert model.mesh.points + last.U == pytest.approx(-model.mesh.points, abs=2e-3)

@@ -80,7 +80,8 @@ pub trait Chunk: Send + Sync {
     ) -> Vec<usize>;
     /// Set the carried velocities of the conserving scheme.
     fn start(&mut self, context: &Context<'_>, v: &[f64]);
-    /// Add kinetic energy and momenta.
+    /// Add kinetic energy and momenta; the energies of elements go to `each`, by their index
+    /// in the block, unless it is empty.
     fn momenta(
         &self,
         context: &Context<'_>,
@@ -88,6 +89,7 @@ pub trait Chunk: Send + Sync {
         kind: MassKind,
         carried: bool,
         sums: &mut Momenta,
+        each: &mut [f64],
     );
     /// Set the initial strains from those of the block, `[n, p, 4]`.
     fn set_initial(&mut self, values: &[f64]);
@@ -420,8 +422,9 @@ where
         kind: MassKind,
         carried: bool,
         sums: &mut Momenta,
+        each: &mut [f64],
     ) {
-        self.add_momenta(context, v, kind, carried, sums);
+        self.add_momenta(context, v, kind, carried, sums, each);
     }
     fn set_light(&mut self, light: &[bool]) {
         let of = |nodes: &[u32; N]| nodes.map(|n| light[n as usize]);

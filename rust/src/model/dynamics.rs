@@ -173,8 +173,10 @@ where
         kind: MassKind,
         carried: bool,
         sums: &mut Momenta,
+        each: &mut [f64],
     ) {
         for e in 0..self.nodes.len() {
+            let before = std::mem::take(&mut sums.kinetic);
             let (x, u) = self.gather::<f64>(e, context);
             let mass = self.mass(e, &x, kind);
             let v = self.of_dofs(e, v, context);
@@ -224,6 +226,10 @@ where
                     }
                 }
             }
+            if let Some(own) = each.get_mut(self.elements[e] as usize) {
+                *own = sums.kinetic;
+            }
+            sums.kinetic += before;
         }
     }
 }

@@ -86,6 +86,8 @@ pub struct Problem {
     held: Held,
     assemble_race: Race,
     recover_race: Race,
+    /// Blocks that take part in assembly and inertia; empty for all.
+    active: Vec<bool>,
 }
 
 impl Problem {
@@ -125,6 +127,7 @@ impl Problem {
             held: Held::default(),
             assemble_race: Race::default(),
             recover_race: Race::default(),
+            active: Vec::new(),
         })
     }
 
@@ -145,6 +148,15 @@ impl Problem {
         self.lanes = lanes;
     }
 
+    /// Let only these blocks take part in assembly and inertia; empty for all.
+    pub fn set_active(&mut self, active: Vec<bool>) -> Result<(), String> {
+        if !active.is_empty() && active.len() != self.blocks.len() {
+            return Err(format!("{} flags for {} blocks", active.len(), self.blocks.len()));
+        }
+        self.active = active;
+        Ok(())
+    }
+
     /// Internal force, its scale, and with a non-empty `values` the tangent's upper triangle.
     /// The arrays are overwritten.
     pub fn assemble(
@@ -159,7 +171,7 @@ impl Problem {
         let context =
             Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
         let apart = self.colours.iter().any(|c| c.len() > 1);
-        let colours = &mut self.colours;
+        let (colours, active) = (&mut self.colours, &self.active);
         let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
                 zero(array, pool);
@@ -171,6 +183,9 @@ impl Problem {
             };
             let evaluate = |c: &mut Box<dyn Chunk>| {
                 let block = c.block();
+                if active.get(block) == Some(&false) {
+                    return Vec::new();
+                }
                 let bad = c.assemble(&context, &sink);
                 bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
             };
@@ -210,7 +225,11 @@ impl Problem {
             values: Shared::new(values),
         };
         for colour in &self.colours {
-            let evaluate = |c: &dyn Chunk| c.inertia(&context, motion, &sink);
+            let evaluate = |c: &dyn Chunk| {
+                if self.active.get(c.block()) != Some(&false) {
+                    c.inertia(&context, motion, &sink);
+                }
+            };
             match &self.pool {
                 Some(pool) if colour.len() > 1 => {
                     pool.install(|| colour.par_iter().for_each(|c| evaluate(c.as_ref())));
@@ -280,19 +299,44 @@ impl Problem {
         }
     }
 
-    /// Kinetic energy and momenta of a motion.
-    pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
-        let context = Context {
+    /// Kinetic energy of each element of a block.
+    pub fn kinetic(
+        &self,
+        block: usize,
+        u: &[f64],
+        v: &[f64],
+        kind: MassKind,
+        carried: bool,
+    ) -> Result<Vec<f64>, String> {
+        let Some(own) = self.blocks.get(block) else {
+            return Err(format!("no block {block}"));
+        };
+        let mut each = vec![0.0; own.n_elements];
+        let context = self.at_rest(u);
+        let mut sums = Momenta::default();
+        for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
+            chunk.momenta(&context, v, kind, carried, &mut sums, &mut each);
+        }
+        Ok(each)
+    }
+
+    fn at_rest<'a>(&'a self, u: &'a [f64]) -> Context<'a> {
+        Context {
             x: &self.x,
             u,
             dofs: &self.dofs,
             turning: true,
             tangent: false,
             lanes: self.lanes,
-        };
+        }
+    }
+
+    /// Kinetic energy and momenta of a motion.
+    pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
+        let context = self.at_rest(u);
         let mut sums = Momenta::default();
         for chunk in self.colours.iter().flatten() {
-            chunk.momenta(&context, v, kind, carried, &mut sums);
+            chunk.momenta(&context, v, kind, carried, &mut sums, &mut []);
         }
         sums
     }

@@ -130,6 +130,11 @@ impl PyProblem {
         Ok(lanes.width())
     }
 
+    /// Let only these blocks take part in ``assemble`` and ``inertia``; empty for all.
+    fn set_active(&mut self, active: Vec<bool>) -> PyResult<()> {
+        self.inner.set_active(active).map_err(value_error)
+    }
+
     /// Fill ``force``, ``scale`` and, unless it is empty, ``values`` (upper triangle).
     fn assemble(
         &mut self,
@@ -218,6 +223,21 @@ impl PyProblem {
     ) -> PyResult<()> {
         self.inner.start_motion(u.as_slice()?, v.as_slice()?);
         Ok(())
+    }
+
+    /// Kinetic energy of each element of a block, shape (n,).
+    fn kinetic<'py>(
+        &self,
+        py: Python<'py>,
+        block: usize,
+        u: PyReadonlyArray1<'_, f64>,
+        v: PyReadonlyArray1<'_, f64>,
+        kind: &str,
+        carried: bool,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let kind = MassKind::new(kind).map_err(value_error)?;
+        let each = self.inner.kinetic(block, u.as_slice()?, v.as_slice()?, kind, carried);
+        Ok(each.map_err(value_error)?.into_pyarray(py))
     }
 
     /// (kinetic energy, momentum x, momentum y, angular momentum about the origin, mass).

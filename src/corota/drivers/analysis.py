@@ -213,6 +213,9 @@ class Analysis:
         if self.fields:
             with system.timed("recover"):
                 fields, sums = system.recover(state.u)
+                step = self.steps[number - 1]
+                if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
+                    system.add_kinetic(fields, state.u, state.v, step)
             strain = sums.pop("largest simplified strain")
             scalars = {**scalars, **sums}
             if strain > LARGE_STRAIN and "strain" not in self.warned:

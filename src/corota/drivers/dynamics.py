@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.drivers.damping import damping_matrix
 from corota.drivers.explicit import explicit_step
-from corota.drivers.increments import Increments
+from corota.drivers.increments import SAME, Increments
 from corota.drivers.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
 from corota.drivers.newton import Outcome, Settings, newton
 from corota.drivers.schemes import SCHEMES
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from corota.drivers.state import State
     from corota.drivers.system import Evaluation, System
     from corota.drivers.touching_system import TouchingSystem
+    from corota.model import Amplitude
     from corota.steps import Dynamic
 
     Floats = NDArray[np.float64]
@@ -38,6 +40,10 @@ AIM = 0.7
 TRACE = 1e-3
 #: Increments that a wave of a load needs at least, and those that follow it well.
 LEAST_PER_WAVE, PER_WAVE = 4.0, 20.0
+#: Displacements below this share of the model's size are as good as none.
+REST = 1e-5
+#: Automatic increments may miss the straight line of an amplitude by this share of its size.
+LOAD_ERROR = 0.05
 #: Initial velocities may break constraints by this share of the largest.
 UNEQUAL = 1e-9
 #: It shrinks or grows at most by these factors.
@@ -82,6 +88,8 @@ def dynamic_step(
                 f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
             )
         target = control.target()
+        if not step.fixed_increments:
+            target = _not_over_a_load(system, step, control.time, target)
         motion = _motion(system, step, inertia, now, target - control.time)
         report = iteration_reporter(observers, system, number, control)
         prescribed = system.conditions.prescribed(target, now.u)
@@ -183,10 +191,7 @@ def warn_of_long_increments(system: System, step: Dynamic, state: State) -> None
     """
     if not step.fixed_increments:
         return
-    model = system.model
-    items = [*model.loads, *model.supports, *step.loads, *step.supports]
-    for name in sorted({item.amplitude for item in items if item.amplitude}):
-        amplitude = model.amplitudes[name]
+    for name, amplitude in _amplitudes(system, step):
         slope = np.diff(amplitude.value)
         moving = np.flatnonzero(slope)
         turns = moving[1:][np.sign(slope[moving[1:]]) != np.sign(slope[moving[:-1]])]
@@ -202,11 +207,39 @@ def warn_of_long_increments(system: System, step: Dynamic, state: State) -> None
             warnings.warn(note, stacklevel=2)
 
 
+def _amplitudes(system: System, step: Dynamic) -> list[tuple[str, Amplitude]]:
+    """Amplitudes of the loads and supports of a step by name."""
+    model = system.model
+    items = [*model.loads, *model.supports, *step.loads, *step.supports]
+    names = sorted({item.amplitude for item in items if item.amplitude})
+    return [(name, model.amplitudes[name]) for name in names]
+
+
+def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) -> float:
+    """The target, or an earlier point of an amplitude that an increment would step over.
+
+    Between both ends of an increment the schemes see a straight line. A body at rest has no
+    local error: its increments grow, and a pulse could pass between two of them.
+    """
+    for _, amplitude in _amplitudes(system, step):
+        start = system.conditions.time if amplitude.total_time else 0.0
+        points = np.asarray(amplitude.time) - start
+        inside = points[(points > time + SAME * step.period) & (points < target)]
+        ends = np.array([amplitude(start + t) for t in (time, target)])
+        size = np.abs(amplitude.value).max()
+        for point in inside:
+            line = np.interp(point, (time, target), ends)
+            if abs(amplitude(start + point) - line) > LOAD_ERROR * size:
+                target = float(inside[0])
+                break
+    return target
+
+
 def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) -> Moving:
     """Velocities and accelerations at the start of a step."""
     zero = np.zeros(system.n_dofs)
     if state.v is None:
-        state.v = initial_velocity(system)
+        state.v = initial_velocity(system, state.u)
     support_a = _start_supports(system, step, state)
     at = system.evaluate(state.u, 0.0)
     u, v = state.u, state.v
@@ -214,13 +247,13 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
         # Dependent dofs accelerate as they turn, before their masters do.
         system.ties.complete_rates(u, v, zero)
     force = inertia.force(u, v, zero)
-    stiffness = at.values.copy() if step.rayleigh[1] else None
+    rayleigh, matrix = _damping(system, step, u)
     resting = zero
     if system.touching is not None:
         # Bodies may rest on each other from a step before.
         touching = system.touching
         resting = touching.evaluate(u, touching.committed, 0.0, at.values).force
-    damping = inertia.damping(at, u, v, 0.0, step.rayleigh, stiffness)
+    damping = inertia.damping(at, u, v, 0.0, rayleigh, matrix)
     internal, external = at.internal, at.external
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
     # The consistent mass of drilling elements has none for a uniform drilling rotation, which
@@ -257,10 +290,13 @@ def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
     return np.where(held, rate, 0.0)
 
 
-def initial_velocity(system: System) -> Floats:
-    """The model's initial velocities by dof."""
+def initial_velocity(system: System, u: Floats | None = None) -> Floats:
+    """The model's initial velocities by dof; a spin is that of the displaced body."""
     out = np.zeros((len(system.per_node), 3))
     points = system.model.mesh.points
+    u = np.zeros(system.n_dofs) if u is None else u
+    if system.turning:
+        points = points + system.by_node(u)[:, :2]
     for item in system.model.velocities:
         if isinstance(item.nodes, str):
             everywhere = np.arange(len(points))
@@ -276,11 +312,11 @@ def initial_velocity(system: System) -> Floats:
         out[nodes, 2] = spin
     v = system.from_nodes(out)
     if system.ties is not None:
-        _follow_constraints(system, v)
+        _follow_constraints(system, u, v)
     return v
 
 
-def _follow_constraints(system: System, v: Floats) -> None:
+def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
     """Give dependent dofs the velocity that follows from the others, in place.
 
     Raises
@@ -290,7 +326,7 @@ def _follow_constraints(system: System, v: Floats) -> None:
     """
     assert system.ties is not None
     given = v.copy()
-    system.ties.complete_rates(np.zeros_like(v), v)
+    system.ties.complete_rates(u, v)
     off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
     if off.any():
         dof = int(np.flatnonzero(off)[0])
@@ -305,13 +341,17 @@ def _follow_constraints(system: System, v: Floats) -> None:
 def _motion(
     system: System, step: Dynamic, inertia: Inertia, now: Moving, dt: float
 ) -> NewmarkMotion | ConservingMotion:
-    stiffness = None
-    if step.rayleigh[1]:
-        stiffness = system.evaluate(now.u, 0.0).values
+    rayleigh, matrix = _damping(system, step, now.u)
     if step.scheme == "energy_momentum":
-        return ConservingMotion(system, inertia, now, dt, step.rayleigh, stiffness)
+        return ConservingMotion(system, inertia, now, dt, rayleigh, matrix)
     scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)
-    return NewmarkMotion(system, inertia, scheme, now, dt, step.rayleigh, stiffness)
+    return NewmarkMotion(system, inertia, scheme, now, dt, rayleigh, matrix)
+
+
+def _damping(system: System, step: Dynamic, u: Floats) -> tuple[tuple[float, float], Floats | None]:
+    """Damping per mass of the model, and the matrix of all other."""
+    matrix = damping_matrix(system, u, step.rayleigh[1], step.mass)
+    return (step.rayleigh[0], 1.0), matrix
 
 
 def _local_error(
@@ -326,7 +366,8 @@ def _local_error(
     moves = ~system.is_rotation & ~light
     error = abs(beta - 1.0 / 6.0) * dt * dt * np.abs(end.a - begin.a)[moves].max(initial=0.0)
     size = max(np.abs(end.u[moves]).max(initial=0.0), dt * np.abs(end.v[moves]).max(initial=0.0))
-    return float(error / (step.error_tolerance * size)) if size > 0.0 else 0.0
+    # No increment is short enough for the relative error of a motion out of rest.
+    return float(error / (step.error_tolerance * max(size, REST * system.length)))
 
 
 def _contact_error(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.drivers.damping import material_pairs
 from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, UnsupportedError
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def explicit_step(
     """
     from corota.drivers.dynamics import initial_velocity
 
-    if system.model.dashpots or any(step.rayleigh):
+    if system.model.dashpots or any(step.rayleigh) or material_pairs(system):
         raise InputError(
             "central differences take no damping: use an implicit scheme, or remove dashpots and "
             "rayleigh",
@@ -114,7 +115,7 @@ def explicit_step(
     wanted = {round(s / dt) for s in stops}
     state.counters["stable increment"] = stable  # type: ignore[assignment]
     if state.v is None:
-        state.v = initial_velocity(system)
+        state.v = initial_velocity(system, state.u)
     u = state.u.copy()
     at = system.evaluate(u, 0.0)
     a = np.where(held, 0.0, -at.residual / mass)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.drivers.damping import damping_matrix
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -45,6 +46,11 @@ class Basis:
         a, b = step.rayleigh
         with np.errstate(divide="ignore", invalid="ignore"):
             rayleigh = np.where(self.omega > 0.0, 0.5 * (a / self.omega + b * self.omega), 0.0)
+            matrix = damping_matrix(system, state.u)
+            if matrix is not None:
+                # Of each mode alone: what couples modes is left out.
+                own = [shape @ system.product(matrix, shape) for shape in self.shapes.T]
+                rayleigh += np.where(self.omega > 0.0, 0.5 * np.array(own) / self.omega, 0.0)
         self.damping = step.damping + rayleigh
 
 

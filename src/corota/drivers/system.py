@@ -569,6 +569,18 @@ class System:
             )
         return fields, {"strain energy": energy, "largest simplified strain": strain}
 
+    def add_kinetic(self, fields: list[PointFields], u: Floats, v: Floats, step: Step) -> None:
+        """Give fields the kinetic energy of their elements, per volume."""
+        kind, scheme = (getattr(step, name, "") for name in ("mass", "scheme"))
+        x, rate = self.in_space(u), self.in_space(v)
+        for number, block in enumerate(fields):
+            each = self.core.kinetic(
+                number, x, rate, kind or "consistent", scheme == "energy_momentum"
+            )
+            volume = block.volume.sum(axis=1)
+            density = np.divide(each, volume, out=np.zeros_like(each), where=volume > 0.0)
+            block.values["EKEDEN"] = np.repeat(density[:, None], block.volume.shape[1], axis=1)
+
 
 def failure(labels: list[int]) -> ElementFailure:
     """Name the elements that failed."""

@@ -47,8 +47,12 @@ POINT_TITLES = {
 #: Tables of one number an element: variable to (title, title of the sum).
 ELEMENT_TITLES = {
     "ELSE": ("internal energy (element, energy)", "total internal energy"),
+    "ELKE": ("kinetic energy (elem, energy)", "total kinetic energy"),
     "EVOL": ("volume (element, volume)", "total volume"),
 }
+
+#: Energies per volume of which these are the sums.
+DENSITY = {"ELSE": "ENER", "ELKE": "EKEDEN"}
 
 
 def check_requests(steps: list[Step]) -> None:
@@ -210,14 +214,14 @@ def _at_points(frame: Frame, cells: Ints | None, name: str) -> tuple[Ints, Ints,
 
 
 def _per_element(frame: Frame, cells: Ints | None, name: str) -> tuple[Ints, Floats]:
-    """Cell and its volume or strain energy, in the set's order."""
+    """Cell and its volume or energy, in the set's order."""
 
     def take(block: PointFields) -> Floats | None:
         if name == "EVOL":
             return np.asarray(block.volume.sum(axis=1))
-        if "ENER" not in block.values:
-            return None
-        return np.asarray((block.values["ENER"] * block.volume).sum(axis=1))
+        # At rest there is no kinetic energy.
+        density = block.values.get(DENSITY[name], np.zeros_like(block.volume))
+        return np.asarray((density * block.volume).sum(axis=1))
 
     place, owners, values = _picked(frame, cells, take)
     if not owners:

@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.errors import InputError
 from corota.io.inp_cards_plastic import build_mises
+from corota.io.inp_lexer import key
 from corota.materials import Elastic, Orthotropic
 
 if TYPE_CHECKING:
@@ -37,9 +38,10 @@ def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
 
 
 def _law(draft: MaterialDraft) -> Material:
-    c, where = draft.constants, draft.law_where
+    c = draft.constants
+    common = _common(draft)
     if draft.law == "ISOTROPIC":
-        return Elastic(c[0], c[1], rho=draft.rho, name=draft.name, where=where)
+        return Elastic(c[0], c[1], **common)
     if draft.law == "LAMINA":
         # A lamina says nothing of the third direction: it is taken as the second one.
         values = [c[0], c[1], c[1], c[2], c[2], 0.0, c[3]]
@@ -47,7 +49,40 @@ def _law(draft: MaterialDraft) -> Material:
         values = c[:7]
     else:
         values = _from_stiffness(draft)
-    return Orthotropic(*values, rho=draft.rho, name=draft.name, where=where)
+    return Orthotropic(*values, **common)
+
+
+def _common(draft: MaterialDraft) -> dict[str, Any]:
+    """What a draft says that all materials have."""
+    return {
+        "rho": draft.rho, "rayleigh": draft.damping, "name": draft.name, "where": draft.law_where,
+    }  # fmt: skip
+
+
+def share_damping(deck: Deck) -> None:
+    """Damping that all used materials have alike becomes that of the model.
+
+    Point masses then take part, as in CalculiX, which has one damping for the whole model.
+    """
+    scopes = [deck.root, *deck.parts.values()]
+    names = {key(s.material) for scope in scopes for s in scope.sections}
+    used = [m for name, m in deck.materials.items() if name in names]
+    pairs = {m.damping for m in used}
+    if len(pairs) != 1:
+        if len(pairs) > 1:
+            deck.note(
+                "materials differ in *DAMPING: each damps its own elements (CalculiX takes the "
+                "last pair for the whole model)"
+            )
+        return
+    pair = pairs.pop()
+    if pair == (0.0, 0.0):
+        return
+    for material in used:
+        material.damping = (0.0, 0.0)
+    for step in deck.steps:
+        if step.options.get("rayleigh") == deck.damping:
+            step.options["rayleigh"] = tuple(a + b for a, b in zip(pair, deck.damping, strict=True))
 
 
 def _from_stiffness(draft: MaterialDraft) -> list[float]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io import inp_numbers
+from corota.io.inp_attachments import build_attachments
 from corota.io.inp_build_contact import build_contacts
-from corota.io.inp_build_materials import build_material
+from corota.io.inp_build_materials import build_material, share_damping
 from corota.io.inp_build_mesh import MeshBuilder, View, view_of
 from corota.io.inp_build_sets import Elements, Sets
 from corota.io.inp_build_ties import build_ties
@@ -51,12 +52,14 @@ class ModelBuilder:
     def build(self) -> Model:
         """Everything."""
         self.sets.fill()
+        share_damping(self.deck)
         self._sections()
         model, deck = self.model, self.deck
         build_ties(deck, model, self._nodes, self._tied, self.rotating)
         build_contacts(deck, model, self.sets, self._nodes, self.rotating)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
         model.supports = self._supports(deck.supports)
+        build_attachments(deck, model, self._nodes)
         for item in deck.velocities:
             nodes = self._nodes(item)
             if nodes is not None:
@@ -218,6 +221,7 @@ class ModelBuilder:
                         angle,
                         card.where,
                         mean_dilatation=draft.mean_dilatation,
+                        beta0=draft.beta0,
                     )
                 )
             except InputError as error:

@@ -12,7 +12,7 @@ from corota.io.inp_lexer import key
 from corota.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
-    from corota.io.inp_deck import Deck, StepDraft
+    from corota.io.inp_deck import Deck, MaterialDraft, StepDraft
     from corota.io.inp_lexer import Card
 
 
@@ -140,16 +140,18 @@ def modal_damping(deck: Deck, card: Card) -> None:
 
 
 def damping(deck: Deck, card: Card) -> None:
-    """``*DAMPING, ALPHA=, BETA=``: Rayleigh damping of the whole model."""
+    """``*DAMPING, ALPHA=, BETA=``: Rayleigh damping of a material, or of the whole model."""
     deck.no_rows(card)
     value = (
         deck.parameter_number(card, "ALPHA", 0.0, 0.0),
         deck.parameter_number(card, "BETA", 0.0, 0.0),
     )
-    if deck.damping not in ((0.0, 0.0), value):
-        deck.error(card, card.where, "damping differs from that given before; one for the model")
+    owner: Deck | MaterialDraft = deck if deck.material is None else deck.material
+    if owner.damping not in ((0.0, 0.0), value):
+        what = "the model" if deck.material is None else f"material {deck.material.name}"
+        deck.error(card, card.where, f"damping differs from that given before for {what}")
         return
-    deck.damping = value
+    owner.damping = value
 
 
 def initial_conditions(deck: Deck, card: Card) -> None:

@@ -139,6 +139,8 @@ def solid_section(deck: Deck, card: Card) -> None:
         card, "LOCALSTRAIN", ("SIMPLIFIED", "MODIFIED", "LOGARITHMIC"), "SIMPLIFIED"
     ).lower()
     mean = deck.choice(card, "DILATATION", ("POINT", "MEAN"), "POINT") == "MEAN"
+    # What is not positive, and elements without this weight, the section refuses.
+    beta0 = deck.parameter_number(card, "BETA0", 0.0, 0.0) if card.has("BETA0") else None
     rows = list(card.rows())
     thickness: float | None = 1.0
     if rows:
@@ -154,7 +156,7 @@ def solid_section(deck: Deck, card: Card) -> None:
     if elset and name and thickness is not None:
         deck.scope.sections.append(
             SectionDraft(
-                card, elset, name, thickness, plane, local, card.value("ORIENTATION"), mean
+                card, elset, name, thickness, plane, local, card.value("ORIENTATION"), mean, beta0
             )
         )
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from corota._core import parse_labels, parse_nodes, parse_table
 from corota.errors import Location
+from corota.io import inp_attachments as attachments
 from corota.io import inp_numbers
 from corota.io.inp_cards_contact import profile
 from corota.io.inp_deck import (
@@ -107,6 +108,9 @@ def element(deck: Deck, card: Card) -> None:
     if not name:
         return
     type_ = key(name)
+    if type_ in attachments.TYPES:
+        attachments.elements(deck, card, type_)
+        return
     if type_ in ELEMENTS:
         size = N_NODES[ELEMENTS[type_].kind]
     elif type_ in LINES:

@@ -18,7 +18,7 @@ Kind = Literal["node print", "el print", "contact print", "node file", "el file"
 #: Variables that are written, by the place where they live.
 WRITTEN = {
     "node": ("U", "RF", "UR"),
-    "el": ("S", "E", "PEEQ", "ENER", "ELSE", "EVOL"),
+    "el": ("S", "E", "PEEQ", "ENER", "ELSE", "ELKE", "EVOL"),
     "contact": ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS"),
 }
 #: Names of Abaqus for the same.
@@ -30,7 +30,7 @@ KNOWN = {
         "TM", "RM",
     ),
     "el": (
-        "ME", "PE", "ELKE", "EMAS", "COORD", "SDV", "ERR", "ZZS",
+        "ME", "PE", "EMAS", "COORD", "SDV", "ERR", "ZZS",
         "NOE", "LE", "EE", "MISES", "SP", "EP", "HFL", "HER", "MAXS", "MAXE", "PHS", "SF", "SVF",
         "PEMAG", "SENER", "ELEN", "STH", "NE", "THE", "CEEQ", "DG", "CENT",
     ),

@@ -180,7 +180,9 @@ def build_mises(deck: Deck, draft: MaterialDraft) -> Mises | None:
     if not p.ready or (p.cyclic_card is not None and p.cyclic is None):
         return None
     e, nu = draft.constants[:2]
-    common: dict[str, Any] = {"rho": draft.rho, "name": draft.name, "where": p.card.where}
+    common: dict[str, Any] = {
+        "rho": draft.rho, "rayleigh": draft.damping, "name": draft.name, "where": p.card.where,
+    }  # fmt: skip
     if p.kind == "ISOTROPIC":
         return Mises(e, nu, yield_curve=p.curve, rows=p.rows, **common)
     # The check of the curve names the row.

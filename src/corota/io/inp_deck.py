@@ -16,6 +16,7 @@ from corota.io.inp_lexer import Card, Row, key
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from corota.io.inp_attachments import AttachedDraft
     from corota.io.inp_cards_contact import InteractionDraft, PairDraft
     from corota.io.inp_cards_lines import LineDraft
     from corota.io.inp_cards_tie import TieDraft
@@ -107,6 +108,7 @@ class SectionDraft:
     local_strain: str
     orientation: str
     mean_dilatation: bool = False
+    beta0: float | None = None
 
 
 @dataclass(slots=True)
@@ -139,6 +141,7 @@ class MaterialDraft:
     law_where: Location | None = None
     law_card: Card | None = None
     rho: float = 0.0
+    damping: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDraft | None = None
     expansion: float | Expansion = 0.0
 
@@ -238,6 +241,7 @@ class Deck:
     velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
+    attached: list[AttachedDraft] = field(default_factory=list)
     rotation_nodes: dict[str, str] = field(default_factory=dict)
     pairs: list[PairDraft] = field(default_factory=list)
     interactions: dict[str, InteractionDraft] = field(default_factory=dict)

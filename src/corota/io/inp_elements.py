@@ -76,8 +76,8 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
     ),
     **dict.fromkeys(("M3D3", "M3D4", "M3D4R", "M3D6", "M3D8", "M3D8R"), _SOLID),
     **dict.fromkeys(
-        ("DASHPOTA", "GAPUNI", "MASS", "DCOUP3D", "ROTARYI"),
-        "dashpots, gaps and point masses of decks are not part of this version",
+        ("DASHPOT1", "DASHPOT2", "GAPUNI", "DCOUP3D", "ROTARYI"),
+        "of dashpots this version has DASHPOTA, of masses MASS, and no gaps",
     ),
     **dict.fromkeys(
         ("CPS4H", "CPE4H", "CPE4RH", "CPE4IH", "CPE8H", "CPE8RH", "CPE3H", "CPE6H"),

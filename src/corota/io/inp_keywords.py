@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from corota.io import inp_attachments as attachments
 from corota.io import inp_cards_assembly as assembly
 from corota.io import inp_cards_contact as contact
 from corota.io import inp_cards_dynamic as dynamic
@@ -78,7 +79,7 @@ KEYWORDS: dict[str, Keyword] = {
     ),
     "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
     "SOLIDSECTION": Keyword(
-        material.solid_section, "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION",
+        material.solid_section, "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0",
         "CONTROLS OFFSET", place="model",
     ),
     "SHELLSECTION": Keyword(
@@ -107,6 +108,8 @@ KEYWORDS: dict[str, Keyword] = {
     "STEADYSTATEDYNAMICS": Keyword(dynamic.steady_state, "", "SOLVER"),
     "MODALDAMPING": Keyword(dynamic.modal_damping, "RAYLEIGH", "MODAL"),
     "DAMPING": Keyword(dynamic.damping, "ALPHA BETA", place="model"),
+    "MASS": Keyword(attachments.mass, "ELSET", place="model"),
+    "DASHPOT": Keyword(attachments.dashpot, "ELSET", place="model"),
     "INITIALCONDITIONS": Keyword(dynamic.initial_conditions, "TYPE", place="model"),
     "EQUATION": Keyword(tie.equation, place="model"),
     "MPC": Keyword(tie.mpc, place="model"),
@@ -239,7 +242,7 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "MEMBRANESECTION", "FLUIDSECTION", "DASHPOT", "MASS", "USERELEMENT", "USERSECTION",
+            "MEMBRANESECTION", "FLUIDSECTION", "USERELEMENT", "USERSECTION",
             "ROTARYINERTIA", "TRUSSSECTION",
         ),
         _LINE,

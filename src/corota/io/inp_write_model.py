@@ -101,13 +101,6 @@ class _Writer:
         for name, what in _UNWRITTEN.items():
             if getattr(model, name):
                 raise UnsupportedError(f"{what} cannot be written to a deck: keep them in Python")
-        for number, section in enumerate(model.sections, start=1):
-            for name in ("mean_dilatation", "beta0"):
-                if getattr(section, name) not in (None, False):
-                    raise UnsupportedError(
-                        f"section {number}: {name} cannot be written to a deck: leave it out, or "
-                        "keep the model in Python"
-                    )
 
     def _mesh(self) -> Iterator[str]:
         mesh = self.mesh
@@ -152,6 +145,10 @@ class _Writer:
                 options += ", PLANE=STRAIN"
             if section.local_strain != "simplified":
                 options += f", LOCAL STRAIN={section.local_strain.upper()}"
+            if section.mean_dilatation:
+                options += ", DILATATION=MEAN"
+            if section.beta0 is not None:
+                options += f", BETA0={_number(section.beta0)}"
             if section.orientation != 0.0:
                 angle = section.orientation
                 if angle not in angles:
