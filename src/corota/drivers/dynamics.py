@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota import elements
 from corota.drivers.damping import damping_matrix
 from corota.drivers.explicit import explicit_step
 from corota.drivers.increments import SAME, Increments
@@ -79,8 +80,9 @@ def dynamic_step(
     control = Increments(step, stops)
     if not step.fixed_increments and step.first_increment >= step.period:
         control.size = step.period / 100.0
-    settings = Settings(step.tolerance, step.max_iterations)
+    settings = Settings(step.tolerance, step.max_iterations, reuse=system.touching is None)
     count = state.counters
+    turned: Floats | float = 0.0
     while not control.finished:
         if control.number >= step.max_increments:
             raise ConvergenceError(
@@ -130,7 +132,10 @@ def dynamic_step(
             assert touching.touch is not None
             book.accept(motion, touching.touch.force)
         now = motion.end
-        state.u, state.v, state.a = now.u, now.v, now.a
+        state.u, state.v, state.a = now.u + turned, now.v, now.a
+        if (more := _whole_turns(system, now.u)) is not None:
+            now.u = now.u - more
+            turned = turned + more
         state.at = outcome.at
         state.step_time = target
         state.work = book.external
@@ -170,6 +175,23 @@ def light_nodes(system: System, step: Dynamic) -> NDArray[np.bool_] | None:
         if not pair.tied:
             light[pair.slave.node_list] = True
     return light
+
+
+def _whole_turns(system: System, u: Floats) -> Floats | None:
+    """Whole turns that all rotations have made, or None; what is computed is the same without.
+
+    Rotations of many turns are rounded accordingly, and momenta with them. Line elements,
+    supports and constraints may know the number of turns.
+    """
+    mask = system.is_rotation
+    known = system.ties is not None or system.touching is not None
+    if known or not (mask.any() and system.turning):
+        return None
+    turns = np.round(float(u[mask].mean()) / (2.0 * np.pi))
+    lines = any(elements.find(b.section.element).line for b in system.blocks)
+    if turns == 0.0 or lines or system.conditions.held[mask].any():
+        return None
+    return np.where(mask, 2.0 * np.pi * turns, 0.0)
 
 
 def check_density(system: System) -> None:

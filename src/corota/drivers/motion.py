@@ -246,6 +246,10 @@ class NewmarkMotion:
         """Newton correction."""
         return self.system.predict(at, du_held)
 
+    def again(self, at: Evaluation) -> Floats:
+        """Newton correction with the last factorisation."""
+        return self.system.again(at)
+
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
         """Size of the residual."""
         return self.system.judge(at, u)
@@ -323,6 +327,10 @@ class ConservingMotion:
     def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
         """Newton correction."""
         return self.system.predict(at, du_held)
+
+    def again(self, at: Evaluation) -> Floats:
+        """Newton correction with the last factorisation."""
+        return self.system.again(at)
 
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
         """Size of the residual."""

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 FLOOR = 10.0
 #: Growth of the residual over its start that is given up as divergence.
 DIVERGED = 1e6
+#: Share of the tolerance that an iteration with the old tangent is expected to reach.
+CHORD = 0.1
 #: Shortest line search step.
 SHORTEST = 1.0 / 64.0
 
@@ -64,6 +66,7 @@ class SystemLike(Protocol[E]):
 
     def evaluate(self, u: Floats, step_time: float) -> E: ...
     def predict(self, at: E, du_held: Floats) -> tuple[Floats, int]: ...
+    def again(self, at: E) -> Floats: ...
     def judge(self, at: E, u: Floats) -> Judgement: ...
     def release(self, at: E) -> None: ...
 
@@ -94,6 +97,8 @@ class Settings:
 
     tolerance: float = 1e-9
     max_iterations: int = 16
+    #: Keep the last factorisation for an iteration that converges with it all the same.
+    reuse: bool = False
 
 
 @dataclass
@@ -180,7 +185,10 @@ def newton(
     best = size
     for iteration in range(1, settings.max_iterations + 1):
         try:
-            du, outcome.negative = system.predict(at, du_held)
+            if settings.reuse and not moved and _old_will_do(outcome.sizes, settings.tolerance):
+                du = system.again(at)
+            else:
+                du, outcome.negative = system.predict(at, du_held)
         except SingularError as error:
             if iteration == 1:
                 raise
@@ -230,6 +238,18 @@ def newton(
         f"no convergence in {settings.max_iterations} iterations (residual {outcome.sizes[-1]:.1e})"
     )
     return outcome
+
+
+def _old_will_do(sizes: list[float], tolerance: float) -> bool:
+    """Whether the tangent of the iteration before takes the residual below the tolerance.
+
+    It is wrong by about the last correction, so it reduces the residual by about the same
+    factor once more, where a new tangent would square it.
+    """
+    if len(sizes) < 3:
+        return False
+    before, now = sizes[-2:]
+    return now * now <= CHORD * tolerance * before
 
 
 def _search(

@@ -379,6 +379,10 @@ class System:
         """
         return self._correct(at, at.external - at.internal, du_held)
 
+    def again(self, at: Evaluation) -> Floats:
+        """Newton correction with the last factorisation; held dofs stay."""
+        return self.solve_again(-at.residual)
+
     def correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Factorise the tangent at a state and solve for one or several right-hand sides.
 
