@@ -73,23 +73,30 @@ NOTCH = (2 + np.pi) / 3**0.5
 @pytest.mark.parametrize(
     ("element", "mean", "meshes", "within"),
     [
-        ("Q4", True, (4, 8), 0.01),
-        ("Q4D", True, (8, 12), 0.01),
-        ("Q8", False, (4, 8), 0.01),
-        ("Q8R", False, (4, 8), 0.013),
-        ("Q4I", False, (4, 8), 0.01),
+        ("Q4", True, (8, 20), 0.01),
+        ("Q4D", True, (8, 12), 0.06),
+        ("Q8", False, (4, 8), 0.03),
+        ("Q8R", False, (4, 8), 0.02),
+        ("Q4I", False, (4, 8), 0.03),
     ],
 )
 def test_double_notch_does_not_lock(
     element: str, mean: bool, meshes: tuple[int, int], within: float
 ) -> None:
-    """Limit load (2 + pi)/sqrt 3 on the ligament, approached with the mesh."""
+    """Limit load (2 + pi)/sqrt 3 on the ligament, approached from above with the mesh.
+
+    Pulled until the load rises no more: before that it passes the limit on its way. The others
+    come within 1 % on finer meshes (Q8R with 12 cells, Q8 and Q4I with 16).
+    """
     errors = []
     for n in meshes:
-        pull = 0.2 if element == "Q8R" else 0.15
-        model = notched(element, n, pull, mean_dilatation=mean)
-        results = ct.solve(model, ct.Static(nlgeom=False, increments=10), threads=1)
+        model = notched(element, n, 0.3, mean_dilatation=mean)
+        step = ct.Static(nlgeom=False, increments=10)
+        results = ct.solve(model, step, threads=1, fields=False)
         top = find(model.mesh, 1, 15.0)
-        errors.append(abs(results.frames[-1].RF[top, 1].sum() / 450.0 / NOTCH - 1.0))
-    assert errors[1] < within, errors
-    assert errors[1] < 0.7 * errors[0], errors
+        loads = [f.RF[top, 1].sum() / 450.0 / NOTCH for f in results.frames[-2:]]
+        assert abs(loads[1] - loads[0]) < 5e-3
+        errors.append(loads[1] - 1.0)
+    assert 0.0 < errors[1] < within, errors
+    # First order: the strain is infinite at the notch.
+    assert errors[1] < 1.2 * meshes[0] / meshes[1] * errors[0], errors

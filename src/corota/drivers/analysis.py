@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.drivers.motion import add_kinetic
 from corota.drivers.observers import Observers
 from corota.drivers.registry import PROCEDURES
 from corota.drivers.solvers import SOLVERS
@@ -215,7 +216,7 @@ class Analysis:
                 fields, sums = system.recover(state.u)
                 step = self.steps[number - 1]
                 if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
-                    system.add_kinetic(fields, state.u, state.v, step)
+                    add_kinetic(system, fields, state.u, state.v, step)
             strain = sums.pop("largest simplified strain")
             scalars = {**scalars, **sums}
             if strain > LARGE_STRAIN and "strain" not in self.warned:

@@ -80,7 +80,8 @@ def dynamic_step(
     control = Increments(step, stops)
     if not step.fixed_increments and step.first_increment >= step.period:
         control.size = step.period / 100.0
-    settings = Settings(step.tolerance, step.max_iterations, reuse=system.touching is None)
+    again = system.again if system.touching is None else None
+    settings = Settings(step.tolerance, step.max_iterations, again)
     count = state.counters
     turned: Floats | float = 0.0
     while not control.finished:

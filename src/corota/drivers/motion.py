@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from corota.drivers.newton import Judgement
     from corota.drivers.schemes import Scheme
     from corota.drivers.system import System
+    from corota.results import PointFields
+    from corota.steps import Step
 
     Floats = NDArray[np.float64]
 
@@ -246,10 +248,6 @@ class NewmarkMotion:
         """Newton correction."""
         return self.system.predict(at, du_held)
 
-    def again(self, at: Evaluation) -> Floats:
-        """Newton correction with the last factorisation."""
-        return self.system.again(at)
-
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
         """Size of the residual."""
         return self.system.judge(at, u)
@@ -328,10 +326,6 @@ class ConservingMotion:
         """Newton correction."""
         return self.system.predict(at, du_held)
 
-    def again(self, at: Evaluation) -> Floats:
-        """Newton correction with the last factorisation."""
-        return self.system.again(at)
-
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
         """Size of the residual."""
         return self.system.judge(at, u)
@@ -339,3 +333,16 @@ class ConservingMotion:
     def release(self, at: Evaluation) -> None:
         """Take the memory of a tangent back."""
         self.system.release(at)
+
+def add_kinetic(
+    system: System, fields: list[PointFields], u: Floats, v: Floats, step: Step
+) -> None:
+    """Give fields the kinetic energy of their elements, per volume."""
+    kind, scheme = (getattr(step, name, "") for name in ("mass", "scheme"))
+    x, rate = system.in_space(u), system.in_space(v)
+    for number, block in enumerate(fields):
+        carried = scheme == "energy_momentum"
+        each = system.core.kinetic(number, x, rate, kind or "consistent", carried)
+        volume = block.volume.sum(axis=1)
+        density = np.divide(each, volume, out=np.zeros_like(each), where=volume > 0.0)
+        block.values["EKEDEN"] = np.repeat(density[:, None], block.volume.shape[1], axis=1)

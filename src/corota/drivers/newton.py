@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -66,7 +66,6 @@ class SystemLike(Protocol[E]):
 
     def evaluate(self, u: Floats, step_time: float) -> E: ...
     def predict(self, at: E, du_held: Floats) -> tuple[Floats, int]: ...
-    def again(self, at: E) -> Floats: ...
     def judge(self, at: E, u: Floats) -> Judgement: ...
     def release(self, at: E) -> None: ...
 
@@ -97,8 +96,8 @@ class Settings:
 
     tolerance: float = 1e-9
     max_iterations: int = 16
-    #: Keep the last factorisation for an iteration that converges with it all the same.
-    reuse: bool = False
+    #: Corrects with the last factorisation, for an iteration that converges with it all the same.
+    reuse: Callable[[Any], Floats] | None = None
 
 
 @dataclass
@@ -185,8 +184,9 @@ def newton(
     best = size
     for iteration in range(1, settings.max_iterations + 1):
         try:
-            if settings.reuse and not moved and _old_will_do(outcome.sizes, settings.tolerance):
-                du = system.again(at)
+            again = settings.reuse
+            if again and not moved and _old_will_do(outcome.sizes, settings.tolerance):
+                du = again(at)
             else:
                 du, outcome.negative = system.predict(at, du_held)
         except SingularError as error:

@@ -18,6 +18,7 @@ from corota.errors import (
     SingularError,
     UnsupportedError,
 )
+from corota.materials_plastic import Mises
 from corota.paths import ArcLength
 from corota.results import Iteration
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from corota.drivers.observers import Observers
     from corota.drivers.state import State
     from corota.drivers.system import System
+    from corota.model import Section
     from corota.steps import Static
 
     Floats = NDArray[np.float64]
@@ -273,4 +275,13 @@ def _reason(
             "ahead, the structure cannot carry more this way; prescribe a displacement "
             "instead of the load"
         )
+    if any(_softens(b.section) for b in system.blocks):
+        where += (
+            ". Plastic flow with the local strain 'modified' softens under compression where "
+            "hardening is below the yield stress: take 'logarithmic'"
+        )
     return where + ". All converged increments are kept"
+
+
+def _softens(section: Section) -> bool:
+    return section.local_strain == "modified" and isinstance(section.material, Mises)

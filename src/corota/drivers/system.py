@@ -250,8 +250,7 @@ class System:
 
     def product(self, values: Floats, x: Floats) -> Floats:
         """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
-        out: Floats = self.at_nodes(self.core.multiply(values, self.in_space(x)))
-        return out
+        return self.at_nodes(self.core.multiply(values, self.in_space(x)))
 
     def heat(self, step_time: float) -> None:
         """Give the elements the thermal strain of a time of the step."""
@@ -572,18 +571,6 @@ class System:
                 )
             )
         return fields, {"strain energy": energy, "largest simplified strain": strain}
-
-    def add_kinetic(self, fields: list[PointFields], u: Floats, v: Floats, step: Step) -> None:
-        """Give fields the kinetic energy of their elements, per volume."""
-        kind, scheme = (getattr(step, name, "") for name in ("mass", "scheme"))
-        x, rate = self.in_space(u), self.in_space(v)
-        for number, block in enumerate(fields):
-            each = self.core.kinetic(
-                number, x, rate, kind or "consistent", scheme == "energy_momentum"
-            )
-            volume = block.volume.sum(axis=1)
-            density = np.divide(each, volume, out=np.zeros_like(each), where=volume > 0.0)
-            block.values["EKEDEN"] = np.repeat(density[:, None], block.volume.shape[1], axis=1)
 
 
 def failure(labels: list[int]) -> ElementFailure:
