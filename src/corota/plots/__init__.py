@@ -13,5 +13,6 @@ from corota.plots.model import model
 from corota.plots.motion import energies, modes, response
 
 __all__ = [
-    "animate", "contact_line", "contour", "curve", "energies", "model", "modes", "response", "status",
+    "animate", "contact_line", "contour", "curve", "energies", "model", "modes", "response",
+    "status",
 ]  # fmt: skip
