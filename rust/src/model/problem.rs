@@ -86,7 +86,6 @@ pub struct Problem {
     held: Held,
     assemble_race: Race,
     recover_race: Race,
-    /// Blocks that take part in assembly and inertia; empty for all.
     active: Vec<bool>,
 }
 
@@ -149,12 +148,8 @@ impl Problem {
     }
 
     /// Let only these blocks take part in assembly and inertia; empty for all.
-    pub fn set_active(&mut self, active: Vec<bool>) -> Result<(), String> {
-        if !active.is_empty() && active.len() != self.blocks.len() {
-            return Err(format!("{} flags for {} blocks", active.len(), self.blocks.len()));
-        }
+    pub fn set_active(&mut self, active: Vec<bool>) {
         self.active = active;
-        Ok(())
     }
 
     /// Internal force, its scale, and with a non-empty `values` the tangent's upper triangle.
@@ -308,9 +303,7 @@ impl Problem {
         kind: MassKind,
         carried: bool,
     ) -> Result<Vec<f64>, String> {
-        let Some(own) = self.blocks.get(block) else {
-            return Err(format!("no block {block}"));
-        };
+        let own = self.blocks.get(block).ok_or_else(|| format!("no block {block}"))?;
         let mut each = vec![0.0; own.n_elements];
         let context = self.at_rest(u);
         let mut sums = Momenta::default();

@@ -131,8 +131,8 @@ impl PyProblem {
     }
 
     /// Let only these blocks take part in ``assemble`` and ``inertia``; empty for all.
-    fn set_active(&mut self, active: Vec<bool>) -> PyResult<()> {
-        self.inner.set_active(active).map_err(value_error)
+    fn set_active(&mut self, active: Vec<bool>) {
+        self.inner.set_active(active);
     }
 
     /// Fill ``force``, ``scale`` and, unless it is empty, ``values`` (upper triangle).

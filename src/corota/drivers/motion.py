@@ -334,6 +334,7 @@ class ConservingMotion:
         """Take the memory of a tangent back."""
         self.system.release(at)
 
+
 def add_kinetic(
     system: System, fields: list[PointFields], u: Floats, v: Floats, step: Step
 ) -> None:
