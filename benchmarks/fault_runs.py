@@ -122,7 +122,10 @@ def judged(code: int, said: str, folder: Path, name: str) -> str:
     if code == 0 and "corota: error" in said:
         return "an error with exit 0"
     if code == 0:
-        fault = sound_results(folder, name)
+        try:
+            fault = sound_results(folder, name)
+        except Exception as error:
+            fault = f"broken results behind exit 0: {type(error).__name__}: {str(error)[-60:]}"
         if fault:
             return fault
     return f"exit {code}"

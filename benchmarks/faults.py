@@ -121,6 +121,8 @@ def main() -> int:
                 outcomes += future.result()
             except BrokenProcessPool:
                 outcomes[f"{part[0]}: crash of the process of seed {part[2]}"] += 1
+            except Exception as error:
+                outcomes[f"{part[0]}: failure of the campaign: {error!r:.80}"] += 1
             if number % 10 == 0:
                 sys.stderr.write(f"{number} of {len(parts)} parts\n")
     rows = [[name, count] for name, count in sorted(outcomes.items())]

@@ -14,6 +14,7 @@ from decks import DECK, MESH, SECTION, SUPPORT, faults
 from seeds import SEEDS
 
 import corota as ct
+from corota.io.vtkhdf import VtkhdfWriter
 
 STEP = "*STEP\n*STATIC\n*DLOAD\n{}\n*END STEP\n"
 BUCKLE = "*STEP\n*BUCKLE\n1\n*MODAL DAMPING\n1, 2, .02\n*CLOAD\n3, 1, -5.\n*END STEP\n"
@@ -85,3 +86,27 @@ def test_damaged_results_are_refused(tmp_path: Path) -> None:
         except ct.errors.FileError:
             outcomes.add("refused")
     assert outcomes == {"read", "refused"}
+
+
+def test_arrays_that_only_an_earlier_step_had_do_not_spoil_the_file(tmp_path: Path) -> None:
+    """Velocities of a dynamic step, then a static one: the whole file could not be read."""
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1), name="two")
+    model.section("all", element="Q4I", material=ct.Elastic(E=100.0, nu=0.3, rho=1.0))
+    model.fix("left")
+    model.force("right", y=-0.1)
+    steps = [ct.Dynamic(period=0.2, increments=2), ct.Static(increments=2)]
+    results = ct.solve(model, steps, threads=1)
+    writer = VtkhdfWriter(tmp_path / "two.vtkhdf", model)
+    for frame in results.frames:
+        writer.add(frame)
+        # One frame a commit, as in runs whose increments take their time.
+        writer.commit()
+    writer.close()
+    with ct.read_results(tmp_path / "two.vtkhdf") as stored:
+        assert len(stored.frames) == len(results.frames)
+        for mine, theirs in zip(results.frames, stored.frames, strict=True):
+            assert np.array_equal(mine.U, theirs.U)
+            if mine.V is not None:
+                assert np.allclose(mine.V, theirs.V)
+            for name, value in mine.scalars.items():
+                assert theirs.scalars[name] == value

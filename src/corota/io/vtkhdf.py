@@ -145,6 +145,7 @@ class VtkhdfWriter:
         self._root = self._file.create_group("VTKHDF", track_order=True)
         self._index = self._static()
         self._count = 0
+        self._known: dict[tuple[str, str], Floats] = {}
         self._taken: list[tuple[float, dict[str, dict[str, Floats]]]] = []
 
     def _static(self) -> Ints:
@@ -243,6 +244,14 @@ class VtkhdfWriter:
             rows = [data.get(place, {}).get(name) for _, data in self._taken]
             full = [np.zeros_like(like) if r is None else r for r in rows]
             self._series(place, name, like, end)[first * len(like) :] = np.concatenate(full)
+        for (place, name), like in self._known.items():
+            if (place, name) not in names:
+                # An array of an earlier step, such as velocities: zero from here on.
+                self._series(place, name, like, end)
+        # Shapes only: the numbers are on disk.
+        self._known |= {
+            key: np.broadcast_to(np.zeros(1, like.dtype), like.shape) for key, like in names.items()
+        }
         steps = self._root["Steps"]
         for name in ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"):
             steps[name].resize(end, axis=0)  # what a data set is extended by is 0
