@@ -139,7 +139,8 @@ impl Case {
             problem.give(0, &given(ELEMENTS * problem.blocks[0].facts.n_points)).unwrap();
         }
         let values = 4 * ELEMENTS * problem.blocks[0].facts.n_points;
-        let initial: Vec<f64> = (0..values).map(|i| 0.01 * (i as f64).sin()).collect();
+        // As large as the strain of first yield; more is too much for the histories that follow.
+        let initial: Vec<f64> = (0..values).map(|i| 0.001 * (i as f64).sin()).collect();
         problem.set_initial(0, &initial).unwrap();
         let (n, nnz) = (problem.dofs.n_dofs(), problem.dofs.indices.len());
         let mut failed = Vec::new();
