@@ -58,7 +58,7 @@ def measure() -> Iterator[Value]:
 
 def picture() -> Picture:
     """Lee's frame at the end of its path."""
-    return Picture(solved("Lee's frame")[0], "N")
+    return Picture(solved("Lee's frame")[0].model)
 
 
 def curve() -> Curve:
