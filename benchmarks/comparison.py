@@ -14,6 +14,7 @@ import argparse
 import json
 import math
 import sys
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -138,6 +139,14 @@ def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> st
     return table(head, rows)
 
 
+def has_all(case: Case, records: list[dict[str, Any]], variant: str) -> bool:
+    """Whether every element of a variant was run."""
+    return all(
+        any((r["element"], r["variant"]) == (element, variant) for r in records)
+        for element in case.elements
+    )
+
+
 def marks(name: str) -> tuple[str, str]:
     """Lines of the page between which a case's part is written."""
     return f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
@@ -177,6 +186,9 @@ def main() -> int:
             KEPT.write_text(json.dumps(kept), encoding="utf-8")
         if case.name not in kept:
             continue
+        # What was stopped half-way is shown as far as it came.
+        done = [v for v in case.variants if has_all(case, kept[case.name], v)]
+        case = replace(case, variants=done)
         if args.write:
             write(case, kept[case.name])
         sys.stdout.write(f"\n### {case.title}\n\n{machine()}\n\n{tables(case, kept[case.name])}\n")
