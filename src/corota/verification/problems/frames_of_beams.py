@@ -57,7 +57,7 @@ def measure() -> Iterator[Value]:
 
 
 def picture() -> Picture:
-    """Lee's frame at the end of its path."""
+    """The model of Lee's frame."""
     return Picture(solved("Lee's frame")[0].model)
 
 

@@ -90,7 +90,7 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Error of the period against increments a period."""
-    counts = (50, 100, 200, 400)
+    counts = (100, 200, 400)
     errors = [abs(period(swing("Q4I", 1.6, n)) / PERIOD - 1.0) for n in counts]
     return Study("error of the period, down to the flexibility", {
         "Q4I": ([float(n) for n in counts], errors)}, "increments a period")  # fmt: skip
