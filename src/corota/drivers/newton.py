@@ -27,7 +27,7 @@ FLOOR = 10.0
 #: Growth of the residual over its start that is given up as divergence.
 DIVERGED = 1e6
 #: Share of the tolerance that an iteration with the old tangent is expected to reach.
-CHORD = 0.1
+CHORD = 0.01
 #: Shortest line search step.
 SHORTEST = 1.0 / 64.0
 
