@@ -49,7 +49,8 @@ def main() -> int:
         try:
             ct.mesh.read(path) if path.suffix == ".msh" else ct.read(path)
         except ct.CorotaError as error:
-            assert str(error).strip(), "a refusal without a message"
+            if not str(error).strip():
+                raise RuntimeError("a refusal without a message") from error
 
     options = [f"-max_total_time={seconds}", f"-timeout={LIMIT}", f"-max_len={LONGEST}"]
     atheris.Setup([sys.argv[0], str(corpus), *options], one)
