@@ -22,7 +22,7 @@ from corota.verification.beam_models import (
     von_mises_truss,
     williams_toggle,
 )
-from corota.verification.catalogue import Curve, Picture, Problem, Value
+from corota.verification.catalogue import Curve, Problem, Value
 from corota.verification.models import run
 
 #: Model, last displacement, and the exact load factors at the limit points.
@@ -56,11 +56,6 @@ def measure() -> Iterator[Value]:
                 yield Value(f"{name}: {which} limit load{said}", load, point.factor, tolerance)
 
 
-def picture() -> Picture:
-    """The model of Lee's frame."""
-    return Picture(solved("Lee's frame")[0].model)
-
-
 def curve() -> Curve:
     """Load against displacement of the loaded point of Lee's frame."""
     results, node = solved("Lee's frame")
@@ -80,7 +75,6 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="chords of the elements stand for the curve: an error of the square of their length",
     measure=measure,
-    picture=picture,
     curve=curve,
     seconds=8.0,
 )
