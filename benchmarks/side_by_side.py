@@ -1,9 +1,9 @@
 """Corota and its peers on the same problems, in turn, in one run: times, memory and results.
 
 P1 (large rotation), P2 (plasticity), P3 (contact), P3f (with friction), P4 (transient) and P4x2
-(twice the load) on meshes from 400 to a million dofs. Every program is a process of its own under GNU ``time``; in each round all of
-them run one after the other, so that a disturbance meets them alike, and medians are compared. Two
-groups:
+(twice the load) on meshes from 400 to a million dofs. Every program is a process of its own under
+GNU ``time``; in each round all of them run one after the other, so that a disturbance meets them
+alike, and medians are compared. Two groups:
 
 * *increments*: what the increments take, reading and output left out, driven from Python;
 * *deck*: the whole process with reading and writing, the same file in Corota and CalculiX.
@@ -164,8 +164,9 @@ def run(
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--problems", nargs="+", default=list(SIZES), choices=list(SIZES))
-    parser.add_argument("--sizes", nargs="+", default=["400", "1k", "4k", "33k", "40k"],
-                        choices=list(dict.fromkeys(k for s in SIZES.values() for k in s)))  # fmt: skip
+    known = list(dict.fromkeys(size for sizes in SIZES.values() for size in sizes))
+    usual = ["400", "1k", "4k", "33k", "40k"]
+    parser.add_argument("--sizes", nargs="+", default=usual, choices=known)
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2])
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="longest time of a run [s]")
