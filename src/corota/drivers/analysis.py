@@ -13,7 +13,7 @@ import numpy as np
 from corota.drivers.localising import localised
 from corota.drivers.motion import add_kinetic
 from corota.drivers.observers import Observers
-from corota.drivers.registry import PROCEDURES
+from corota.drivers.registry import PROCEDURES, procedure
 from corota.drivers.solvers import SOLVERS
 from corota.drivers.state import State
 from corota.drivers.system import System
@@ -192,7 +192,8 @@ class Analysis:
             self._save(number, state, increment, factor, scalars)
 
         stops = self._stops(step)
-        PROCEDURES[step.procedure](system, step, number, state, self.observers, save, stops)
+        run = procedure(step.procedure)
+        run(system, step, number, state, self.observers, save, stops)
         assert state.at is not None
         state.time += state.step_time
         state.step_time = 0.0

@@ -343,7 +343,8 @@ class Bordered:
         # Multipliers of one pair do not couple with each other.
         good &= (np.minimum(a, b) < self.nf) | (a == b)
         a, b = a[good], b[good]
-        return np.maximum(a, b) * self.size + np.minimum(a, b)
+        keys: Ints = np.maximum(a, b) * self.size + np.minimum(a, b)
+        return keys
 
     def _multiply(self, data: Floats, x: Floats) -> Floats:
         """Product of the symmetric matrix with a vector that is mostly zero."""
