@@ -97,5 +97,3 @@ def test_procedures_without_contact():
     model.contact("up.bottom", "low.top")
     with pytest.raises(ct.UnsupportedError, match="takes no contact pairs or ties"):
         ct.solve(model, ct.Frequency(modes=1), threads=1)
-    with pytest.raises(ct.UnsupportedError, match="follows a path takes no contact"):
-        ct.solve(model, ct.Static(path=ct.ArcLength()), threads=1)

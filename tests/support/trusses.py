@@ -46,6 +46,7 @@ class Truss:
         self.move = np.zeros(n) if move is None else np.asarray(move, float)
         self.held = np.zeros(n, bool)
         self.held[held] = True
+        self.n_dofs = n
         self.springs = springs or {}
         self.counted = np.ones(n, bool)
         self.length = float(np.ptp(self.joints, axis=0).max())
@@ -91,6 +92,25 @@ class Truss:
         except np.linalg.LinAlgError:
             raise SingularError("singular") from None
         return x, int((np.linalg.eigvalsh(self.last) < 0.0).sum())
+
+    def advance(self, at, force, move):
+        columns = [(-at.residual, np.zeros_like(move)), (force, move)]
+        return tuple(self.correct(at, rhs, held)[0] for rhs, held in columns)
+
+    def rate(self, at, force, move):
+        return self.correct(at, force, move)
+
+    def restart(self, loose=False):
+        pass
+
+    def refuse(self, at, u):
+        return ""
+
+    def explain(self, at):
+        return ""
+
+    def ahead(self, at, rate):
+        return 0.0
 
     def solve_again(self, rhs):
         x = np.zeros_like(rhs)

@@ -16,6 +16,7 @@ from corota.drivers.controls import Row
 from corota.drivers.corrector import Point
 from corota.drivers.newton import ElementFailure, Settings
 from corota.drivers.path import End, Follower, PathStalled, Plan
+from corota.drivers.path_system import path_system
 from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
 from corota.paths import ArcLength, CriticalPoint, DisplacementControl, Label, dof_index
 from corota.results import Iteration
@@ -35,12 +36,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Save = Callable[[State, int, float, dict[str, float]], None]
-
-#: What cannot be judged when the tangent is not symmetric.
-NOT_CONSERVATIVE = (
-    "the loads follow the structure and have no potential: the tangent is not symmetric, its "
-    "pivots do not tell stability (non-conservative: use dynamics)"
-)
 
 
 def path_step(
@@ -99,12 +94,14 @@ class PathStep:
         self.system, self.step, self.number, self.state = system, step, number, state
         self.observers, self.save = observers, save
         self.factor, self.increment = factor, increment
+        self.along = path_system(system, state.notes)
 
     def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
         """Follow the path to its end."""
         system, step, state = self.system, self.step, self.state
         period = step.period
-        at = system.evaluate(state.u, self.factor * period)
+        start = self.along.start(state.u)
+        at = self.along.evaluate(start, self.factor * period)
         force, move = system.load_rate(state.u)
         heats = system.free.largest(system.conditions.heating) > 0.0
         if not (np.any(force[~system.conditions.held]) or np.any(move) or heats):
@@ -114,10 +111,10 @@ class PathStep:
                 step.where,
             )
         follower = Follower(
-            system,
-            Point(state.u, self.factor, at),
+            self.along,
+            Point(start, self.factor, at),
             period,
-            Settings(step.tolerance, step.max_iterations),
+            Settings(step.tolerance, step.max_iterations + self.along.more_iterations),
             self._plan(path),
             self._report,
             self._cut_back,
@@ -147,7 +144,9 @@ class PathStep:
             # The factorisation has changed the tangent's held rows in place.
             system.conditions.end_time = self.factor * period
             try:
-                state.at = system.evaluate(state.u, self.factor * period)
+                self.along.restart()
+                z = self.along.start(state.u)
+                state.at = self.along.plain(self.along.evaluate(z, self.factor * period))
             except ElementFailure as error:
                 raise ConvergenceError(
                     f"step {self.number} stopped on its path at load factor {self.factor:.6g}: "
@@ -159,41 +158,42 @@ class PathStep:
 
     def _accept(self, found: Increment) -> CriticalPoint | None:
         state, system = self.state, self.system
-        before, point = state.at, found.point
+        before, at, u = state.at, self.along.plain(found.point.at), found.point.u[: system.n_dofs]
         if before is not None:
-            du = point.u - state.u
+            du = u - state.u
             held = system.conditions.held
             old = system.conditions.external(self.factor * self.step.period, state.u)[0]
-            mean = 0.5 * (old + point.at.external)
-            pull = system.reaction(point.at) + before.internal - old
+            mean = 0.5 * (old + at.external)
+            pull = system.reaction(at) + before.internal - old
             if before.link is not None:
                 pull += before.link.gather(before.internal - old) - (before.internal - old)
             mean[held] += 0.5 * pull[held]
             state.work += float(np.einsum("i,i->", mean, du))
-        state.u, state.at = point.u, point.at
+        state.u, state.at = u, at
         state.step_time += found.size * self.step.period
         state.negative = found.negative
-        self.factor = point.factor
+        self.factor = found.point.factor
         self.increment += 1
         scalars = {
             "dt": found.size * self.step.period,
             "iterations": float(found.iterations),
             "attempts": float(found.attempts),
-            "residual": system.judge(point.at, point.u).size,
+            "residual": system.judge(at, u).size,
             "external work": state.work,
             "negative pivots": float(found.negative),
         }
-        if found.negative < 0 and NOT_CONSERVATIVE not in state.notes:
-            state.notes.append(NOT_CONSERVATIVE)
+        if found.negative < 0 and self.along.not_conservative not in state.notes:
+            state.notes.append(self.along.not_conservative)
         if found.negative >= 0:
             scalars["stable"] = float(found.negative == 0)
         critical = None
         if found.critical is not None:
+            assert found.critical.kind != "kink"
             kind = found.critical.kind
             scalars[f"{kind} point"] = 1.0
             critical = CriticalPoint(
                 kind, self.number, self.increment, self.factor,
-                system.by_node(found.critical.mode), found.critical.projection,
+                system.by_node(found.critical.mode[: system.n_dofs]), found.critical.projection,
                 found.critical.negative,
             )  # fmt: skip
             state.critical.append(critical)
@@ -304,4 +304,4 @@ class PathStep:
         return Row(np.array(dofs), np.array(weights), 0.0)
 
 
-__all__ = ["NOT_CONSERVATIVE", "path_step"]
+__all__ = ["path_step"]

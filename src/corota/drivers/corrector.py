@@ -7,12 +7,12 @@ The bordered system is solved by elimination: one factorisation, two right-hand 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.drivers.controls import product
-from corota.drivers.newton import DIVERGED, ElementFailure, Judgement, Settings
+from corota.drivers.newton import DIVERGED, ElementFailure, GiveUp, Judgement, Settings
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -21,47 +21,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.drivers.controls import Control
+    from corota.drivers.path_system import PathSystem
 
     Floats = NDArray[np.float64]
     Mask = NDArray[np.bool_]
-
-
-class PathSystem(Protocol):
-    """A system whose load has a factor: see :class:`corota.drivers.system.System`."""
-
-    @property
-    def counted(self) -> Mask:
-        """Dofs that measure lengths, shape (n_dofs,)."""
-        ...
-
-    @property
-    def length(self) -> float:
-        """Size of the structure [length]."""
-        ...
-
-    def evaluate(self, u: Floats, step_time: float) -> Any:
-        """Residual and tangent."""
-        ...
-
-    def judge(self, at: Any, u: Floats) -> Judgement:
-        """Size of the residual."""
-        ...
-
-    def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
-        """Change of forces and of held dofs per unit of load factor."""
-        ...
-
-    def correct(self, at: Any, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
-        """Factorise and solve for several columns."""
-        ...
-
-    def solve_again(self, rhs: Floats) -> Floats:
-        """Solve with the last factorisation, held dofs at rest."""
-        ...
-
-    def commit(self) -> None:
-        """Accept the last evaluated state."""
-        ...
 
 
 @dataclass
@@ -90,6 +53,10 @@ class Tangent:
     u: Floats
     factor: float
     negative: int
+
+    def reversed(self) -> Tangent:
+        """The other sense."""
+        return Tangent(-self.u, -self.factor, self.negative)
 
 
 @dataclass
@@ -149,6 +116,7 @@ def correct(
     control: Control,
     settings: Settings,
     report: Callable[[int, Judgement, float, float], None] | None = None,
+    loose: bool = False,
 ) -> Corrected:
     """Find the equilibrium that meets a control, starting from a guess.
 
@@ -166,20 +134,46 @@ def correct(
     settings : Settings
     report : callable, optional
         Told iteration, judgement, largest correction and load factor.
+    loose : bool
+        Whether what moves freely may be brought to a hold.
 
     Returns
     -------
     Corrected
     """
     done = Corrected(None)
-    best = np.inf
-    judged, correction = None, 0.0
+    system.restart(loose)
+    at = _search(done, system, base, u, factor, period, control, settings, report)
+    if done.point is not None:
+        done.reason = system.refuse(at, done.point.u)
+        if done.reason:
+            done.point = None
+    if done.point is None and at is not None:
+        done.reason += system.explain(at)
+    return done
+
+
+def _search(
+    done: Corrected,
+    system: PathSystem,
+    base: Point,
+    u: Floats,
+    factor: float,
+    period: float,
+    control: Control,
+    settings: Settings,
+    report: Callable[[int, Judgement, float, float], None] | None,
+) -> Any:
+    """Fill in what became of an attempt; returns the last evaluation, None if there is none."""
+    n, best, at = system.n_dofs, np.inf, None
+    judged: Judgement | None = None
+    correction = 0.0
     for iteration in range(settings.max_iterations + 1):
         try:
             at = system.evaluate(u, factor * period)
         except ElementFailure as error:
             done.reason = str(error)
-            return done
+            return at
         before, judged = judged, system.judge(at, u)
         done.sizes.append(judged.size)
         done.iterations = iteration
@@ -187,36 +181,37 @@ def correct(
             report(iteration, judged, correction, factor)
         if not np.isfinite(judged.size):
             done.reason = "the residual is not finite"
-            return done
+            return at
         stalled = before is not None and judged.size >= 0.1 * before.size
         if judged.size <= settings.tolerance or (stalled and judged.rounding(settings.tolerance)):
             done.point = Point(u, factor, at)
-            return done
+            return at
         if iteration > 1 and judged.size > DIVERGED * max(best, 1e-6):
             done.reason = f"diverges: the residual grew to {judged.size:.1e}"
-            return done
+            return at
         best = min(best, judged.size)
         if iteration == settings.max_iterations:
             break
         force, move = system.load_rate(u)
-        rhs = np.stack([-at.residual, force], axis=1)
-        held = np.stack([np.zeros_like(move), move], axis=1)
         try:
-            x, _ = system.correct(at, np.asfortranarray(rhs), np.asfortranarray(held))
+            a, b = system.advance(at, force, move)
         except SingularError as error:
             done.reason, done.singular = str(error), error
-            return done
-        change = control.change(u - base.u, factor - base.factor, x[:, 0], x[:, 1])
-        if change is None or not np.isfinite(x).all():
+            return at
+        except GiveUp as error:
+            done.reason = str(error)
+            return at
+        change = control.change(u - base.u, factor - base.factor, a, b)
+        du = a if change is None else a + change * b
+        if change is None or not np.isfinite(du).all():
             done.reason = "no equilibrium near the guess at this length"
-            return done
-        du = x[:, 0] + change * x[:, 1]
-        correction = float(np.abs(du).max(initial=0.0))
+            return at
+        correction = float(np.abs(du[:n]).max(initial=0.0))
         u, factor = u + du, factor + change
     done.reason = (
         f"no convergence in {settings.max_iterations} iterations (residual {done.sizes[-1]:.1e})"
     )
-    return done
+    return at
 
 
 def tangent_at(
@@ -231,7 +226,7 @@ def tangent_at(
     """
     force, move = system.load_rate(point.u)
     # The matrix is overwritten by the factorisation's preparation: the point keeps its own.
-    x, negative = system.correct(point.at, force, move)
+    x, negative = system.rate(point.at, force, move)
     if metric is None:
         metric = Metric(system.counted, float(np.sqrt(product(x, x, system.counted))))
         if metric.length == 0.0:
@@ -240,4 +235,4 @@ def tangent_at(
     return Tangent(x / size, 1.0 / size, negative), metric
 
 
-__all__ = ["Corrected", "Metric", "PathSystem", "Point", "Tangent", "correct", "tangent_at"]
+__all__ = ["Corrected", "Metric", "Point", "Tangent", "correct", "tangent_at"]

@@ -10,6 +10,7 @@ is accepted: a cut-back forgets the attempt.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
@@ -17,6 +18,7 @@ import numpy as np
 
 from corota.drivers.controls import Arc, Factor, Row
 from corota.drivers.corrector import Metric, Point, Tangent, correct, tangent_at
+from corota.drivers.kinks import direction, shares
 from corota.drivers.path_plan import End, Increment, PathStalled, Plan
 from corota.drivers.stability import Critical, Station, has_event, locate
 from corota.errors import SingularError
@@ -27,8 +29,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.drivers.controls import Control
-    from corota.drivers.corrector import Corrected, PathSystem
+    from corota.drivers.corrector import Corrected
     from corota.drivers.newton import Judgement, Settings
+    from corota.drivers.path_system import PathSystem
 
     Floats = NDArray[np.float64]
     Report = Callable[[int, int, Judgement, float, float, float], None]
@@ -43,6 +46,12 @@ SHARPEST = 1.05
 SHRINK, GROW = 0.5, 2.0
 #: Share to which a failed attempt is cut.
 CUT = 0.4
+#: Residual above which a start is out of balance.
+UNBALANCED = 1e-6
+#: Share of an increment with a kink that may lie beside the directions before and behind ...
+ASIDE = 0.3
+#: ... and attempts after which such a turn is taken as it is.
+KINK = 3
 #: Attempts at an increment before the path is given up ...
 MAX_ATTEMPTS = 16
 #: ... and the attempt from which a single displacement replaces the arc.
@@ -101,7 +110,10 @@ class Follower:
         self._evaluated: Point | None = None
 
     def __iter__(self) -> Iterator[Increment]:
-        self.tangent, self.metric = tangent_at(self.system, self.base)
+        count = 0
+        for begun in self._begin():
+            count += 1
+            yield begun
         self.first_metric = self.metric
         if self.base.factor != 0.0:
             # The load has come this far already: its way is measured from its start.
@@ -111,9 +123,8 @@ class Follower:
         self._measure(0.0, 0.0)
         row = self.plan.row
         if row is not None and row.of(self.tangent.u) * row.value < 0.0:
-            self.tangent = _reversed(self.tangent)
+            self.tangent = self.tangent.reversed()
         self.mark = self.tangent
-        count = 0
         while True:
             count += 1
             found = self._increment()
@@ -132,6 +143,50 @@ class Follower:
                 yield found
                 if found.last:
                     return
+
+    # -- the start ---------------------------------------------------------------------
+
+    def _begin(self) -> Iterator[Increment]:
+        """Find the direction at the start; gives the increments that this takes.
+
+        A start that is out of balance, as surfaces that overlap, and one where something moves
+        freely, as bodies before they touch, has none before a first load has found its hold.
+        """
+        judged = self.system.judge(self.base.at, self.base.u)
+        balanced = judged.size <= max(UNBALANCED, 10.0 * self.settings.tolerance)
+        with suppress(SingularError):
+            self.tangent, self.metric = tangent_at(self.system, self.base)
+            if balanced:
+                return
+        end = self.plan.ends[0] if self.plan.ends else None
+        up = end is None or end.row is not None or end.value > self.base.factor
+        first = self.plan.first if up else -self.plan.first
+        yield self._by_load([first * CUT**k for k in range(MAX_ATTEMPTS)])
+
+    def _by_load(self, changes: list[float]) -> Increment:
+        """Equilibrium at the first change of the load factor that has one, and direction there."""
+        reason = ""
+        for self.attempt, change in enumerate(changes, start=1):
+            if reason and self.cut_back is not None:
+                self.cut_back(self.attempt - 1, reason, abs(change))
+            _, move = self.system.load_rate(self.base.u)
+            guess = Point(self.base.u + change * move, self.base.factor + change, None)
+            done = self._solve(guess, Factor(change), abs(change), loose=True)
+            if done.singular is not None and done.iterations == 0:
+                raise done.singular
+            reason = done.reason
+            if done.point is None:
+                continue
+            self.tangent, self.metric = tangent_at(self.system, done.point)
+            du = done.point.u - self.base.u
+            length = self.metric.size(du, done.point.factor - self.base.factor)
+            self._commit(done.point)
+            self.base = done.point
+            return Increment(
+                done.point, self.tangent, done.iterations, self.attempt, length,
+                self.tangent.negative, "load",
+            )  # fmt: skip
+        raise PathStalled(f"no equilibrium near the start: {reason}")
 
     # -- one increment -----------------------------------------------------------------
 
@@ -203,18 +258,19 @@ class Follower:
             if counted[dof] == 0.0:
                 return Factor(df), "load"
             return Row(np.array([dof]), np.ones(1), float(du[dof])), "displacement"
-        weight = self.metric.length if self.plan.spherical else 0.0
+        # Behind a kink the structure may be so stiff that displacements alone are no measure.
+        weight = self.metric.length if self.plan.spherical or self.attempt > 1 else 0.0
         radius = math.hypot(moved, weight * df)
         return Arc(radius, self.system.counted, weight), "arc"
 
-    def _solve(self, guess: Point, control: Control, size: float) -> Corrected:
+    def _solve(self, guess: Point, control: Control, size: float, loose: bool = False) -> Corrected:
         def report(iteration: int, judged: Judgement, correction: float, factor: float) -> None:
             if self.report is not None:
                 self.report(self.attempt, iteration, judged, correction, factor, size)
 
         done = correct(
             self.system, self.base, guess.u, guess.factor, self.period, control,
-            self.settings, report,
+            self.settings, report, loose,
         )  # fmt: skip
         self._evaluated = done.point
         self.iterations += done.iterations
@@ -225,16 +281,19 @@ class Follower:
         du, df = point.u - self.base.u, point.factor - self.base.factor
         length = self.metric.size(du, df)
         try:
-            tangent, _ = tangent_at(self.system, point, self.metric)
+            tangent, aside = direction(
+                self.system, self.metric, self.base, self.tangent, point,
+                None if self.guess is None else self.mark, self.attempt > KINK,
+            )  # fmt: skip
         except SingularError as error:
             return None, str(error)
-        if self.metric.dot(tangent.u, tangent.factor, du, df) < 0.0:
-            tangent = _reversed(tangent)
-        if self.guess is None and not self.plan.fixed:
+        if self.guess is None and not self.plan.fixed and (aside is None or self.attempt <= KINK):
             turn = self._angle(tangent, du, df, length)
-            if turn > SHARPEST or length > 3.0 * size:
+            if aside is not None and aside > ASIDE:
+                return None, "the path has more than one kink"
+            if aside is None and (turn > SHARPEST or length > 3.0 * size):
                 return None, f"the path turns by {math.degrees(turn):.0f} degrees"
-        return Station(1.0, point, tangent), ""
+        return Station(1.0, point, tangent, aside is not None), ""
 
     def _angle(self, tangent: Tangent, du: Floats, df: float, length: float) -> float:
         """Angle from the old tangent to the new one, or twice that to the chord."""
@@ -257,8 +316,9 @@ class Follower:
         critical: Critical | None = None
         if self.plan.locate and has_event(self.mark, tangent):
             critical = locate(
-                self.system, Station(0.0, self.base, self.mark), end, self._between(end)
-            )
+                self.system, Station(0.0, self.base, self.mark), end, self._between(end),
+                self._crossing,
+            )  # fmt: skip
             self._evaluated = None  # others were tried since the point that is taken
             if critical is None:
                 return None
@@ -286,8 +346,9 @@ class Follower:
         else:
             before = critical.negative[0]
             found = Increment(
-                point, tangent, done.iterations, self.attempt, length, before, name, critical
-            )
+                point, tangent, done.iterations, self.attempt, length, before, name,
+                None if critical.kind == "kink" else critical,
+            )  # fmt: skip
             self._go_on_behind(critical, end, size)
         self.base = point
         return found
@@ -331,14 +392,22 @@ class Follower:
 
     def _commit(self, point: Point) -> None:
         if self._evaluated is not point:
+            self.system.restart()
             point.at = self.system.evaluate(point.u, point.factor * self.period)
         self.system.commit()
 
-    def _between(self, end: Station) -> Callable[[float], tuple[Point, Tangent] | None]:
+    def _crossing(self, low: Station, high: Station) -> float:
+        """Share of the increment at which the directions of two stations cross."""
+        a, b, t = low.point, high.point, low.tangent
+        way, _ = shares(self.metric, b.u - a.u, b.factor - a.factor, t, high.tangent)
+        moved = self.metric.displacement(a.u + way * t.u - self.base.u)
+        return high.share * moved / self.metric.displacement(b.u - self.base.u)
+
+    def _between(self, end: Station) -> Callable[[float], Station | None]:
         """Solver for points inside an increment."""
         du, df = end.point.u - self.base.u, end.point.factor - self.base.factor
 
-        def solve(share: float) -> tuple[Point, Tangent] | None:
+        def solve(share: float) -> Station | None:
             guess = Point(self.base.u + share * du, self.base.factor + share * df, None)
             moved = share * self.metric.displacement(du)
             weight = self.metric.length if self.plan.spherical else 0.0
@@ -348,12 +417,10 @@ class Follower:
                 raise done.singular
             if done.point is None:
                 return None
-            tangent, _ = tangent_at(self.system, done.point, self.metric)
-            ahead = self.metric.dot(
-                tangent.u, tangent.factor, done.point.u - self.base.u,
-                done.point.factor - self.base.factor,
-            )  # fmt: skip
-            return done.point, tangent if ahead >= 0.0 else _reversed(tangent)
+            tangent, aside = direction(
+                self.system, self.metric, self.base, self.tangent, done.point, end.tangent
+            )
+            return Station(share, done.point, tangent, aside is not None)
 
         return solve
 
@@ -425,10 +492,6 @@ class Follower:
                     negative, "mode",
                 )  # fmt: skip
         raise PathStalled(f"the other branch could not be entered: {reason}")
-
-
-def _reversed(tangent: Tangent) -> Tangent:
-    return Tangent(-tangent.u, -tangent.factor, tangent.negative)
 
 
 def _arc_cosine(x: float) -> float:

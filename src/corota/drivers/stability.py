@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.drivers.corrector import PathSystem, Point, Tangent
+    from corota.drivers.corrector import Point, Tangent
+    from corota.drivers.path_system import PathSystem
 
     Floats = NDArray[np.float64]
 
@@ -49,11 +50,14 @@ class Station:
     ----------
     share : float
         Position in the increment, 0 at its start and 1 at its end.
+    behind : bool
+        Whether the path may have a kink since the start.
     """
 
     share: float
     point: Point
     tangent: Tangent
+    behind: bool = False
 
 
 @dataclass
@@ -65,9 +69,10 @@ class Critical:
     point : Point
     after : Station
         The nearest point that was solved behind it.
-    kind : {"limit", "bifurcation"}
-    mode : ndarray, shape (n_dofs,)
-        Null direction of the tangent, its largest component 1.
+    kind : {"limit", "bifurcation", "kink"}
+        A kink is no critical point: the tangent jumps there, and the load factor goes on.
+    mode : ndarray, shape (n,)
+        Null direction of the tangent (the softest, where it jumps), its largest component 1.
     projection : float
         See :func:`work_share`.
     negative : tuple of int
@@ -76,15 +81,13 @@ class Critical:
 
     point: Point
     after: Station
-    kind: Literal["limit", "bifurcation"]
+    kind: Literal["limit", "bifurcation", "kink"]
     mode: Floats
     projection: float
     negative: tuple[int, int]
 
 
-def softest_mode(
-    system: PathSystem, start: Floats | None, n: int, counted: NDArray[np.bool_]
-) -> tuple[float, Floats]:
+def softest_mode(system: PathSystem, start: Floats | None) -> tuple[float, Floats]:
     """Eigenvalue of the last factorised tangent that is nearest to zero, and its vector.
 
     Inverse iteration; the rate is the ratio of the two smallest eigenvalues, so that near a
@@ -95,33 +98,32 @@ def softest_mode(
     system : PathSystem
     start : ndarray, shape (n,), or None
         A guess.
-    n : int
-        Number of dofs.
-    counted : ndarray of bool, shape (n,)
 
     Returns
     -------
     value : float
         Signed eigenvalue.
     vector : ndarray, shape (n,)
-        Its largest displacement 1.
+        All unknowns, its largest displacement 1.
     """
-    x = np.random.default_rng(7).standard_normal(n) if start is None else start.copy()
+    n, counted = system.n_dofs, system.counted
+    x = np.random.default_rng(7).standard_normal(n) if start is None else start[:n].copy()
     x /= np.linalg.norm(x)
     value = 0.0
     for _ in range(40):
-        y = system.solve_again(x)
+        whole = system.solve_again(x)
+        y = whole[:n]
         size = float(np.linalg.norm(y))
         if size == 0.0 or not np.isfinite(size):
             break
         before, value = value, 1.0 / float(x @ y) if x @ y != 0.0 else 0.0
         change = np.linalg.norm(y / size - np.copysign(1.0, x @ y) * x)
-        x = y / size
+        x, whole = y / size, whole / size
         if change < 1e-6 or (abs(value - before) <= 1e-10 * abs(value) and change < 1e-3):
             break
-    shown = np.where(counted, x, 0.0)
+    shown = np.where(counted[:n], x, 0.0)
     largest = shown[np.abs(shown).argmax()] or 1.0
-    return value, x / largest
+    return value, whole / largest
 
 
 def has_event(before: Tangent, now: Tangent) -> bool:
@@ -139,7 +141,8 @@ def locate(
     system: PathSystem,
     start: Station,
     end: Station,
-    solve: Callable[[float], tuple[Point, Tangent] | None],
+    solve: Callable[[float], Station | None],
+    crossing: Callable[[Station, Station], float],
 ) -> Critical | None:
     """Find the first critical point of an increment.
 
@@ -152,28 +155,34 @@ def locate(
     solve : callable
         Equilibrium and tangent at a share of the increment, or None; a `SingularError`
         where the tangent has no inverse.
+    crossing : callable
+        Share at which the directions of two stations cross.
 
     Returns
     -------
     Critical or None
         None if the increment must be shortened first.
     """
-    n, counted = len(end.point.u), system.counted
     low, high = start, end
     behind = [end]
     mode: Floats | None = None
-    best: tuple[float, Station, Floats] | None = None
+    best: tuple[float, Station, Floats | None] | None = None
     tests: list[tuple[float, float]] = []
     for _ in range(MOST_TRIALS):
+        kink = low.behind != high.behind
         share = _propose(tests, low.share, high.share)
+        if kink:
+            margin = SHARPNESS * (high.share - low.share)
+            share = min(max(crossing(low, high), low.share + margin), high.share - margin)
         sample = None
         for distance in NEARBY:
             near = max(share - distance, 0.5 * (low.share + share))
             try:
-                found = solve(near)
-                if found is None:
+                now = solve(near)
+                if now is None:
                     return None
-                sample = (near, *found, *softest_mode(system, mode, n, counted))
+                # Where the tangent jumps, no mode tells how far it is.
+                sample = now, *((0.0, None) if kink else softest_mode(system, mode))
                 break
             except SingularError:
                 # As near as the arithmetic can tell; a neighbour will do.
@@ -183,8 +192,7 @@ def locate(
             if best is None:
                 return None
             break
-        share, point, tangent, value, mode = sample
-        now = Station(share, point, tangent)
+        now, value, mode = sample
         by_factor = turned(start.tangent, high.tangent)
         if has_event(start.tangent, now.tangent):
             high = now
@@ -194,20 +202,29 @@ def locate(
         if by_factor != turned(start.tangent, high.tangent):
             tests.clear()
         test = now.tangent.factor if turned(start.tangent, high.tangent) else value
-        tests.append((share, test))
-        if best is None or abs(value) <= abs(best[0]):
+        tests.append((now.share, test))
+        if best is None or kink or abs(value) <= abs(best[0]):
             best = (value, now, mode)
-        if high.share - low.share <= SHARPNESS or _settled(tests):
+        if high.share - low.share <= SHARPNESS or _settled(tests, kink):
             break
     assert best is not None
     _, at, mode = best
+    if mode is None:
+        found = solve(at.share)
+        if found is None:
+            return None
+        at, mode = found, softest_mode(system, None)[1]
     # Pivots and load factor change sign a rounding error apart: look from a distance.
     clear = min(at.share + CLEAR, end.share)
     after = min((s for s in behind if s.share >= clear), key=lambda s: s.share)
     projection = work_share(system, at.point, mode)
-    limit = turned(start.tangent, after.tangent) and abs(projection) > NO_WORK
+    limit = turned(start.tangent, after.tangent)
     negative = (start.tangent.negative, after.tangent.negative)
-    kind: Literal["limit", "bifurcation"] = "limit" if limit else "bifurcation"
+    kind: Literal["limit", "bifurcation", "kink"] = "bifurcation"
+    if low.behind != high.behind:
+        kind = "limit" if limit else "kink"
+    elif limit and abs(projection) > NO_WORK:
+        kind = "limit"
     return Critical(at.point, after, kind, mode, projection, negative)
 
 
@@ -229,12 +246,12 @@ def _propose(tests: list[tuple[float, float]], low: float, high: float) -> float
     return share
 
 
-def _settled(tests: list[tuple[float, float]]) -> bool:
-    """Whether the last secant step was small and its next would be smaller."""
-    if len(tests) < 3:
+def _settled(tests: list[tuple[float, float]], kink: bool) -> bool:
+    """Whether the last step was small and, but at a kink, its next would be smaller."""
+    if len(tests) < 3 - kink:
         return False
     (a, f), (b, g) = tests[-2:]
-    return abs(b - a) <= SHARPNESS and abs(g) <= abs(f)
+    return abs(b - a) <= SHARPNESS and (kink or abs(g) <= abs(f))
 
 
 def work_share(system: PathSystem, point: Point, mode: Floats) -> float:

@@ -16,7 +16,6 @@ from corota.errors import (
     Interrupted,
     ModelError,
     SingularError,
-    UnsupportedError,
 )
 from corota.materials_plastic import Mises
 from corota.paths import ArcLength
@@ -61,12 +60,6 @@ def static_step(
     """
     state.step_time = 0.0
     if step.path is not None:
-        if system.touching is not None:
-            raise UnsupportedError(
-                "a step that follows a path takes no contact pairs or ties: raise the load, or "
-                "prescribe a displacement",
-                step.where,
-            )
         path_step(system, step, number, state, observers, save, step.path)
         return
     control = Increments(step, stops)
@@ -167,8 +160,8 @@ def _go_along_path(
     ConvergenceError
         At the limit point, unless the step is to follow the path beyond it.
     """
-    if system.touching is not None:
-        return False  # arc length knows no contact
+    if system.touching is not None and system.touching.damped.any():
+        return False  # damping needs a time
     try:
         system.conditions.check_proportional()
     except ModelError:

@@ -91,7 +91,8 @@ class Touching:
         self.time = 0.0
         self.notes: list[str] = []
         self.damped = np.zeros(0)
-        self.static, self.persistent = True, False
+        #: Whether stabilising damping acts; it does not on paths, whose time is none.
+        self.damps, self.persistent = True, False
         self.damping_work = 0.0
         # Dof of each variable 3 node + component, -1 where there is none.
         dof = np.full(3 * len(system.per_node), -1, np.int64)
@@ -107,7 +108,7 @@ class Touching:
         """Start a step."""
         self.number += 1
         self.period, self.time = step.period, 0.0
-        self.static = step.procedure == "static"
+        self.damps = step.procedure == "static"
         self.persistent = getattr(step, "scheme", "") == "energy_momentum"
         if self.number == 1:
             self._start()
@@ -248,7 +249,7 @@ class Touching:
         self._stiff = True
 
     def _damping(self, step_time: float) -> Floats | None:
-        if not self.static or not self.damped.any():
+        if not self.damps or not self.damped.any():
             return None
         dt = step_time - self.time
         left = 1.0 - step_time / self.period

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.drivers.constraints import Link
     from corota.drivers.system import Evaluation, System
 
     Floats = NDArray[np.float64]
@@ -119,7 +120,10 @@ class Bordered:
         self.keys = np.zeros(0, np.int64)
         self._held: NDArray[np.bool_] | None = None
         self._analyzed = False
-        self._full: Callable[[Floats], Floats] | None = None
+        #: The last system solved: its held unknowns, constraints, and what solves it again.
+        self._at_rest = np.zeros(self.size, bool)
+        self._link: Link | None = None
+        self._resolve: Callable[[Floats], Floats] = system.solver.solve
         #: Steps of GMRES so far and fall-backs to LU, for reports.
         self.steps = self.whole = 0
         #: Multipliers of constraints that followed from others.
@@ -171,17 +175,17 @@ class Bordered:
         ----------
         at : Evaluation
         coupling : Coupling
-        force : ndarray, shape (n_dofs,)
-            Right-hand side of equilibrium.
-        rhs : ndarray, shape (n,)
+        force : ndarray, shape (n_dofs, k)
+            Right-hand sides of equilibrium.
+        rhs : ndarray, shape (n, k)
             And of the constraints.
-        du_held : ndarray, shape (n_dofs,)
+        du_held : ndarray, shape (n_dofs, k)
             Prescribed changes at held dofs, 0 elsewhere.
 
         Returns
         -------
-        du : ndarray, shape (n_dofs,)
-        dp : ndarray, shape (n,)
+        du : ndarray, shape (n_dofs, k)
+        dp : ndarray, shape (n, k)
         negative : int
             Negative pivots, -1 if unknown.
         """
@@ -204,11 +208,12 @@ class Bordered:
             data = np.zeros(len(self.keys))
             data[self._target] = values
             np.add.at(data, places, upper.values)
-            moved = np.zeros(self.size)
+            moved = np.zeros_like(b)
             moved[: self.nf] = du_held[self.free]
-            if moved.any():
-                b -= self._multiply(data, moved)
-                np.subtract.at(b, rest.rows, rest.values * moved[rest.columns])
+            for column, move in zip(b.T, moved.T, strict=True):
+                if move.any():
+                    column -= self._multiply(data, move)
+                    np.subtract.at(column, rest.rows, rest.values * move[rest.columns])
             data[self._mask(held)] = 0.0
             on = self.diagonal[held]
             data[on] = np.where(data[on] == 0.0, 1.0, np.abs(data[on]))
@@ -228,12 +233,24 @@ class Bordered:
             if negative >= 0:
                 negative += len(dropped)  # each would have given one
         x[held] = moved[held]
-        du = x[: self.nf]
-        if link is not None:
-            out = np.zeros(system.n_dofs)
-            out[self.free] = du
-            du = link.move(out)
-        return du, x[self.nf :], negative
+        self._at_rest, self._link = held, link
+        return self._spread(x), x[self.nf :], negative
+
+    def again(self, force: Floats) -> tuple[Floats, Floats]:
+        """The same for one more force, shape (n_dofs,), with the last factorisation.
+
+        Held dofs are at rest and so are the constraints.
+        """
+        b = np.zeros((self.size, 1))
+        b[: self.nf, 0] = (force if self._link is None else self._link.gather(force))[self.free]
+        b[self._at_rest] = 0.0
+        x = self._resolve(b)
+        x[self._at_rest] = 0.0
+        return self._spread(x)[:, 0], x[self.nf :, 0]
+
+    def _spread(self, x: Floats) -> Floats:
+        """Displacements of all dofs of a solution."""
+        return x[: self.nf] if self._link is None else self.system.expand(self._link, x[: self.nf])
 
     def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
         """Take constraints out that follow from others, in place; returns their multipliers."""
@@ -332,7 +349,7 @@ class Bordered:
         return Triplets.join([upper, bend, *rows]), Triplets.join(rest)
 
     def _spare(self, c: Coupling, direct: bool) -> Ints:
-        """Keys of couplings that may soon be wanted, some of them more than once."""
+        """Keys of couplings that may soon be wanted."""
         dofs, own = c.near
         if not direct or not len(dofs):
             return np.zeros(0, np.int64)
@@ -343,8 +360,7 @@ class Bordered:
         # Multipliers of one pair do not couple with each other.
         good &= (np.minimum(a, b) < self.nf) | (a == b)
         a, b = a[good], b[good]
-        keys: Ints = np.maximum(a, b) * self.size + np.minimum(a, b)
-        return keys
+        return np.unique(np.maximum(a, b) * self.size + np.minimum(a, b))
 
     def _multiply(self, data: Floats, x: Floats) -> Floats:
         """Product of the symmetric matrix with a vector that is mostly zero."""
@@ -369,9 +385,11 @@ class Bordered:
             system._last = solver
             with system.timed("solve"):
                 if not len(rest.values):
+                    self._resolve = solver.solve
                     return solver.solve(b), -1 if inertia is None else inertia[1]
-                x = self._gmres(solver.solve, rest, b)
+                x = self._gmres_all(rest, b)
             if x is not None:
+                self._resolve = lambda more: self._resolved(data, rest, more)
                 return x, -1
         except SingularError as error:
             # The test for motions without stiffness goes by energy, which multipliers make
@@ -392,6 +410,20 @@ class Bordered:
         np.add.at(size, c, np.abs(data * v[r]))
         left = np.abs(self._multiply(data, v))
         return bool((left <= NULL * size.max()).all())
+
+    def _resolved(self, data: Floats, rest: Triplets, b: Floats) -> Floats:
+        x = self._gmres_all(rest, b)
+        return self._by_lu(data, rest, b) if x is None else x
+
+    def _gmres_all(self, rest: Triplets, b: Floats) -> Floats | None:
+        """:meth:`_gmres` for all columns."""
+        out = np.empty_like(b)
+        for k in range(b.shape[1]):
+            x = self._gmres(self.system.solver.solve, rest, b[:, k])
+            if x is None:
+                return None
+            out[:, k] = x
+        return out
 
     def _gmres(self, solve: Callable[[Floats], Floats], rest: Triplets, b: Floats) -> Floats | None:
         """Solution of (M + N) x = b with M factorised and N few entries; None if it stalls."""
@@ -448,7 +480,7 @@ class Bordered:
         lu = Faer(symmetric=False)
         lu.analyze(matrix.indptr, matrix.indices, self.node)
         lu.factorize(matrix.data)
-        self.system._last = lu
+        self.system._last, self._resolve = lu, lu.solve
         return lu.solve(b)
 
 

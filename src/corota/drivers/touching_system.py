@@ -77,6 +77,23 @@ class Touched:
         return self.at.scale
 
 
+@dataclass
+class Asked:
+    """Right-hand sides of one linearisation, a column each.
+
+    Parameters
+    ----------
+    force, held : ndarray, shape (n_dofs, k)
+        Of equilibrium, and prescribed changes at held dofs.
+    own : ndarray, shape (k,)
+        Share of what the contact conditions lack: 1 in a Newton correction, 0 in a rate.
+    """
+
+    force: Floats
+    held: Floats
+    own: Floats
+
+
 class TouchingSystem:
     """A system with contact, for one increment.
 
@@ -94,6 +111,10 @@ class TouchingSystem:
         self.inner, self.system, self.weight = inner, system, weight
         self.touching: Touching = system.touching
         self.n = system.n_dofs
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin an attempt at the increment."""
         # What was closed stays so while its pressure does.
         self.last: States | None = None
         if self.touching.at is not None and self.touching.at.states:
@@ -156,33 +177,38 @@ class TouchingSystem:
 
     def correct(self, at: Touched, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
+        asked = Asked(rhs[: self.n, None], du_held[: self.n, None], np.ones(1))
+        z, negative = self._columns(at, asked, self._choose(at.touch))
+        return z[:, 0], negative
+
+    def _columns(self, at: Touched, asked: Asked, states: States) -> tuple[Floats, int]:
+        """Solutions of one linearisation, shape (n_dofs + n_multipliers, k)."""
         self.corrections += 1
         for pair in self.touching.pairs:
             pair.frozen = self.corrections >= SETTLED
-        states = self._choose(at.touch)
         self.senses = {
             pair.first: pair.sense(terms, q) for pair, terms, (p, q) in self._pairs(at.touch)
         }
-        du, dp, negative, states = self._held(at, states, rhs, du_held)
+        du, dp, negative, states = self._held(at, states, asked)
         for (pair, terms, (p, q)), state in zip(self._pairs(at.touch), states, strict=True):
             if pair.two:
                 # Slipping tractions follow the pressure; they are no unknowns of the solution.
                 ratio = pair.rows(terms, state, p, q, self.senses[pair.first])[4]
-                new = ratio * (p + dp[pair.first : pair.first + pair.n]) - q
+                now = np.outer(p, asked.own) + dp[pair.first : pair.first + pair.n]
+                new = ratio[:, None] * now - np.outer(q, asked.own)
                 slips = state != CLOSED
                 dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
         return np.concatenate([du, dp]), negative
 
-    def _solve(
-        self, at: Touched, states: States, rhs: Floats, du_held: Floats
-    ) -> tuple[Floats, Floats, int]:
+    def _solve(self, at: Touched, states: States, asked: Asked) -> tuple[Floats, Floats, int]:
         coupling, own, expected = self._coupling(at.touch, states)
-        force = rhs[: self.n] + self.system.at_nodes(coupling.force)
-        du, dp, negative = self.border.solve(at.at, coupling, force, own, du_held[: self.n])
+        force = asked.force + np.outer(self.system.at_nodes(coupling.force), asked.own)
+        rows = np.outer(own, asked.own)
+        du, dp, negative = self.border.solve(at.at, coupling, force, rows, asked.held)
         return du, dp, negative - expected if negative >= 0 else -1
 
     def _held(
-        self, at: Touched, states: States, rhs: Floats, du_held: Floats
+        self, at: Touched, states: States, asked: Asked
     ) -> tuple[Floats, Floats, int, States]:
         """Correction for states that hold the bodies, changed as little as that takes.
 
@@ -196,19 +222,19 @@ class TouchingSystem:
         problem: SingularError | None = None
         for tried in tries:
             try:
-                du, dp, negative = self._solve(at, tried, rhs, du_held)
+                du, dp, negative = self._solve(at, tried, asked)
             except SingularError as error:
                 problem = error
                 self.sliding += slipping
                 continue
-            if tried is not stuck and slipping and self._far(du, du_held):
+            if tried is not stuck and slipping and self._far(du, asked):
                 self.sliding += 1
                 continue
-            du, dp, negative, tried = self._let_slip(at, tried, rhs, du_held, (du, dp, negative))
+            du, dp, negative, tried = self._let_slip(at, tried, asked, (du, dp, negative))
             self.last = tried
             return du, dp, negative, tried
         assert problem is not None
-        return self._close_some(at, stuck if slipping else states, rhs, du_held, problem)
+        return self._close_some(at, stuck if slipping else states, asked, problem)
 
     def _least_stick(self, at: Touched, states: States) -> States:
         """States with the half that exceeds the friction least sticking again."""
@@ -225,8 +251,7 @@ class TouchingSystem:
         self,
         at: Touched,
         states: States,
-        rhs: Floats,
-        du_held: Floats,
+        asked: Asked,
         found: tuple[Floats, Floats, int],
     ) -> tuple[Floats, Floats, int, States]:
         """Let slip at once what a correction would load far beyond friction.
@@ -239,8 +264,8 @@ class TouchingSystem:
             for s, (pair, _, (p, q)) in zip(new, self._pairs(at.touch), strict=True):
                 if not pair.friction:
                     continue
-                p1 = p + found[1][pair.first : pair.first + pair.n]
-                q1 = q + found[1][pair.first + pair.n : pair.first + pair.width]
+                p1 = p + found[1][pair.first : pair.first + pair.n, 0]
+                q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
                 over = (s == CLOSED) & (np.abs(q1) > BEYOND * pair.friction * np.maximum(p1, p))
                 s[over] = SLIPPING
                 sense = self.senses[pair.first]
@@ -249,27 +274,27 @@ class TouchingSystem:
                 break
             before, self.senses = self.senses, senses
             try:
-                other = self._solve(at, new, rhs, du_held)
+                other = self._solve(at, new, asked)
             except SingularError:
                 self.senses = before
                 break
-            if self._far(other[0], du_held):
+            if self._far(other[0], asked):
                 self.senses = before
                 break
             found, states = other, new
         return *found, states
 
-    def _far(self, du: Floats, du_held: Floats) -> bool:
+    def _far(self, du: Floats, asked: Asked) -> bool:
         """Whether a correction moves the surfaces farther than contact looks."""
-        moved = self.system.by_node(du)[:, :2]
-        held = 2.0 * float(np.abs(self.system.by_node(du_held[: self.n])[:, :2]).max())
+        moved = self.system.by_node(du[:, 0])[:, :2]
+        held = 2.0 * float(np.abs(self.system.by_node(asked.held[:, 0])[:, :2]).max())
         for pair in self.touching.pairs:
             if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach + held:
                 return True
         return False
 
     def _close_some(
-        self, at: Touched, states: States, rhs: Floats, du_held: Floats, error: SingularError
+        self, at: Touched, states: States, asked: Asked, error: SingularError
     ) -> tuple[Floats, Floats, int, States]:
         """Bring bodies that nothing holds into contact: close their nearest nodes."""
         for count in (1, 2, None):
@@ -283,7 +308,7 @@ class TouchingSystem:
             if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
                 break
             try:
-                du, dp, negative = self._solve(at, tried, rhs, du_held)
+                du, dp, negative = self._solve(at, tried, asked)
             except SingularError:
                 continue
             self.last = tried
@@ -416,14 +441,14 @@ class TouchingSystem:
         variables, constraints = pair.core.pattern()
         found = pair.core.candidates()
         used = np.zeros(len(found), bool)
-        used[terms.pair] = True
+        used[np.unique(terms.pair)] = True
         if not used.any():
             return np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int64)
         width = int(found[:, 1].max()) + 8
         key = found[:, 0] * width + found[:, 1] + 3
-        touching = np.sort(key[used])
-        next_up = np.minimum(np.searchsorted(touching, key - 2), len(touching) - 1)
-        close = np.abs(touching[next_up] - key) <= 2
+        close = np.zeros(len(found), bool)
+        for shift in (-2, -1, 0, 1, 2):
+            close |= np.isin(key, key[used] + shift)
         variables, constraints = variables[close], constraints[close]
         own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
         if pair.two:
@@ -436,32 +461,31 @@ class TouchingSystem:
         """What became of an increment in terms of the system; explains failures."""
         u = outcome.u[: self.n].copy()
         at = None if outcome.at is None else outcome.at.at
-        if outcome.converged:
-            self._refuse_passing(outcome)
+        if outcome.converged and outcome.at is not None:
+            outcome.reason = self.refuse(outcome.at, outcome.u)
+            outcome.converged = not outcome.reason
         settled: Outcome[Any] = replace(outcome, u=u, at=cast("Any", at))
         self.touch = None if outcome.at is None else outcome.at.touch
         if not outcome.converged:
-            settled.reason = f"{outcome.reason}{self.explain(outcome)}"
+            settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
             self.touching.restore()
         elif self.single:
             settled.note = f"{outcome.note}; {self.single} single changes of contact".strip("; ")
         return settled
 
-    def _refuse_passing(self, outcome: Outcome[Touched]) -> None:
-        """Give up an increment in which nodes went through the other surface."""
-        if not self.system.turning or outcome.at is None:
-            return
-        old = self.touching.positions(self.touching.u)
-        new = self.touching.positions(outcome.u[: self.n])
-        for pair, terms, (p, q) in self._pairs(outcome.at.touch):
+    def refuse(self, at: Touched, z: Floats) -> str:
+        """Why an equilibrium is not taken, or nothing: nodes went through the other surface."""
+        if not self.system.turning:
+            return ""
+        old, new = self.touching.positions(self.touching.u), self.touching.positions(z[: self.n])
+        for pair, terms, (p, q) in self._pairs(at.touch):
             found = passed(pair, old, new, pair.states(terms, p, q))
             if len(found):
-                outcome.converged = False
-                outcome.reason = (
+                return (
                     f"node {self.touching.label(pair, int(found[0]))} went through the other "
                     f"side of contact pair {pair.name!r} in one increment"
                 )
-                return
+        return ""
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
@@ -478,10 +502,9 @@ class TouchingSystem:
         self.touching.told |= self.border.dropped
         return notes
 
-    def explain(self, outcome: Outcome[Touched]) -> str:
+    def explain(self, at: Touched | None) -> str:
         """Which pair and nodes a failed increment hung on, and what was tried."""
-        at = outcome.at
-        if at is None or not isinstance(at, Touched):
+        if at is None:
             return ""
         said = ""
         lack, k, i = self.lack(at)

@@ -55,8 +55,6 @@ class UserBlocks:
 
         facts = {e["name"]: e for e in _core.elements()}
         self.core = core
-        # Largest strain so far: a body may come back to its shape.
-        self.largest = 0.0
         self.blocks = []
         for index, block in enumerate(blocks):
             material = block.section.material
@@ -101,8 +99,7 @@ class UserBlocks:
             change = max(
                 float(np.abs(a - b).max(initial=0.0)) for a, b in zip(now, seen, strict=True)
             )
-            self.largest = max(self.largest, size)
-            if change <= SETTLED * self.largest:
+            if change <= SETTLED * size:
                 return
             seen = now
         raise ElementFailure("the internal modes of elements with a Python material did not settle")
