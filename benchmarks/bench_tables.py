@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parent.parent
 README = ROOT / "benchmarks" / "README.md"
 IMAGES = ROOT / "benchmarks" / "images"
 BEGIN, END = "<!-- side by side: begin -->", "<!-- side by side: end -->"
-SIZES = ("400", "4k", "40k", "400k", "1M")
+SIZES = ("400", "1k", "4k", "33k", "40k", "200k", "400k", "1M")
 TITLES = {
     "P1": "P1, cantilever with large rotations",
     "P2": "P2, strip with a hole beyond yield",

@@ -1,4 +1,4 @@
-"""What contact costs as its edges become many: search and evaluation, exponent, share of a run.
+"""What contact costs as its edges become many: search, evaluation, borders; exponent and share.
 
 A strip of n cells pressed on another of 1.5 n cells, one row of cells each, so that nearly
 everything is contact; one increment, processor seconds of one thread. ``--edges`` slave edges.
@@ -46,15 +46,16 @@ def measure(n: int) -> dict[str, Any]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--edges", nargs="+", type=int, default=[1000, 4000, 16000, 64000])
+    parser.add_argument("--edges", nargs="+", type=int, default=[500, 2000, 8000, 32000])
     args = parser.parse_args()
     measure(100)  # what is imported late
     rows: list[list[object]] = []
     spent: list[float] = []
     for n in args.edges:
         found = measure(n)
-        spent.append(found["contact"] / found["count"])
-        share = f"{found['contact'] / found['whole']:.0%}"
+        contact = found["contact"] + found["border"]
+        spent.append(contact / found["count"])
+        share = f"{contact / found['whole']:.0%}"
         rows.append(
             [n, found["count"], 1e6 * spent[-1] / n, found["factor"], found["whole"], share]
         )

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from benchmarks.problems import Ints, Problem
 
 
-def write_deck(path: Path, p: Problem) -> None:
+def write_deck(path: Path, p: Problem, contact: str = "SURFACE TO SURFACE") -> None:
     """Write a problem; the set WATCH is printed.
 
     Notes
@@ -49,7 +49,7 @@ def write_deck(path: Path, p: Problem) -> None:
         lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{50.0 * p.young:g}"]
         if p.friction:
             lines += ["*FRICTION", f"{p.friction:g}, {5.0 * p.young:g}"]
-        lines += ["*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER"]
+        lines += [f"*CONTACT PAIR, INTERACTION=TOUCH, TYPE={contact}", "SLAVE, MASTER"]
     lines += ["*BOUNDARY", "HELD1, 1, 1", "HELD2, 2, 2", "*STEP, NLGEOM, INC=100000"]
     share = p.last / p.increments
     if p.name == "P4":

@@ -88,14 +88,14 @@ def little_memory(folder: Path) -> Counter[str]:
     """Address space from what an idle process has to what the run needs: exit 5, no abort."""
     outcomes: Counter[str] = Counter()
     deck = strip_deck(120, 40, "1., 1.")
-    for share in np.linspace(0.02, 1.0, 14):
+    for share in np.linspace(0.02, 1.0, 28):
         _fresh(folder)
         (folder / "deck.inp").write_text(deck)
 
         def work(extra: float = float(share)) -> int:
             os.chdir(folder)
             now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-            size = now + int(extra * (160 << 20))
+            size = now + int(extra * (400 << 20))
             resource.setrlimit(resource.RLIMIT_AS, (size, size))
             return command("run", "deck.inp", "-q", "--threads", "1")
 

@@ -1,9 +1,9 @@
 """Corota and its peers on the same problems, in turn, in one run: times, memory and results.
 
-P1 (large rotation), P2 (plasticity), P4 (transient) and P4x2 (twice the load) on meshes from 400
-to a million dofs. Every program is a process of its own under GNU ``time``; in each round all of
-them run one after the other, so that a disturbance meets them alike, and medians are compared. Two
-groups:
+P1 (large rotation), P2 (plasticity), P3 (contact), P3f (with friction), P4 (transient) and P4x2
+(twice the load) on meshes from 400 to a million dofs. Every program is a process of its own under
+GNU ``time``; in each round all of them run one after the other, so that a disturbance meets them
+alike, and medians are compared. Two groups:
 
 * *increments*: what the increments take, reading and output left out, driven from Python;
 * *deck*: the whole process with reading and writing, the same file in Corota and CalculiX.
@@ -74,7 +74,9 @@ PROGRAMS = (
         "Corota", "Q4, node to segment", "P3", driver="corota", options=("method=node_to_segment",)
     ),
     Program("Kratos", "TL 4N, ALM mortar", "P3", driver="kratos_contact"),
+    Program("Corota", "CPS4, surf. to surf.", "P3", "deck"),
     Program("CalculiX", "CPS4, surf. to surf.", "P3", "deck"),
+    Program("CalculiX", "CPS4, node to surf.", "P3", "deck", options=("NODE TO SURFACE",)),
     Program("Kratos", "TotalLagrangian 4N", "P1 P2 P4", driver="kratos"),
     Program("Akantu", "quadrangle 4", "P1 P4", driver="akantu"),
     Program("DOLFINx", "Q1", "P1 P4", driver="dolfinx"),
@@ -117,7 +119,7 @@ def run_driver(program: Program, p: Problem, folder: Path, threads: int, limit: 
 def run_deck(program: Program, p: Problem, folder: Path, threads: int, limit: float) -> Any:
     """One run of Corota or CalculiX on a deck."""
     deck = folder / "job.inp"
-    decks.write_deck(deck, p)
+    decks.write_deck(deck, p, *program.options)
     command: list[str | Path]
     if program.name == "CalculiX":
         command, out = ["ccx", "-i", "job"], folder / "job"
@@ -162,7 +164,9 @@ def run(
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--problems", nargs="+", default=list(SIZES), choices=list(SIZES))
-    parser.add_argument("--sizes", nargs="+", default=["400", "4k", "40k"], choices=SIZES["P1"])
+    known = list(dict.fromkeys(size for sizes in SIZES.values() for size in sizes))
+    usual = ["400", "1k", "4k", "33k", "40k"]
+    parser.add_argument("--sizes", nargs="+", default=usual, choices=known)
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2])
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="longest time of a run [s]")
@@ -180,7 +184,7 @@ def main() -> int:
     sys.stdout.write(f"{machine()}\n")
     out_of_reach: set[tuple[str, str, int]] = set()
     for size in args.sizes:
-        for name in args.problems:
+        for name in (name for name in args.problems if size in SIZES[name]):
             for threads in args.threads:
                 chosen = [
                     p

@@ -8,74 +8,13 @@ die goes down by 0.3 and then 4 to the right, over many elements of the block; f
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 
 import numpy as np
 
 import corota as ct
 from corota import plots
-from corota.model import Fixed
-
-RADIUS, DOWN, ACROSS = 1.5, 0.3, 4.0
-
-
-def ironing(
-    friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: float = 1.0
-) -> ct.Model:
-    """Build block and die; `n` cells across the die, `unit` the size of the length unit."""
-    size = 1.0 / unit
-    half = math.radians(60.0)
-
-    def arc(t: float) -> tuple[float, float]:
-        phi = (2.0 * t - 1.0) * half
-        return 2.5 * size + RADIUS * size * math.sin(phi), (
-            3.0 + RADIUS * (1.0 - math.cos(phi))
-        ) * size
-
-    (left, low), (right, _) = arc(0.0), arc(1.0)
-    high = 4.5 * size
-    die = ct.mesh.mapped(
-        [
-            arc, lambda t: (right, low + (high - low) * t),
-            lambda t: (left + (right - left) * t, high), lambda t: (left, low + (high - low) * t),
-        ],
-        n, n // 2,
-    )  # fmt: skip
-    block = ct.mesh.rectangle(9.0 * size, 3.0 * size, nx=4 * n, ny=n)
-    model = ct.Model(ct.mesh.assembly(block=block, die=die), name="ironing")
-    soft, hard = (ct.Elastic(E=E * unit**2, nu=0.3) for E in (1.0, 10.0))
-    model.section(
-        "block",
-        element=element,
-        material=soft,
-        plane="strain",
-        thickness=size,
-        local_strain="logarithmic",
-    )
-    model.section(
-        "die",
-        element=element,
-        material=hard,
-        plane="strain",
-        thickness=size,
-        local_strain="logarithmic",
-    )
-    model.contact("die.bottom", "block.top", friction=friction, name="die")
-    model.fix("block.bottom")
-    return model
-
-
-def steps(unit: float = 1.0) -> list[ct.Static]:
-    """Down, then across."""
-
-    def top(x: float, y: float) -> list[Fixed]:
-        return [Fixed("die.top", 0, x / unit), Fixed("die.top", 1, y / unit)]
-
-    return [
-        ct.Static(first_increment=0.25, supports=top(0.0, -DOWN), name="down"),
-        ct.Static(first_increment=0.05, supports=top(ACROSS, -DOWN), name="across"),
-    ]
+from corota.verification.contact_models import ironing, steps
 
 
 def run(friction: float = 0.0, unit: float = 1.0, **options: int | str) -> ct.Results:

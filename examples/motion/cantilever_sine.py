@@ -14,35 +14,7 @@ import sys
 
 import numpy as np
 
-import corota as ct
-
-LENGTH, WIDTH, DEPTH = 10.0, 0.5, 0.25
-YOUNG, POISSON, DENSITY, FORCE, OMEGA = 210e9, 0.3, 7850.0, 10e6, 50.0
-PERIOD = 0.3
-CELLS = {"OPT": "tri3", "Q8": "quad8"}
-
-
-def cantilever(element: str = "Q4I", cells: int = 16) -> tuple[ct.Model, int]:
-    """Build the model; returns it with the node in the middle of the tip."""
-    mesh = ct.mesh.rectangle(LENGTH, DEPTH, nx=cells, ny=2, cell=CELLS.get(element, "quad4"))
-    model = ct.Model(mesh, name="cantilever")
-    material = ct.Elastic(E=YOUNG, nu=POISSON, rho=DENSITY)
-    model.section("all", element=element, material=material, thickness=WIDTH)
-    model.fix("left", rotation=True)
-    time = np.linspace(0.0, PERIOD, 1501)
-    model.amplitudes["sine"] = ct.Amplitude(time, np.sin(OMEGA * time))
-    model.traction("right", y=FORCE / (WIDTH * DEPTH), amplitude="sine")
-    tip = int(np.argmin(np.hypot(*(mesh.points - [LENGTH, DEPTH / 2.0]).T)))
-    return model, tip
-
-
-def path(element: str, increments: int, mass: str = "consistent", cells: int = 16) -> np.ndarray:
-    """Displacement of the tip at 30 equal times, shape (30, 2) [m]."""
-    model, tip = cantilever(element, cells)
-    step = ct.Dynamic(period=PERIOD, increments=increments, scheme="energy_momentum", mass=mass)
-    results = ct.solve(model, step, fields=False)
-    every = increments // 30
-    return np.array([f.U[tip] for f in results.frames[every::every]])
+from corota.verification.motion_models import sine_path as path
 
 
 def main() -> None:

@@ -10,6 +10,7 @@ import pytest
 import corota as ct
 from corota.mesh import Cells, Mesh
 from corota.steps import Static
+from corota.verification.problems import distorted_patches
 from support.models import (
     DRILLING,
     ELEMENTS,
@@ -26,25 +27,7 @@ DISPLACEMENT, STRESS = 1e-12, 1e-11
 BALANCE = 1e-10
 #: Displacement of a body held at two nodes: rounding times the condition, about 1e5.
 STATICALLY = 1e-10
-E, NU = 210.0, 0.3
-
-
-def moduli(plane):
-    if plane == "stress":
-        c, d, g = E / (1 - NU**2), NU, E / (2 * (1 + NU))
-    else:
-        c, d, g = E * (1 - NU) / (1 + NU) / (1 - 2 * NU), NU / (1 - NU), E / (2 * (1 + NU))
-    return np.array([[c, c * d, 0], [c * d, c, 0], [0, 0, g]])
-
-
-def distorted(element, seed):
-    mesh = ct.mesh.rectangle(3.0, 2.0, 3, 3, cell(element), "alternate")
-    mesh = ct.mesh.distort(mesh, 0.3, seed=seed)
-    return ct.mesh.move(mesh, shift=(1.0, -0.5), angle=7.0 * seed)
-
-
-def gradient(seed):
-    return 1e-3 * np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 2))
+E, NU, SEEDS = distorted_patches.YOUNG, distorted_patches.POISSON, distorted_patches.SEEDS
 
 
 def point_values(results, name):
@@ -54,22 +37,17 @@ def point_values(results, name):
 @pytest.mark.parametrize("plane", ["stress", "strain"])
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_constant_strain_on_twenty_distorted_meshes(element, plane):
-    for seed in range(20):
-        mesh, h = distorted(element, seed), gradient(seed)
-        model = ct.Model(mesh)
-        material = ct.Elastic(E=E, nu=NU)
-        model.section("all", element=element, material=material, thickness=0.7, plane=plane)
-        u = mesh.points @ h.T + [0.002, -0.001]
+    for seed in range(SEEDS):
+        results, h = distorted_patches.solved(element, plane, seed)
+        model, mesh = results.model, results.mesh
+        u = mesh.points @ h.T
         skew = 0.5 * (h[1, 0] - h[0, 1])
-        edge = boundary(mesh)
-        prescribe(model, edge, u[edge], skew if element in DRILLING else None)
-        results = ct.solve(model, Static(nlgeom=False), threads=1)
         frame = results.frames[-1]
         assert np.abs(frame.U - u).max() <= DISPLACEMENT * np.abs(u).max()
         if element in DRILLING:
             assert np.abs(frame.UR - skew).max() <= DISPLACEMENT * np.abs(h).max()
         strain = np.array([h[0, 0], h[1, 1], h[0, 1] + h[1, 0]])
-        stress = moduli(plane) @ strain
+        stress = distorted_patches.moduli(plane) @ strain
         found = point_values(results, "S")
         assert np.abs(found[:, [0, 1, 3]] - stress).max() <= STRESS * np.abs(stress).max()
         through = NU * (stress[0] + stress[1]) if plane == "strain" else 0.0
@@ -123,7 +101,7 @@ SIDES = {"bottom": (0, -1), "right": (1, 0), "top": (0, 1), "left": (-1, 0)}
 def test_traction_patch_with_free_rotations(element):
     """Edge tractions carry the end moments of drilling elements, so nothing holds rotations."""
     stress = np.array([[3.0, -1.2], [-1.2, -2.0]])
-    strain = np.linalg.solve(moduli("stress"), [3.0, -2.0, -1.2])
+    strain = np.linalg.solve(distorted_patches.moduli("stress"), [3.0, -2.0, -1.2])
     for seed in range(10):
         angle = np.radians(23.0 * seed)
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
@@ -153,7 +131,7 @@ def test_traction_patch_with_free_rotations(element):
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_stretched_then_rotated_patch_keeps_its_stress(element, local_strain):
     """A quarter turn after a large stretch turns displacement and stress with it."""
-    mesh = distorted(element, 3)
+    mesh = distorted_patches.distorted(element, 3)
     model = ct.Model(mesh)
     material = ct.Elastic(E=E, nu=NU)
     model.section("all", element=element, material=material, local_strain=local_strain)
@@ -184,7 +162,7 @@ def test_stretched_then_rotated_patch_keeps_its_stress(element, local_strain):
 
 
 def test_large_strain_patch_is_in_balance():
-    mesh = distorted("Q9", 2)
+    mesh = distorted_patches.distorted("Q9", 2)
     model = ct.Model(mesh)
     model.section("all", element="Q9", material=ct.Elastic(E=E, nu=NU), local_strain="modified")
     edge = boundary(mesh)

@@ -137,13 +137,35 @@ def test_turning_changes_nothing(element: str, measure: str) -> None:
     assert np.abs(tangent_2 - turn @ tangent @ turn.T).max() < 1e-9 * np.abs(tangent).max()
 
 
-def test_incompatible_modes_that_do_not_settle_end_the_run_with_a_reason():
-    """Almost no hardening, all points flowing: the error of an element got out as it was."""
-    from corota.verification.problems import plasticity_patch
+@pytest.mark.parametrize("hardening", [0.0, 250.0])
+def test_incompatible_modes_settle_when_the_element_is_back_in_its_shape(hardening):
+    """The last step returns to zero displacement, where nothing but stress is left to measure
+    the modes with: no cut-back, and the stress of the material everywhere."""
+    from corota.verification.problems import plasticity_patch as problem
 
     mesh = ct.mesh.distort(ct.mesh.rectangle(1.0, 1.0, 3, 3), 0.2, seed=1)
     model = ct.Model(mesh)
-    law = ct.Mises(E=250e3, nu=0.25, yield_stress=5.0, isotropic=250.0)
+    law = ct.Mises(E=250e3, nu=0.25, yield_stress=5.0, isotropic=hardening)
     model.section("all", element="Q4I", material=law, plane="strain")
-    with pytest.raises(ct.ConvergenceError, match="step"):
-        plasticity_patch.strained(model)
+    results = problem.strained(model)
+    assert results.info.get("cut-backs", 0) == 0
+    share = np.arange(1, problem.COARSE + 1)[:, None] / problem.COARSE
+    path = [np.zeros((1, 2))]
+    for step in problem.STEPS:
+        path.append(path[-1][-1] + step * share)
+    strain = np.column_stack([np.concatenate(path), np.zeros(8 * problem.COARSE + 1)])
+    alone = law.respond(strain, "strain")["stress"][-1]
+    stress = results.frames[-1].fields[0].values["S"]
+    assert np.abs(stress[..., [0, 1, 3]] - alone).max() < 1e-10 * 5.0
+
+
+def test_an_element_pressed_inside_out_ends_the_run_with_a_reason():
+    """The error of elements gets out with their numbers."""
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, 2, 2))
+    law = ct.Mises(E=1000.0, nu=0.3, yield_stress=5.0, isotropic=50.0)
+    model.section("all", element="Q4I", material=law, local_strain="logarithmic")
+    model.fix("left", y=None)
+    model.fix("bottom", x=None, y=0.0)
+    model.fix("right", x=-1.2, y=None)
+    with pytest.raises(ct.ConvergenceError, match="inside out or not converged: element"):
+        ct.solve(model, ct.Static(increments=1, fixed_increments=True))

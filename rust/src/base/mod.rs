@@ -3,6 +3,7 @@
 
 pub mod dual;
 pub mod hyper;
+pub mod memory;
 pub mod pack;
 pub mod race;
 pub mod real;

@@ -166,6 +166,8 @@ struct Internal<T: Real, const N: usize, const M: usize> {
     stiffness: Mat<T, INTERNAL>,
     /// Least pivots: see [`LEAST_PIVOT`].
     least: [T; INTERNAL],
+    /// Largest component of the stress.
+    stress: T,
     coupling: [Nodal<T, N, M>; INTERNAL],
     failed: T::Mask,
 }
@@ -190,6 +192,7 @@ where
         force: [o; INTERNAL],
         stiffness: [[o; INTERNAL]; INTERNAL],
         least: [o; INTERNAL],
+        stress: o,
         coupling: [nodal(); INTERNAL],
         failed: T::none(),
     };
@@ -214,6 +217,9 @@ where
             let pressure = history.spherical::<T, N>(p, section);
             answer.stress[0] += pressure;
             answer.stress[1] += pressure;
+        }
+        for v in &answer.stress {
+            sums.stress = sums.stress.max(v.abs());
         }
         // A local gradient that turns the material inside out.
         let det = (h[0] + T::one()) * (h[3] + T::one()) - h[1] * h[2];
@@ -446,21 +452,18 @@ fn relax<E, T: Real, const N: usize, const M: usize, const A: usize>(
 where
     E: Element<N, M, A>,
 {
-    let mut size = T::zero();
+    let (mut size, mut extent) = (T::zero(), T::zero());
     for a in 0..N {
         for i in 0..2 {
             size = size.max(q[a][i].abs());
+            extent = extent.max((x[a][i] - x[0][i]).abs());
         }
     }
-    // What is held and heated has no displacement to measure the modes with.
-    let strain = history.largest::<T, N>(section);
-    for a in 1..N {
-        for i in 0..2 {
-            size = size.max((x[a][i] - x[0][i]).abs() * strain);
-        }
-    }
-    let tolerance = size.scale(LOCAL_STEP).max(T::real(f64::MIN_POSITIVE));
-    let mut radius = size.scale(MODE_STEP);
+    // What is held and heated, or has come back to its shape after flow, has no displacement
+    // to measure the modes with: the elastic strain of its stress does.
+    let softness = 1.0 / section.law.moduli()[0][0];
+    size = size.max(extent * history.largest::<T, N>(section));
+    let (mut tolerance, mut radius) = (T::zero(), T::zero());
     let mut base = *alpha;
     let mut direction = [T::zero(); INTERNAL];
     let mut length = T::one();
@@ -468,8 +471,13 @@ where
     // Work of the internal force along the step at its start.
     let mut start = T::real(-f64::MAX);
     let mut settled = T::none();
-    for _ in 0..MAX_LOCAL {
+    for round in 0..MAX_LOCAL {
         let sums = pass::<E, T, N, M, A>(x, q, alpha, section, history, None, false);
+        if round == 0 {
+            size = size.max(extent * sums.stress.scale(softness));
+            tolerance = size.scale(LOCAL_STEP).max(T::real(f64::MIN_POSITIVE));
+            radius = size.scale(MODE_STEP);
+        }
         let mut factor = sums.stiffness;
         ldlt(&mut factor, 2 * A, &sums.least);
         let mut step = sums.force;

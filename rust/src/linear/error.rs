@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use crate::base::memory::Shortage;
+
 /// Reasons for which a factorisation or a solve gives no answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinearError {
@@ -18,6 +20,14 @@ pub enum LinearError {
     Inaccurate { backward_error: f64, growth: f64 },
     /// A method was called before the one it needs.
     Order(&'static str),
+    /// There is not enough memory.
+    Memory(Shortage),
+}
+
+impl From<Shortage> for LinearError {
+    fn from(shortage: Shortage) -> Self {
+        Self::Memory(shortage)
+    }
 }
 
 /// A singular matrix: where the pivot vanished and which motion costs nothing.
@@ -55,6 +65,7 @@ impl fmt::Display for LinearError {
                  growth {growth:.1e}"
             ),
             Self::Order(text) => f.write_str(text),
+            Self::Memory(shortage) => shortage.fmt(f),
         }
     }
 }

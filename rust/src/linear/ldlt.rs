@@ -13,6 +13,7 @@ use super::scaling::{
 };
 use super::symbolic::Symbolic;
 use super::{Inertia, LinearSolver, check_rhs};
+use crate::base::memory;
 use crate::base::race::Race;
 
 /// Backward error above which one step of refinement is made.
@@ -24,6 +25,9 @@ const GROWTH_LIMIT: f64 = 1e15;
 
 /// Energy over squared length, relative to `|K|`, that is no more than rounding.
 const SINGULAR: f64 = 4e-16;
+
+/// Bytes that finding the order of elimination takes for each entry of the matrix (measured).
+const ORDERING: usize = 24;
 
 /// Multiplications from which a factorisation may be, and from which it is always shared.
 const SHARED_FACTOR: [f64; 2] = [3e7, 2e9];
@@ -210,7 +214,19 @@ impl LinearSolver for Ldlt {
         self.ready = false;
         (self.factor_race, self.solve_race) = Default::default();
         pattern.check(true)?;
+        // What an earlier pattern took goes first.
+        (self.symbolic, self.numeric) = Default::default();
+        let n = pattern.n();
+        let job = || format!("the order of elimination of {n} equations");
+        memory::require(ORDERING * pattern.row_idx.len() + 200 * n, job)?;
         self.symbolic = Symbolic::new(pattern)?;
+        let threads = if self.threads == 0 { pool::available() } else { self.threads };
+        if threads > 1 && self.symbolic.work > SHARED_FACTOR[0] {
+            // Each thread sets addresses aside when it begins: that must show in what is free.
+            pool::run(threads, || rayon::broadcast(|_| drop(std::hint::black_box(vec![0u8; 64]))));
+        }
+        let values = self.symbolic.values(threads) + pattern.row_idx.len();
+        memory::require(8 * values, || format!("the factorisation of {n} equations"))?;
         self.numeric = Numeric::new(&self.symbolic);
         self.col_ptr = pattern.col_ptr.to_vec();
         self.row_idx = pattern.row_idx.to_vec();
@@ -245,7 +261,7 @@ impl LinearSolver for Ldlt {
                     size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
                 }
                 numeric.factorize(symbolic, scaled, threads);
-                Ok(size)
+                Ok::<_, LinearError>(size)
             })
         })?;
         self.norm = size.norm;

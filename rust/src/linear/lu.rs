@@ -5,13 +5,14 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::lu::{
     LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Spec};
 
 use super::error::{LinearError, Singular};
 use super::pattern::Pattern;
 use super::scaling::{largest_at, max_abs};
 use super::{Inertia, LinearSolver, check_rhs};
+use crate::base::memory::Shortage;
 
 /// Backward error above which one step of refinement is made.
 const REFINE_ABOVE: f64 = 1e-14;
@@ -106,12 +107,13 @@ impl LinearSolver for Lu {
         self.row_scale = vec![1.0; n];
         self.col_scale = vec![1.0; n];
         let a = SymbolicSparseColMatRef::new_checked(n, n, &self.col_ptr, None, &self.row_idx);
-        let symbolic = factorize_symbolic_lu(a, LuSymbolicParams::default())
-            .map_err(|e| LinearError::Pattern(format!("{e:?}")))?;
+        let symbolic =
+            factorize_symbolic_lu(a, LuSymbolicParams::default()).map_err(|e| refused(e, n))?;
         let scratch = symbolic
             .factorize_numeric_lu_scratch::<f64>(Par::Seq, Spec::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        self.memory = Some(MemBuffer::new(scratch));
+        let memory = MemBuffer::try_new(scratch).map_err(|_| refused(FaerError::OutOfMemory, n))?;
+        self.memory = Some(memory);
         self.symbolic = Some(symbolic);
         Ok(())
     }
@@ -145,7 +147,7 @@ impl LinearSolver for Lu {
             use faer::sparse::linalg::LuError;
             let equation = match e {
                 LuError::SymbolicSingular { index } => index,
-                LuError::Generic(e) => return Err(LinearError::Pattern(format!("{e:?}"))),
+                LuError::Generic(e) => return Err(refused(e, n)),
             };
             return Err(LinearError::Singular(Singular {
                 equation,
@@ -203,6 +205,16 @@ impl LinearSolver for Lu {
             }
         }
         Ok(())
+    }
+}
+
+/// What the library refuses, in our words.
+fn refused(error: FaerError, n: usize) -> LinearError {
+    match error {
+        FaerError::IndexOverflow => {
+            LinearError::Pattern(format!("LU of {n} equations has too many entries"))
+        }
+        _ => Shortage::met(format!("the LU of {n} equations")).into(),
     }
 }
 

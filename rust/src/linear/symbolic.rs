@@ -110,6 +110,15 @@ impl Symbolic {
         Ok(this)
     }
 
+    /// Values that a factorisation holds at once: factor, a stack for each thread, and the
+    /// squares that the fronts above them hand up, at most as many as the largest pairs of them.
+    pub fn values(&self, threads: usize) -> usize {
+        let stacks = threads * self.stack_len.iter().sum::<usize>();
+        let shared = self.fronts.iter().filter(|f| f.top).map(|f| f.below * f.below);
+        let handed: usize = if threads > 1 { shared.sum() } else { 0 };
+        self.factor_len + stacks + handed + self.max_height * self.max_height
+    }
+
     /// Children of front `s`.
     pub fn children(&self, s: usize) -> &[u32] {
         &self.child_list[self.child_at[s]..self.child_at[s + 1]]

@@ -22,6 +22,7 @@ fn to_python(py: Python<'_>, error: LinearError) -> PyErr {
                 errors.getattr("SingularError")?.call((text,), Some(&keywords))?
             }
             LinearError::Inaccurate { .. } => errors.getattr("SingularError")?.call1((text,))?,
+            LinearError::Memory(shortage) => return Ok(super::memory::to_python(py, shortage)),
             LinearError::NotFinite { .. }
             | LinearError::RhsNotFinite { .. }
             | LinearError::Pattern(_)

@@ -5,6 +5,7 @@ mod contact;
 mod io;
 mod linear;
 mod material;
+mod memory;
 mod problem;
 
 use pyo3::prelude::*;
@@ -16,6 +17,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     io::register(m)?;
     linear::register(m)?;
     material::register(m)?;
+    memory::register(m)?;
     problem::register(m)?;
     Ok(())
 }

@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from corota.errors import Diagnostic
 from corota.mesh.quality import STRAIGHT, aspect_ratio, corner_sines, jacobians
@@ -70,6 +69,8 @@ def _many(severity: str, labels: Ints, text: str, hint: str) -> list[Diagnostic]
 def _same_place(mesh: Mesh, used: Ints) -> list[Diagnostic]:
     if len(used) < 2:
         return []
+    from scipy.spatial import cKDTree  # takes longer to import than a small job to solve
+
     size = float(np.ptp(mesh.points[used], axis=0).max())
     pairs = cKDTree(mesh.points[used]).query_pairs(TOUCHING * size, output_type="ndarray")
     if not len(pairs):

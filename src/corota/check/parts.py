@@ -6,8 +6,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from corota.mesh.data import EDGES
 
@@ -56,5 +54,8 @@ def _incidence(mesh: Mesh) -> tuple[Ints, Ints]:
 
 
 def _components(a: Ints, b: Ints, total: int) -> Ints:
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(total, total))
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)

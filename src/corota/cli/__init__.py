@@ -51,6 +51,9 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
     from importlib import import_module
 
     try:
+        from corota import _core
+
+        _core.require_memory(0.0, f"corota {command}")
         run = import_module(f"corota.cli.{command}").run
         return int(run(args, terminal))
     except CorotaError as error:

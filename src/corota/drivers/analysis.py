@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.drivers.localising import localised
 from corota.drivers.motion import add_kinetic
 from corota.drivers.observers import Observers
-from corota.drivers.registry import PROCEDURES
+from corota.drivers.registry import PROCEDURES, procedure
 from corota.drivers.solvers import SOLVERS
 from corota.drivers.state import State
 from corota.drivers.system import System
@@ -191,11 +192,19 @@ class Analysis:
             self._save(number, state, increment, factor, scalars)
 
         stops = self._stops(step)
-        PROCEDURES[step.procedure](system, step, number, state, self.observers, save, stops)
+        run = procedure(step.procedure)
+        run(system, step, number, state, self.observers, save, stops)
         assert state.at is not None
         state.time += state.step_time
         state.step_time = 0.0
         return system.reaction(state.at)
+
+    def _warn(self, kind: str, note: str) -> None:
+        """Say a thing once, and keep it."""
+        if kind not in self.warned:
+            self.warned.add(kind)
+            self.results.notes.append(note)
+            warnings.warn(note, stacklevel=3)
 
     def _stops(self, step: Step) -> list[float]:
         """Step times that outputs ask for."""
@@ -219,15 +228,18 @@ class Analysis:
                     add_kinetic(system, fields, state.u, state.v, step)
             strain = sums.pop("largest simplified strain")
             scalars = {**scalars, **sums}
-            if strain > LARGE_STRAIN and "strain" not in self.warned:
-                self.warned.add("strain")
-                note = (
+            if strain > LARGE_STRAIN:
+                self._warn(
+                    "strain",
                     f"local strain reaches {strain:.1%} in step {number}, increment {increment}; "
                     "the simplified local strain is meant for a few percent: compare with "
-                    "local_strain='modified' (LOCAL STRAIN=MODIFIED)"
+                    "local_strain='modified' (LOCAL STRAIN=MODIFIED)",
                 )
-                self.results.notes.append(note)
-                warnings.warn(note, stacklevel=2)
+            for block, own in zip(system.blocks, fields, strict=True):
+                if "flow" not in self.warned and (found := localised(block, own)):
+                    label = self.model.mesh.cell_labels[found[0]]
+                    self._warn("flow", f"element {label}, step {number}, increment {increment}: "
+                               + found[1])  # fmt: skip
         contact = None
         if system.touching is not None:
             contact, sums = system.touching.output()

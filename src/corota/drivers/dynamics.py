@@ -159,6 +159,8 @@ def dynamic_step(
             raise Interrupted(
                 f"stopped at step {number}, step time {target:g}; everything up to there is kept"
             )
+    if step.scheme == "energy_momentum" and state.v is not None:
+        state.carried = (state.u, state.v)
     # A static step that follows needs the static equation at this displacement.
     state.at = system.evaluate(state.u, step.period)
 
@@ -266,9 +268,13 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
     support_a = _start_supports(system, step, state)
     at = system.evaluate(state.u, 0.0)
     u, v = state.u, state.v
+    last = state.carried
+    goes_on = last is not None and last[0] is u and last[1] is v
+    goes_on = goes_on and step.scheme == "energy_momentum"
     if system.ties is not None:
-        # Dependent dofs accelerate as they turn, before their masters do.
-        system.ties.complete_rates(u, v, zero)
+        # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
+        # they keep their own velocities, which are those of its mid-point relations.
+        system.ties.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
     rayleigh, matrix = _damping(system, step, u)
     resting = zero
@@ -293,7 +299,8 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
         at.link = replace(link, curvature=0.0)
     a = zero + system.predict(at, support_a)[0]
     state.a = a
-    system.core.start_motion(system.in_space(u), system.in_space(v))
+    if not goes_on:
+        system.core.start_motion(system.in_space(u), system.in_space(v))
     return Moving(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
 
 

@@ -3,22 +3,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
-
-from corota.drivers.buckling import buckle_step
-from corota.drivers.dynamics import dynamic_step
-from corota.drivers.frequency import frequency_step
-from corota.drivers.modal import modal_step, steady_state_step
-from corota.drivers.static import static_step
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-PROCEDURES: dict[str, Callable[..., Any]] = {
-    "static": static_step,
-    "buckle": buckle_step,
-    "dynamic": dynamic_step,
-    "frequency": frequency_step,
-    "modal dynamic": modal_step,
-    "steady state": steady_state_step,
+#: Module and function of each procedure; a module is imported when a step asks for it.
+PROCEDURES = {
+    "static": ("static", "static_step"),
+    "buckle": ("buckling", "buckle_step"),
+    "dynamic": ("dynamics", "dynamic_step"),
+    "frequency": ("frequency", "frequency_step"),
+    "modal dynamic": ("modal", "modal_step"),
+    "steady state": ("modal", "steady_state_step"),
 }
+
+
+def procedure(name: str) -> Callable[..., Any]:
+    """What runs the steps of a kind; the name is one of :data:`PROCEDURES`."""
+    module, function = PROCEDURES[name]
+    found: Callable[..., Any] = getattr(import_module(f"corota.drivers.{module}"), function)
+    return found

@@ -18,6 +18,7 @@ from corota import _core, elements
 from corota.drivers.cells import blocks_of, check_shapes
 from corota.drivers.conditions import Conditions
 from corota.drivers.constraints import Link, Ties, extra_dofs
+from corota.drivers.memory import require_model
 from corota.drivers.newton import ElementFailure, Judgement, larger
 from corota.drivers.thermal import FreeStrains
 from corota.drivers.tie_setup import carry_curves
@@ -120,6 +121,7 @@ class System:
             for b in self.blocks
         ]
         check_shapes(model, self.blocks)
+        require_model(self.blocks, mesh.n_nodes)
         carried = np.zeros(mesh.n_nodes, np.int64)
         for b in self.blocks:
             own = elements.find(b.section.element).dofs_per_node

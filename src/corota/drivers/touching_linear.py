@@ -349,7 +349,7 @@ class Bordered:
         return Triplets.join([upper, bend, *rows]), Triplets.join(rest)
 
     def _spare(self, c: Coupling, direct: bool) -> Ints:
-        """Keys of couplings that may soon be wanted."""
+        """Keys of couplings that may soon be wanted, some of them more than once."""
         dofs, own = c.near
         if not direct or not len(dofs):
             return np.zeros(0, np.int64)
@@ -360,7 +360,8 @@ class Bordered:
         # Multipliers of one pair do not couple with each other.
         good &= (np.minimum(a, b) < self.nf) | (a == b)
         a, b = a[good], b[good]
-        return np.unique(np.maximum(a, b) * self.size + np.minimum(a, b))
+        keys: Ints = np.maximum(a, b) * self.size + np.minimum(a, b)
+        return keys
 
     def _multiply(self, data: Floats, x: Floats) -> Floats:
         """Product of the symmetric matrix with a vector that is mostly zero."""

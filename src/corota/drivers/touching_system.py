@@ -441,14 +441,14 @@ class TouchingSystem:
         variables, constraints = pair.core.pattern()
         found = pair.core.candidates()
         used = np.zeros(len(found), bool)
-        used[np.unique(terms.pair)] = True
+        used[terms.pair] = True
         if not used.any():
             return np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int64)
         width = int(found[:, 1].max()) + 8
         key = found[:, 0] * width + found[:, 1] + 3
-        close = np.zeros(len(found), bool)
-        for shift in (-2, -1, 0, 1, 2):
-            close |= np.isin(key, key[used] + shift)
+        touching = np.sort(key[used])
+        next_up = np.minimum(np.searchsorted(touching, key - 2), len(touching) - 1)
+        close = np.abs(touching[next_up] - key) <= 2
         variables, constraints = variables[close], constraints[close]
         own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
         if pair.two:

@@ -55,6 +55,8 @@ class UserBlocks:
 
         facts = {e["name"]: e for e in _core.elements()}
         self.core = core
+        # Largest strain so far: a body may come back to its shape.
+        self.largest = 0.0
         self.blocks = []
         for index, block in enumerate(blocks):
             material = block.section.material
@@ -99,7 +101,8 @@ class UserBlocks:
             change = max(
                 float(np.abs(a - b).max(initial=0.0)) for a, b in zip(now, seen, strict=True)
             )
-            if change <= SETTLED * size:
+            self.largest = max(self.largest, size)
+            if change <= SETTLED * self.largest:
                 return
             seen = now
         raise ElementFailure("the internal modes of elements with a Python material did not settle")

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota import _core
 from corota.errors import FileError, InputError
 from corota.io.gmsh_parse import NAMES, Parsed, Reader
+from corota.io.inp_lexer import READ
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
 
@@ -36,6 +38,7 @@ def read_gmsh(path: str | os.PathLike[str]) -> Mesh:
         If the file cannot be read.
     """
     try:
+        _core.require_memory(READ * Path(path).stat().st_size, f"reading {path}")
         data = Path(path).read_bytes()
     except OSError as error:
         raise FileError(f"{path}: {error.strerror or error}") from error

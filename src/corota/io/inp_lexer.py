@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from corota import _core
 from corota.errors import Diagnostic, FileError, Location
 from corota.io import inp_numbers
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 MAX_DEPTH = 16
 #: Bytes of a deck with everything that it includes.
 MAX_BYTES = 8 << 30
+#: Bytes of memory that a deck or mesh takes for each of its own (measured on a million nodes).
+READ = 8.0
 
 _QUOTED = re.compile(r'^"(.*)"$')
 
@@ -335,6 +338,7 @@ class Lexer:
         self._bytes += status.st_size
         if self._bytes > MAX_BYTES:
             raise ValueError(f"the deck and its files exceed {MAX_BYTES >> 30} GB")
+        _core.require_memory(READ * status.st_size, f"reading {path.name}")
         with open(path, "rb") as file:
             # Python reserves what may be read: no more than is there.
             data = file.read(status.st_size)

@@ -21,6 +21,7 @@ from corota.model import Model
 from corota.results import Results
 from corota.steps import Static
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.contact_models import ellipse_of
 from corota.verification.models import cell, run
 
 R, H, E1, E2, NU, LOAD = 50.0, 100.0, 210e3, 70e3, 0.3, 35e3
@@ -70,17 +71,8 @@ def pressures(results: Results) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ellipse(results: Results) -> tuple[float, float]:
-    """Half width and peak of the ellipse p^2 = p0^2 (1 - x^2/a^2) of the pressures.
-
-    The peak by least squares of the squares, the half width by the second moment, a^2 / 4.
-    """
-    x, p = pressures(results)
-    inner = p > 0.2 * p.max()
-    table = np.column_stack([np.ones(inner.sum()), x[inner] ** 2])
-    square = np.linalg.lstsq(table, p[inner] ** 2, rcond=None)[0][0]
-    order, fine = np.argsort(x), np.linspace(0.0, float(x.max()), 20001)
-    q = np.interp(fine, x[order], p[order])
-    return float(2.0 * np.sqrt((q * fine**2).sum() / q.sum())), float(np.sqrt(square))
+    """Half width and peak of the ellipse of the pressures."""
+    return ellipse_of(*pressures(results))
 
 
 def hertz(load: float, plane: str) -> tuple[float, float]:

@@ -1,0 +1,249 @@
+"""Impacts on a rigid wall that examples and problems share: an elastic bar, yielding rings."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.contact import RigidCurve
+from corota.drivers.analysis import solve
+from corota.materials import Elastic, Material
+from corota.materials_plastic import Mises
+from corota.model import Model
+from corota.results import Results
+from corota.steps import Dynamic
+from corota.verification.models import cell
+
+#: The elastic bar: length, modulus, density, speed, and the speed of its waves.
+LENGTH, YOUNG, DENSITY, SPEED = 10.0, 900.0, 1.0, 0.1
+WAVE = (YOUNG / DENSITY) ** 0.5
+#: The ring: outer radius, depth of its wall, modulus, yield stress, hardening.
+RADIUS, DEPTH, RING_YOUNG = 1.0, 0.1, 1e4
+YIELD, HARDENING = 60.0, 200.0
+
+
+@dataclass
+class Impact:
+    """What an impact was like, each figure over its exact value but for the contacts.
+
+    Parameters
+    ----------
+    contacts : int
+        How often the bar came to touch the wall.
+    duration, force, rebound, energy : float
+        Time in contact, largest force, velocity of the centre of mass and energy at the end.
+    mean_force, shortening : float
+        Impulse over the exact duration, and how much shorter the bar gets.
+    iterations : float
+        Newton iterations an increment.
+    history : ndarray, shape (n, 3)
+        Time over 2 L / c, force over rho c A v, energy over that of the start.
+    """
+
+    contacts: int
+    duration: float
+    force: float
+    rebound: float
+    energy: float
+    mean_force: float
+    shortening: float
+    iterations: float
+    history: np.ndarray
+
+
+def bar(element: str = "Q4I", cells: int = 200, **contact: Any) -> Model:
+    """Build the bar, just touching the wall x = 0, on its way into it."""
+    height = LENGTH / cells * 2.0
+    mesh = meshes.rectangle(LENGTH, height, nx=cells, ny=1, cell=cell(element))
+    model = Model(mesh, name="bar")
+    material = Elastic(E=YOUNG, nu=0.0, rho=DENSITY)
+    model.section("all", element=element, material=material, thickness=1.0 / height)
+    model.fix("bottom", x=None)
+    model.velocity(x=-SPEED)
+    wall = RigidCurve.line((0.0, -1.0), (0.0, 1.0 + height))
+    model.contact("left", wall, name="wall", **contact)
+    return model
+
+
+def strike(
+    element: str = "Q4I",
+    scheme: str = "hht",
+    cells: int = 200,
+    redistribute: bool = True,
+    mass: Any = "consistent",
+    step: float = 0.5,
+) -> Impact:
+    """Run the impact; `step` is the increment over the time of a wave through a cell."""
+    model = bar(element, cells)
+    exact = 2.0 * LENGTH / WAVE
+    increment = step * LENGTH / cells / WAVE
+    dynamic = Dynamic(
+        period=1.3 * exact,
+        increments=round(1.3 * exact / increment),
+        scheme=scheme,
+        mass=mass,
+        redistribute=redistribute,
+    )
+    frames = solve(model, dynamic, fields=False).frames[1:]
+    end = model.mesh.nodes_of("right")
+    shorter = max(-float(f.U[end, 0].mean()) for f in frames)
+    value = {n: np.array([f.scalars[n] for f in frames]) for n in frames[-1].scalars}
+    time = np.array([f.time for f in frames])
+    force = value["wall: force x"]
+    closed = force > 1e-6 * force.max()
+    total = value["kinetic energy"] + value["internal work"]
+    first = 0.5 * DENSITY * LENGTH * SPEED**2
+    return Impact(
+        contacts=int(closed[0]) + int((np.diff(closed.astype(int)) > 0).sum()),
+        duration=float(np.ptp(time[closed])) / exact if closed.any() else 0.0,
+        force=float(force.max() / (DENSITY * WAVE * SPEED)),
+        rebound=float(value["momentum x"][-1] / (DENSITY * LENGTH * SPEED)),
+        energy=float(total[-1] / first),
+        mean_force=float(force.sum() * increment / exact / (DENSITY * WAVE * SPEED)),
+        shortening=shorter / (SPEED * LENGTH / WAVE),
+        iterations=float(value["iterations"].mean()),
+        history=np.column_stack([time / exact, force / (DENSITY * WAVE * SPEED), total / first]),
+    )
+
+
+@dataclass
+class Flight:
+    """What became of the ring; energies over the kinetic energy of the start.
+
+    Parameters
+    ----------
+    rebound : float
+        Velocity of the centre of mass at the end over that of the start.
+    kinetic, strain, plastic, lack : float
+        Energies at the end, and what the balance lacks at most at any time.
+    sideways : float
+        Largest momentum along the wall over that of the start.
+    squash : float
+        Height of the body at the end, over that at rest, minus one.
+    released : float
+        Time at which the ring leaves the wall for good [time].
+    iterations : float
+        Newton iterations an increment.
+    history : dict of ndarray
+        Time, force and the energies.
+    """
+
+    rebound: float
+    kinetic: float
+    strain: float
+    plastic: float
+    lack: float
+    sideways: float
+    squash: float
+    released: float
+    iterations: float
+    history: dict[str, np.ndarray] = field(default_factory=dict)
+    results: Results | None = None
+
+
+def ring(
+    element: str = "Q4I", around: int = 64, through: int = 2, *, plastic: bool = False,
+    speed: float = 2.0, unit: float = 1.0, local_strain: Any = "modified", body: str = "ring",
+) -> Model:  # fmt: skip
+    """Build the ring, or a bar upright, nearly touching the wall y = 0.
+
+    `around` counts the elements along the ring or bar; `unit` is one metre in the unit of length.
+    Masses stay, so stresses scale with 1 / unit (force = mass length / time^2).
+    """
+    if body == "bar":
+        # 1 x 0.2, standing on the wall; it bulges at the foot like a Taylor bar.
+        mesh = meshes.rectangle(
+            0.2 * unit, RADIUS * unit, nx=through, ny=around, cell=cell(element)
+        )
+        mesh = meshes.move(mesh, (-0.1 * unit, 0.001 * RADIUS * unit))
+    else:
+        mesh = meshes.annulus(
+            (RADIUS - DEPTH) * unit, RADIUS * unit, n_radial=through, n_around=around,
+            cell=cell(element), centre=(0.0, 1.001 * RADIUS * unit),
+        )  # fmt: skip
+    model = Model(mesh, name=body)
+    stress, density = 1.0 / unit, DENSITY / unit**3
+    material: Material = Elastic(E=RING_YOUNG * stress, nu=0.3, rho=density)
+    if plastic:
+        material = Mises(
+            E=RING_YOUNG * stress, nu=0.3, rho=density, yield_stress=YIELD * stress,
+            isotropic=HARDENING * stress,
+        )  # fmt: skip
+    model.section(
+        "all", element=element, material=material, thickness=unit, local_strain=local_strain
+    )
+    model.velocity(y=-speed * unit)
+    # The wall lies to the left of the line, below it.
+    wall = RigidCurve.line((3.0 * unit, 0.0), (-3.0 * unit, 0.0))
+    model.contact("outer" if body == "ring" else "bottom", wall, name="wall")
+    return model
+
+
+def fly(
+    element: str = "Q4I", *, plastic: bool = False, speed: float = 2.0, around: int = 64,
+    through: int = 2, unit: float = 1.0, scheme: str = "energy_momentum", period: float = 1.0,
+    increments: int = 200, mass_kind: Any = "consistent", redistribute: bool = True,
+    tolerance: float = 5e-3, body: str = "ring",
+) -> Flight:  # fmt: skip
+    """Run the impact; 0 increments for automatic ones."""
+    model = ring(
+        element, around, through, plastic=plastic, speed=speed, unit=unit,
+        local_strain="simplified" if plastic else "modified", body=body,
+    )  # fmt: skip
+    step = Dynamic(
+        period=period,
+        increments=increments,
+        first_increment=2e-3,
+        error_tolerance=tolerance,
+        scheme=scheme,
+        mass=mass_kind,
+        redistribute=redistribute,
+    )
+    results = solve(model, step)
+    frames = results.frames
+
+    def total(name: str) -> np.ndarray:
+        """Integral of a density over the ring, each frame but the first."""
+        return np.array(
+            [
+                sum(float((f.volume * f.values.get(name, 0.0)).sum()) for f in frame.fields)
+                for frame in frames[1:]
+            ]
+        )
+
+    value = {n: np.array([f.scalars[n] for f in frames[1:]]) for n in frames[-1].scalars}
+    mass = mass_of(results)
+    first = 0.5 * mass * (speed * unit) ** 2
+    kinetic = value["kinetic energy"] / first
+    strain, worked = value["strain energy"] / first, total("PWORK") / first
+    force = value["wall: force y"]
+    closed = force > 1e-9 * force.max()
+    time = np.array([f.time for f in frames[1:]])
+    rest = model.mesh.points[:, 1]
+    y = rest + frames[-1].U[:, 1]
+    momentum = mass * speed * unit
+    return Flight(
+        rebound=float(value["momentum y"][-1] / momentum),
+        kinetic=float(kinetic[-1]),
+        strain=float(strain[-1]),
+        plastic=float(worked[-1]),
+        lack=float(np.abs(kinetic + strain + worked - 1.0).max()),
+        sideways=float(np.abs(value["momentum x"]).max() / momentum),
+        squash=float(np.ptp(y) / np.ptp(rest) - 1.0),
+        released=float(time[closed][-1]) if closed.any() else 0.0,
+        iterations=float(value["iterations"].mean()),
+        history={
+            "time": time, "force": force, "kinetic": kinetic, "strain": strain, "plastic": worked,
+        },
+        results=results,
+    )  # fmt: skip
+
+
+def mass_of(results: Results) -> float:
+    """Mass of the ring from the volume of its quadrature points."""
+    rho = results.model.sections[0].material.rho
+    return float(sum(f.volume.sum() for f in results.frames[0].fields) * rho)

@@ -1,0 +1,91 @@
+"""Constant strain on twenty random meshes for every element, in plane stress and plane strain.
+
+A rectangle 3 x 2 of 3 x 3 cells whose inner nodes are shifted by up to 0.3 of a side, turned by
+another angle each time; its boundary (with drilling rotations) is moved by a random linear field.
+Displacements inside and the stress at every point must be those of the field.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.materials import Elastic
+from corota.mesh import Mesh
+from corota.model import Model
+from corota.results import Results
+from corota.steps import Static
+from corota.verification.catalogue import Picture, Problem, Value
+from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
+
+YOUNG, POISSON, SEEDS = 210.0, 0.3, 20
+
+
+def moduli(plane: str) -> np.ndarray:
+    """Hooke's law for xx, yy and the shear angle."""
+    c, d = YOUNG / (1.0 - POISSON**2), POISSON
+    if plane == "strain":
+        c = YOUNG * (1.0 - POISSON) / (1.0 + POISSON) / (1.0 - 2.0 * POISSON)
+        d = POISSON / (1.0 - POISSON)
+    return np.array([[c, c * d, 0.0], [c * d, c, 0.0], [0.0, 0.0, YOUNG / 2.0 / (1.0 + POISSON)]])
+
+
+def distorted(element: str, seed: int) -> Mesh:
+    """One of the meshes."""
+    mesh = meshes.rectangle(3.0, 2.0, 3, 3, cell(element), "alternate")
+    return meshes.move(meshes.distort(mesh, 0.3, seed), shift=(1.0, -0.5), angle=7.0 * seed)
+
+
+def solved(element: str, plane: Any, seed: int) -> tuple[Results, np.ndarray]:
+    """One mesh; with the gradient of its field."""
+    mesh = distorted(element, seed)
+    h = 1e-3 * np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 2))
+    model = Model(mesh)
+    material = Elastic(E=YOUNG, nu=POISSON)
+    model.section("all", element=element, material=material, thickness=0.7, plane=plane)
+    edge = boundary(mesh)
+    skew = np.array(0.5 * (h[1, 0] - h[0, 1])) if element in DRILLING else None
+    prescribe(model, edge, mesh.points[edge] @ h.T, skew)
+    return run(model, Static(nlgeom=False), fields=True), h
+
+
+def errors(element: str, plane: str, seed: int) -> tuple[float, float]:
+    """Largest errors of displacements and stresses over their sizes."""
+    results, h = solved(element, plane, seed)
+    u = results.mesh.points @ h.T
+    displacement = float(np.abs(results.frames[-1].U - u).max() / np.abs(u).max())
+    stress = moduli(plane) @ [h[0, 0], h[1, 1], h[0, 1] + h[1, 0]]
+    found = results.frames[-1].fields[0].values["S"][..., [0, 1, 3]]
+    return displacement, float(np.abs(found - stress).max() / np.abs(stress).max())
+
+
+def measure() -> Iterator[Value]:
+    """The worst of the meshes."""
+    for element in ELEMENTS:
+        for plane in ("stress", "strain"):
+            worst = np.max([errors(element, plane, seed) for seed in range(SEEDS)], axis=0)
+            yield Value(f"displacement error, {element}, plane {plane}", 0.0, worst[0], 1e-12,
+                        "absolute")  # fmt: skip
+            yield Value(f"stress error, {element}, plane {plane}", 0.0, worst[1], 1e-11,
+                        "absolute")  # fmt: skip
+
+
+def picture() -> Picture:
+    """One of the meshes, displacements enlarged."""
+    return Picture(solved("Q8", "stress", 7)[0], "U", 100.0)
+
+
+PROBLEM = Problem(
+    title="Constant strain on random meshes",
+    group="properties of the method",
+    source="any linear field solves the equations",
+    certainty="analytic",
+    why="rounding",
+    measure=measure,
+    picture=picture,
+    seconds=3.0,
+)

@@ -1,0 +1,103 @@
+"""Hertz: two equal steel cylinders of radius 10 on each other, plane strain.
+
+E = 210000, nu = 0.3, a force of 500 a unit of thickness: half width 0.1660929162, peak pressure
+1916.456725. A quarter of either disc, with meshes that do not match; the contact is a sixtieth of
+the radius wide, small beside the bodies as Hertz wants it. Geometrically linear.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.materials import Elastic
+from corota.model import Model
+from corota.results import Results
+from corota.steps import Static
+from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
+from corota.verification.contact_models import ellipse_of, quarter
+from corota.verification.models import DRILLING, run
+
+R, YOUNG, NU, LOAD = 10.0, 210e3, 0.3, 500.0
+HALF, PEAK = 0.1660929162, 1916.456725
+#: Thinner cells in the middle (2.2) make the pressures of quadratic cells alternate by a half.
+GROWTH = 1.8
+
+
+@cache
+def solved(element: str, n: int) -> Results:
+    """The upper disc with `n` cells a side, the lower one with a quarter fewer."""
+    up = meshes.move(quarter(R, n, element, GROWTH), shift=(0.0, R))
+    low = meshes.move(quarter(R, 3 * n // 4, element, GROWTH, upper=True), shift=(0.0, -R))
+    model = Model(meshes.assembly(up=up, low=low))
+    steel = Elastic(E=YOUNG, nu=NU)
+    model.section("all", element=element, material=steel, plane="strain")
+    for name in ("up", "low"):
+        model.fix(f"{name}.left", y=None, rotation=element in DRILLING)
+    model.fix("low.bottom", x=None)
+    model.contact("up.bottom", "low.top", name="pair")
+    model.traction("up.top", y=-0.5 * LOAD / R)
+    return run(model, Static(nlgeom=False), fields=True)
+
+
+def pressures(results: Results) -> tuple[np.ndarray, np.ndarray]:
+    """Place and contact pressure of the nodes of the upper disc."""
+    nodes = results.mesh.nodes_of("up.bottom")
+    return results.mesh.points[nodes, 0], np.asarray(results.nodal("CPRESS")[nodes])
+
+
+def measure() -> Iterator[Value]:
+    """Half width, peak, force."""
+    for element, n in (("Q4I", 48), ("Q8R", 48), ("Q4D", 64)):
+        results = solved(element, n)
+        a, p0 = ellipse_of(*pressures(results))
+        yield Value(f"half width, {element} {n} x {n}", HALF, a, 0.01)
+        yield Value(f"peak pressure, {element} {n} x {n}", PEAK, p0, 0.01)
+        force = results.frames[-1].scalars["pair: force y"]
+        yield Value(f"force that passes, {element} {n} x {n}", 0.5 * LOAD, force, 1e-9)
+
+
+def picture() -> Picture:
+    """Mises stress."""
+    return Picture(solved("Q4I", 48), "MISES")
+
+
+def curve() -> Curve:
+    """Pressure over the place."""
+    x, p = pressures(solved("Q4I", 48))
+    near = np.abs(x) < 1.6 * HALF
+    line = np.linspace(0.0, HALF, 60)
+    return Curve("distance from the middle", "pressure",
+                 {"Hertz": (line, PEAK * np.sqrt(1.0 - (line / HALF) ** 2))},
+                 {"nodes of Q4I 48 x 48": (x[near], p[near])})  # fmt: skip
+
+
+def study() -> Study:
+    """Error of the peak pressure."""
+    cells = (16, 32, 64)
+    series = {
+        e: (
+            [float(n) for n in cells],
+            [abs(ellipse_of(*pressures(solved(e, n)))[1] / PEAK - 1.0) for n in cells],
+        )
+        for e in ("Q4I", "Q4D")
+    }
+    return Study("error of the peak pressure", series, "cells a side")
+
+
+PROBLEM = Problem(
+    title="Two equal cylinders (Hertz)",
+    group="contact",
+    source="H. Hertz (1882)",
+    certainty="analytic",
+    why="about nine cells touch; pressures at nodes alternate about the ellipse",
+    measure=measure,
+    picture=picture,
+    curve=curve,
+    study=study,
+    seconds=2.0,
+)

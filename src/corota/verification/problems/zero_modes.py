@@ -1,0 +1,74 @@
+"""Zero-energy modes: three rigid ones and no other, but for the one that Q8R declares.
+
+Eigenvalues of the stiffness of one skew cell and of two side by side, over the largest. Reduced
+integration leaves Q8R one more mode on a single cell, which two cells cannot share.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from corota import mesh as meshes
+from corota.materials import Elastic
+from corota.model import Model
+from corota.verification.catalogue import Problem, Value
+from corota.verification.models import DRILLING, ELEMENTS, assemble, cell, single
+from corota.verification.shapes import QUAD, TRIANGLE
+
+#: Skew quadrilateral, counter-clockwise.
+SKEW = np.array([[0.0, 0.0], [1.6, 0.1], [1.3, 1.2], [-0.1, 0.9]])
+
+
+def one(element: str) -> Model:
+    """A single cell."""
+    kind = cell(element)
+    n = int(kind[-1])
+    if kind.startswith("tri"):
+        x = TRIANGLE[:n] @ (SKEW[[1, 3]] - SKEW[0])
+    else:
+        r, s = QUAD[:n].T
+        weights = 0.25 * np.stack([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s),
+                                   (1 - r) * (1 + s)], axis=1)  # fmt: skip
+        x = weights @ SKEW
+    return single(element, x, E=1.0, nu=0.3)
+
+
+def two(element: str) -> Model:
+    """Two cells that share a side."""
+    kind = cell(element)
+    mesh = meshes.mapped(SKEW, 1 if kind.startswith("tri") else 2, 1, kind)
+    model = Model(mesh)
+    model.section("all", element=element, material=Elastic(E=1.0, nu=0.3))
+    return model
+
+
+def zeros(model: Model, element: str) -> int:
+    """Eigenvalues of the stiffness below 1e-10 of the largest."""
+    width = 3 if element in DRILLING else 2
+    _, stiffness = assemble(model, np.zeros((model.mesh.n_nodes, width)), nlgeom=False)
+    found = np.linalg.eigvalsh(stiffness)
+    return int((np.abs(found) < 1e-10 * found[-1]).sum())
+
+
+def measure() -> Iterator[Value]:
+    """Every element, alone and beside another."""
+    for element in ELEMENTS:
+        expected = 4 if element == "Q8R" else 3
+        yield Value(f"zero modes of one cell, {element}", expected, zeros(one(element), element),
+                    0.0, "absolute")  # fmt: skip
+        yield Value(f"zero modes of two cells, {element}", 3, zeros(two(element), element), 0.0,
+                    "absolute")  # fmt: skip
+
+
+PROBLEM = Problem(
+    title="Zero-energy modes",
+    group="properties of the method",
+    source="rank of the stiffness: T. J. R. Hughes, The Finite Element Method (1987), section 4.7",
+    certainty="analytic",
+    why="a count",
+    measure=measure,
+    seconds=0.1,
+)

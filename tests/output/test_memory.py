@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A machine with little memory: refused with a message before anything is taken, exit 5."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import corota as ct
+from corota import _core
+from corota.errors import ResourceError
+from corota.io.formats import write
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/limits").exists(), reason="asks Linux")
+
+#: Runs a deck with so many MB of addresses left.
+RUN = """
+import resource, sys
+from pathlib import Path
+import numpy
+from corota import _core
+from corota.cli import main
+used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (int(sys.argv[1]) << 20),) * 2)
+sys.exit(main(["run", "strip.inp", "-q", "--threads", "1"]))
+"""
+
+
+def test_a_job_that_no_machine_can_hold() -> None:
+    with pytest.raises(ResourceError, match=r"for a test: it takes about \d+ MB, \d+ MB are free"):
+        _core.require_memory(1e15, "a test")
+    _core.require_memory(0.0, "nothing")
+
+
+@pytest.mark.parametrize(("left", "code"), [(8, 5), (3000, 0)])
+def test_an_address_limit_is_seen_before_it_is_met(tmp_path: Path, left: int, code: int) -> None:
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, 20, 4), name="strip")
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+    model.fix("left")
+    model.force("right", y=-0.01)
+    model.steps.append(ct.Static(increments=1))
+    write(model, tmp_path / "strip.inp")
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, str(left)], cwd=tmp_path, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == code, done.stderr
+    assert (tmp_path / "strip.vtkhdf").exists() == (code == 0)
+    if code:
+        assert "not enough memory for corota run" in done.stderr
