@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.verification.plastic_models import find, notched
+from corota.verification.plastic_models import find, notched, perforated_strip
 from corota.verification.problems import plastic_bending
 from corota.verification.problems.ring_plane_stress import nadai, radial_stress
 from corota.verification.problems.thick_cylinder_plastic import YIELD, hill, ring
@@ -100,3 +100,17 @@ def test_double_notch_does_not_lock(
     assert 0.0 < errors[1] < within, errors
     # First order: the strain is infinite at the notch.
     assert errors[1] < 1.2 * meshes[0] / meshes[1] * errors[0], errors
+
+
+@pytest.mark.parametrize("element", ["Q8R", "OPT"])
+def test_a_runaway_is_not_taken_for_rounding(element: str) -> None:
+    """Near collapse displacements of 1e14 once passed: they round worse than the forces."""
+    model = perforated_strip(
+        element, 6, ct.Mises(E=70000.0, nu=0.2, yield_stress=243.0), pull=0.3, thickness=1.0
+    )
+    results = ct.solve(model, ct.Static(nlgeom=False, increments=10), threads=1, fields=False)
+    top = find(model.mesh, 1, 18.0)
+    for frame in results.frames[1:]:
+        assert np.abs(frame.U).max() <= 0.31
+        assert frame.scalars["residual"] <= 1e-4
+        assert frame.RF[top, 1].sum() <= 1.05 * 243.0 * 5.0
