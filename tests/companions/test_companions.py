@@ -211,3 +211,29 @@ def test_numbers_of_a_beam_are_checked(area: float, inertia: float, shear_area: 
     model = ct.Model(chain(1, 1.0))
     with pytest.raises(ct.InputError):
         model.beam([0], material=MATERIAL, area=area, inertia=inertia, shear_area=shear_area)
+
+
+def test_picture_of_the_model_shows_lines_masses_and_links(tmp_path) -> None:
+    pytest.importorskip("matplotlib")
+    from corota import plots
+
+    mesh = lines(
+        [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (3.0, 0.0)],
+        ("line2", [[0, 1], [1, 2], [2, 3], [2, 4]]), ("point1", [[2], [1]]),
+    )  # fmt: skip
+    model = ct.Model(mesh)
+    model.beam([0], material=MATERIAL, area=1.0, inertia=0.1)
+    model.truss([1], material=MATERIAL, area=1.0)
+    model.spring([2], 3.0)
+    model.spring([4], 3.0, "y")
+    model.spring([5], 2.0, "theta")
+    model.dashpot(2, 4, c=1.0)
+    model.point_mass([3], 2.0)
+    model.rigid([4], 3)
+    figure = plots.model(model, path=tmp_path / "model.png")
+    drawn = [
+        len(c.get_segments()) for c in figure.axes[0].collections if hasattr(c, "get_segments")
+    ]
+    # Beam, truss, both springs, dashpot, link; edges and outline of no cell.
+    assert sorted(n for n in drawn if n) == [1, 1, 1, 1, 2]
+    assert (tmp_path / "model.png").stat().st_size > 2_000

@@ -11,6 +11,7 @@ from corota.fields import section_of_cells
 from corota.mesh import EDGES
 from corota.model import BodyForce, EdgeLoad, NodalForce
 from corota.plots.figure import COLORS, INK, extent_size, look, new_figure, save
+from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import edge_lines, outline, surface
 
@@ -47,7 +48,8 @@ def model(
     """Draw a model: sections in colors, node and edge sets, supports and loads.
 
     Triangles point along held directions, squares hold the rotation, violet arrows are
-    prescribed movements, orange ones loads; lengths compare loads of one kind only.
+    prescribed movements, orange ones loads; lengths compare loads of one kind only. Beams and bars
+    are heavy lines, springs zigzags, thin lines lead to reference nodes.
 
     Parameters
     ----------
@@ -87,6 +89,7 @@ def model(
             )
         ax.add_collection(LineCollection(outline(mesh, mesh.points), colors=INK, linewidths=0.9))
         draw_rigid(ax, subject)
+        draw_lines(ax, subject, size)
         if sets:
             _sets(ax, subject)
         _supports(ax, subject, size)
@@ -148,7 +151,8 @@ def _sets(ax: Any, subject: Model) -> None:
         )
         shown += 1
     for name, members in mesh.node_sets.items():
-        if shown == MOST_SETS or not 0 < len(members) < mesh.n_nodes:
+        whole = not 0 < len(members) < mesh.n_nodes
+        if shown == MOST_SETS or whole or name in mesh.edge_sets:
             continue
         color = COLORS[shown % len(COLORS)]
         at = mesh.points[members]

@@ -152,7 +152,7 @@ def _picture(picture: Picture, target: Path, name: str) -> Path:
             picture.subject, picture.variable, scale=picture.scale, path=path, dpi=DPI, title=""
         )
     else:
-        plots.model(picture.subject, path=path, dpi=DPI)
+        plots.model(picture.subject, sets=False, path=path, dpi=DPI)
     return _shrunk(path)
 
 

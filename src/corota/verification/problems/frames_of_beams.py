@@ -22,16 +22,28 @@ from corota.verification.beam_models import (
     von_mises_truss,
     williams_toggle,
 )
-from corota.verification.catalogue import Curve, Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import run
 
 #: Model, last displacement, and the exact load factors at the limit points.
 CASES: dict[str, tuple[Callable[[], tuple[Model, int]], float, tuple[float, float]]] = {
     "Lee's frame": (lee_frame, -62.0, (1.8544527, -0.93924896)),
     "Williams' toggle": (williams_toggle, -0.7, (33.847716, 31.246220)),
+    "Lee's frame without shear": (
+        lambda: lee_frame(shear=False),
+        -62.0,
+        (1.8556728, -0.94144316),
+    ),
+    "Williams' toggle without shear": (
+        lambda: williams_toggle(shear=False),
+        -0.7,
+        (33.870385, 31.281774),
+    ),
     "deep arch": (lambda: deep_arch(240), -124.0, (0.89728913, -0.073055)),
     "von Mises' truss": (von_mises_truss, -2.2, von_mises_limits()),
 }
+#: Those that are followed from another first increment too.
+TWICE = ("Lee's frame", "Williams' toggle", "von Mises' truss")
 
 
 @cache
@@ -40,7 +52,8 @@ def solved(name: str, first: float = 0.0) -> tuple[Results, int]:
     make, last, _ = CASES[name]
     model, node = make()
     path = ArcLength(displacement=(node, "y", last))
-    return run(model, Static(path=path, first_increment=first)), node
+    fields = name == "Lee's frame" and not first
+    return run(model, Static(path=path, first_increment=first), fields=fields), node
 
 
 def measure() -> Iterator[Value]:
@@ -48,12 +61,17 @@ def measure() -> Iterator[Value]:
     for name, (_, _, exact) in CASES.items():
         # Two bars have no length of elements in the way.
         tolerance = 1e-6 if name == "von Mises' truss" else 1e-3
-        for first in (0.0,) if name == "deep arch" else (0.0, 0.4):
+        for first in (0.0, 0.4) if name in TWICE else (0.0,):
             points = [p for p in solved(name, first)[0].critical_points if p.kind == "limit"]
             said = f", first increment {first:g}" if first else ""
             yield Value(f"{name}: limit points{said}", 2, len(points), 0.0, "absolute")
             for which, load, point in zip(("first", "second"), exact, points, strict=False):
                 yield Value(f"{name}: {which} limit load{said}", load, point.factor, tolerance)
+
+
+def picture() -> Picture:
+    """Bending moments in Lee's frame at the end of its path."""
+    return Picture(solved("Lee's frame")[0], "M1")
 
 
 def curve() -> Curve:
@@ -75,6 +93,7 @@ PROBLEM = Problem(
     certainty="computed independently",
     why="chords of the elements stand for the curve: an error of the square of their length",
     measure=measure,
+    picture=picture,
     curve=curve,
     seconds=8.0,
 )

@@ -2,7 +2,8 @@
 
 1 x 0.4, E = 10000, nu = 0.3, unit density, gravity 10, on a rigid line. With a friction of 0.58,
 above tan 30 = 0.5774, it rests: the slope carries its weight and nothing across. With 0.57 no
-static equilibrium exists, and the step says that friction does not hold the body. A block under
+static equilibrium exists, and the step says that friction does not hold the body; let go in motion
+with 0 and 0.3 it slides down with g (sin 30 - mu cos 30). A block under
 pressure that is dragged over another needs the friction times the pressure.
 """
 
@@ -20,7 +21,7 @@ from corota.errors import ConvergenceError
 from corota.materials import Elastic
 from corota.model import Amplitude, Model
 from corota.results import Results
-from corota.steps import Static
+from corota.steps import Dynamic, Static
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import run
 
@@ -52,6 +53,18 @@ def dragged(**keys: Any) -> Results:
     return run(model, Static(first_increment=0.2, largest_increment=0.2), **keys)
 
 
+def sliding(friction: float) -> float:
+    """Mean acceleration down the slope of a block that is let go there, over two tenths."""
+    model = incline(friction)
+    model.loads.clear()
+    model.gravity(y=-10.0)
+    period, mass = 0.2, 0.4
+    step = Dynamic(period=period, increments=80, scheme="generalized_alpha", rho_inf=0.5)
+    last = run(model, step).frames[-1].scalars
+    c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
+    return -float(last["momentum x"] * c + last["momentum y"] * s) / (mass * period)
+
+
 def measure() -> Iterator[Value]:
     """Rest, slip, and the force that dragging takes."""
     for method in ("mortar", "node_to_segment"):
@@ -65,6 +78,10 @@ def measure() -> Iterator[Value]:
     except ConvergenceError as error:
         slides = float("friction does not hold" in str(error))
     yield Value("refused as sliding, friction 0.57", 1.0, slides, 0.0, "absolute")
+    for friction in (0.0, 0.3):
+        exact = 10.0 * (0.5 - friction * 0.75**0.5)
+        yield Value(f"acceleration down the slope, friction {friction:g}", exact,
+                    sliding(friction), 0.01)  # fmt: skip
     last = dragged().frames[-1].scalars
     yield Value("normal force of the dragged block", 10.0, last["pair: force y"], 1e-8)
     yield Value("friction of the dragged block", -3.0, last["pair: force x"], 2e-3)

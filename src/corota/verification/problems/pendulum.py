@@ -2,7 +2,8 @@
 
 Length 1, depth 0.02, g = 9.81, E = 1e7, nu = 0, unit density, pinned at its lower corner. The rigid
 rod of that shape has the period 4 K(m) sqrt(2 R / (3 g)), R being the diagonal and K the complete
-elliptic integral; the energy is followed over the swing.
+elliptic integral; the energy is followed over the swing. A point mass on a bar of the same length
+swings with 4 K(1/2) sqrt(1 / g) = 2.367841948.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -19,11 +20,14 @@ from corota.materials import Elastic
 from corota.model import Model
 from corota.results import Results
 from corota.steps import Dynamic
+from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import cell, run
 from corota.verification.motion_models import column
 
 LENGTH, DEPTH, GRAVITY = 1.0, 0.02, 9.81
+#: Period of a point mass on a rigid rod of this length [time].
+MASS_PERIOD = float(4.0 * ellipk(0.5) * np.sqrt(LENGTH / GRAVITY))
 #: Angle of the centre above the pin's level at the start, from hanging.
 START = 0.5 * np.pi + np.arctan(DEPTH / LENGTH)
 PERIOD = float(
@@ -59,10 +63,28 @@ def tip(results: Results) -> tuple[np.ndarray, np.ndarray]:
 
 def period(results: Results) -> float:
     """Twice the time between two passages through the middle."""
-    time, x = tip(results)
+    return crossings(*tip(results))
+
+
+def crossings(time: np.ndarray, x: np.ndarray) -> float:
+    """Twice the time between two passages through x = 0."""
     k = np.flatnonzero(x[:-1] * x[1:] <= 0.0)
     at = time[k] + (time[k + 1] - time[k]) * x[k] / (x[k] - x[k + 1])
     return float(2.0 * np.diff(at).mean())
+
+
+def on_a_bar() -> float:
+    """Period of a point mass on a bar of length 1 that is released horizontally."""
+    model = Model(polyline([[0.0, 0.0], [LENGTH, 0.0]]))
+    model.truss([0], material=Elastic(E=1e6, nu=0.0, rho=1e-6), area=1.0)
+    model.point_mass([1], 1.0)
+    model.fix([0])
+    model.force([1], y=-GRAVITY)
+    step = Dynamic(period=1.6 * MASS_PERIOD, increments=640, scheme="energy_momentum",
+                   tolerance=1e-10)  # fmt: skip
+    frames = run(model, step).frames
+    time = np.array([f.time for f in frames])
+    return crossings(time, np.array([LENGTH + f.U[1, 0] for f in frames]))
 
 
 def measure() -> Iterator[Value]:
@@ -73,6 +95,7 @@ def measure() -> Iterator[Value]:
         kinetic = float(column(results, "kinetic energy").max())
         drift = float(np.ptp(column(results, "energy balance"))) / kinetic
         yield Value(f"drift of the energy, {element}", 0.0, drift, 1e-8, "absolute")
+    yield Value("period, point mass on a bar", MASS_PERIOD, on_a_bar(), 1e-3)
 
 
 def picture() -> Picture:

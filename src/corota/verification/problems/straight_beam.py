@@ -17,7 +17,7 @@ from corota.materials import Elastic
 from corota.model import Model
 from corota.steps import Static
 from corota.verification.catalogue import Picture, Problem, Value
-from corota.verification.models import cell, linear, run
+from corota.verification.models import ELEMENTS, cell, linear, nearest, run
 
 if TYPE_CHECKING:
     from corota.mesh import Mesh
@@ -63,6 +63,15 @@ def measure() -> Iterator[Value]:
                 found = float(linear(made).U[tip, 1].mean()) / 0.1081
                 text = f"{element} {shape}, shift {shift:g}"
                 yield Value(text, expected, found, 0.51e-4, "absolute")
+    for element in ELEMENTS:
+        made = model("parallelograms", 0.2, element)
+        made.supports.clear()
+        made.loads.clear()
+        made.fix("left", y=None, rotation=True)
+        made.fix([nearest(made.mesh, 0.0, 0.0)], x=None)
+        made.traction("right", x=1.0 / 0.02)
+        found = float(linear(made).U[made.mesh.node_sets["right"], 0].mean())
+        yield Value(f"extension, {element} parallelograms, shift 0.2", 3e-5, found, 1e-9)
 
 
 def picture() -> Picture:

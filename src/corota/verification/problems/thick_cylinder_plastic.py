@@ -19,7 +19,7 @@ from corota.model import Model
 from corota.results import Results
 from corota.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
-from corota.verification.models import DRILLING, cell, run
+from corota.verification.models import DRILLING, cell, nearest, run
 
 INNER, OUTER, YOUNG, YIELD = 100.0, 200.0, 210000.0, 240.0
 #: Elements that do not lock, with the options that keep them from it.
@@ -61,6 +61,10 @@ def measure() -> Iterator[Value]:
             p, exact = hill(c, 0.4999)
             yield Value(f"outer displacement, plastic to {c:g}, {element} 12 x 24", exact,
                         ring(element, 12, "strain", 0.4999, p, **options)[1], 0.01)  # fmt: skip
+    results = ring("Q9", 24, "strain", 0.3, 1.0, 1e9)[0]
+    node = nearest(results.mesh, INNER, 0.0)
+    yield Value("pressure at first yield, Q9 24 x 48", 103.75,
+                YIELD / float(results.nodal("MISES")[node]), 3e-3)  # fmt: skip
     for p, exact in STEEL:
         yield Value(f"outer displacement at {p:g}, nu = 0.3, Q8R 12 x 24", exact,
                     ring("Q8R", 12, "strain", 0.3, p)[1], 3e-3)  # fmt: skip

@@ -1,0 +1,111 @@
+"""Line elements, masses and links of a model: trusses, beams, springs, dashpots, rigid bodies."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.constraints import Coupling
+from corota.plots.figure import INK
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.model import Model
+    from corota.section import Section
+
+    Floats = NDArray[np.float64]
+
+#: Beams, bars, springs and links stand apart from cells' edges and from supports.
+BEAM, BAR, SPRING, LINK = "#35506e", "#8a5a2b", "#8c2f6b", "#9aa3ae"
+#: Windings of a spring, and their height over the diagonal of the model.
+WINDINGS, HEIGHT = 5, 0.012
+
+
+def _cells(subject: Model, section: Section) -> list[int]:
+    where = section.cells
+    if isinstance(where, str):
+        found = subject.mesh.cell_sets.get(where, np.arange(subject.mesh.n_cells))
+        return [int(c) for c in found]
+    return [int(c) for c in where]
+
+
+def zigzag(first: Floats, last: Floats, height: float) -> Floats:
+    """Way of a spring between two points, shape (m, 2)."""
+    along = last - first
+    length = float(np.linalg.norm(along))
+    if length == 0.0:
+        return np.stack([first, last])
+    across = height * np.array([-along[1], along[0]]) / length
+    at = np.concatenate([[0.0], np.linspace(0.25, 0.75, 2 * WINDINGS + 1), [1.0]])
+    side = np.concatenate([[0.0, 0.0], np.resize([1.0, -1.0], 2 * WINDINGS - 1), [0.0, 0.0]])
+    return first + at[:, None] * along + side[:, None] * across
+
+
+def draw_lines(ax: Any, subject: Model, size: float) -> None:
+    """Draw what the cells' faces and edges do not show.
+
+    Beams are heavy lines, bars lighter ones with open ends, springs zigzags (to the ground a short
+    one; a ring where they turn), dashpots dashed, point masses dots, rigid bodies and couplings
+    thin lines to their reference node.
+    """
+    from matplotlib.collections import LineCollection
+
+    mesh = subject.mesh
+    drawn: dict[str, list[Floats]] = {"beam": [], "truss": [], "spring": [], "dashpot": []}
+    for section in subject.sections:
+        name = section.element
+        if name not in ("BEAM", "TRUSS") and not name.startswith("SPRING"):
+            continue
+        for cell in _cells(subject, section):
+            block, row = mesh.locate(cell)
+            ends = mesh.points[mesh.cells[block].nodes[row]]
+            if name in ("BEAM", "TRUSS"):
+                drawn[name.lower()].append(ends)
+            elif len(ends) == 2 and np.ptp(ends, axis=0).any():
+                drawn["spring"].append(zigzag(ends[0], ends[1], HEIGHT * size))
+            elif name.endswith("R"):
+                ax.plot(*ends[0], "o", markersize=11.0, markerfacecolor="none", color=SPRING,
+                        markeredgewidth=1.4, zorder=3)  # fmt: skip
+            else:
+                dof = int(section.profile[1])
+                away = ends[0] - 0.07 * size * np.eye(2)[dof % 2]
+                drawn["spring"].append(zigzag(away, ends[0], HEIGHT * size))
+    for damper in subject.dashpots:
+        if damper.second is not None:
+            drawn["dashpot"].append(mesh.points[[damper.first, damper.second]])
+        else:
+            at = mesh.points[damper.first]
+            axes = [k for k in (0, 1) if damper.to_ground[k]]
+            drawn["dashpot"] += [np.stack([at - 0.07 * size * np.eye(2)[k], at]) for k in axes]
+    looks = {
+        "beam": (BEAM, 2.2, "-"), "truss": (BAR, 1.4, "-"), "spring": (SPRING, 1.1, "-"),
+        "dashpot": (SPRING, 1.6, (0, (3, 2))),
+    }  # fmt: skip
+    for kind, paths in drawn.items():
+        if paths:
+            color, width, style = looks[kind]
+            ax.add_collection(
+                LineCollection(paths, colors=color, linewidths=width, linestyles=style, zorder=2)
+            )
+    if drawn["truss"]:
+        ends = np.concatenate(drawn["truss"])
+        ax.plot(*ends.T, "o", markersize=3.6, markerfacecolor="white", color=BAR, zorder=3,
+                markeredgewidth=0.9)  # fmt: skip
+    for mass in subject.point_masses:
+        where = mass.nodes
+        nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
+        ax.plot(*mesh.points[nodes].T, "o", markersize=7.0, color=INK, zorder=3)
+    links = []
+    for constraint in subject.constraints:
+        if isinstance(constraint, Coupling):
+            where = constraint.nodes
+            nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
+            hub = mesh.points[constraint.reference]
+            links += [np.stack([mesh.points[n], hub]) for n in nodes]
+            ax.plot(*hub, "D", markersize=4.0, color=LINK, markeredgecolor=INK, zorder=3,
+                    markeredgewidth=0.6)  # fmt: skip
+    if links:
+        ax.add_collection(LineCollection(links, colors=LINK, linewidths=0.7, zorder=1.8))
