@@ -121,6 +121,17 @@ def exponents(records: list[Record], problem: str, group: str) -> list[list[obje
     return made
 
 
+def shares(records: list[Record]) -> list[list[object]]:
+    """What contact takes of our increments, from their own profile."""
+    made: list[list[object]] = []
+    for r in records:
+        if r["ok"] and r["problem"] in ("P3", "P3f") and "profile" in r and r["threads"] == 1:
+            part = sum(r["profile"].get(name, 0.0) for name in ("contact", "border"))
+            name = f"{r['program']} {r['element']}"
+            made.append([name, r["problem"], r["dofs"], f"{part / r['solve']:.1%}"])
+    return made
+
+
 def curve(
     records: list[Record], problem: str, group: str, name: str, element: str
 ) -> list[tuple[int, float]]:
@@ -204,6 +215,10 @@ def page(records: list[Record]) -> str:
                 if chosen:
                     text.append(f"#### {title}: {what}, {threads} thread(s)")
                     text.append(table(head(threads), rows(chosen)))
+    parts = shares(records)
+    if parts:
+        text.append("#### Contact's share of the increments: search, evaluation and borders")
+        text.append(table(["program, element", "problem", "dofs", "share"], parts))
     fits = [row for p in TITLES for g in GROUPS for row in exponents(records, p, g)]
     if fits:
         text.append("#### Exponent of the time of an iteration over dofs, one thread")
