@@ -204,3 +204,15 @@ BAD = [
 def test_refuses(data: dict, reason: str) -> None:
     with pytest.raises(ct.InputError, match=reason):
         ct.Mises(**{"E": 1000.0, "nu": 0.3, **data})
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("name", HARDENING)
+def test_a_repeated_strain_is_elastic(name: str, plane: str) -> None:
+    """On the yield surface rounding must not choose between the tangents."""
+    twice = np.repeat(random_path(3), 2, axis=0)
+    answer = material(name).respond(twice, plane)
+    elastic = material(name).respond(np.zeros((1, 3)), plane)["tangent"][0]
+    assert np.abs(answer["tangent"][1::2] - elastic).max() < 1e-12 * np.abs(elastic).max()
+    np.testing.assert_allclose(answer["PEEQ"][1::2], answer["PEEQ"][::2], rtol=1e-12)
+    assert answer["PEEQ"][-1] > 0.005

@@ -27,6 +27,10 @@ const MAX_ITERATIONS: usize = 80;
 /// Relative error of the yield condition after which one more Newton step is exact to
 /// round-off (its error is the square of this).
 const TOLERANCE: f64 = 1e-12;
+/// Excess over the yield stress, relative to the stresses it is the difference of, that is
+/// rounding. A committed plastic state lies on the yield surface up to that; rounding must not
+/// choose between the tangents there, and the elastic one is taken.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Members of the state: plastic strain (3), equivalent plastic strain, plastic work.
 const EQUIVALENT: usize = 3;
 const WORK: usize = 4;
@@ -305,7 +309,8 @@ impl Material for Mises {
                 eta[k] -= old[i][k];
             }
         }
-        let excess = self.equivalent(&eta) - self.isotropic.at(p).0;
+        let limit = self.isotropic.at(p).0;
+        let excess = self.equivalent(&eta) - limit;
         let yields = T::zero().lt(excess);
         let (sum, tangent, failed);
         if T::any(yields) {
@@ -329,7 +334,11 @@ impl Material for Mises {
                 }
             }
             sum = e[0].fma(T::real(self.volume), y[0]);
-            tangent = self.tangent(&at, yields);
+            let mut size = limit;
+            for k in 0..3 {
+                size = e[k].abs().fma(T::real(self.elastic[k]), size);
+            }
+            tangent = self.tangent(&at, size.scale(ROUNDING).lt(excess));
         } else {
             failed = T::none();
             for k in 0..3 {

@@ -33,6 +33,8 @@ DIVERGED = 1e6
 CHORD = 0.01
 #: Shortest line search step.
 SHORTEST = 1.0 / 64.0
+#: Share of the smallest residual so far that a new one must be below to count as progress.
+PROGRESS = 0.9
 
 
 def larger(a: float, b: float) -> float:
@@ -102,6 +104,8 @@ class Settings:
     max_iterations: int = 16
     #: Corrects with the last factorisation, for an iteration that converges with it all the same.
     reuse: Callable[[Any], Floats] | None = None
+    #: Iterations without a residual clearly below all before, after which it is hopeless; 0: never.
+    patience: int = 0
 
 
 @dataclass
@@ -185,7 +189,7 @@ def newton(
     if not moved and size <= settings.tolerance:
         outcome.converged = True
         return outcome
-    best = size
+    best, least, waited = size, math.inf, 0
     for iteration in range(1, settings.max_iterations + 1):
         try:
             again = settings.reuse
@@ -236,6 +240,11 @@ def newton(
             return outcome
         if iteration > 1 and size > DIVERGED * max(best, 1e-6):
             outcome.reason = f"diverges: the residual grew to {size:.1e}"
+            return outcome
+        waited = 0 if size < PROGRESS * least else waited + 1
+        least = min(least, size)
+        if waited == settings.patience > 0:
+            outcome.reason = f"no progress in {waited} iterations (residual {size:.1e})"
             return outcome
         best = min(best, size)
     outcome.reason = (

@@ -87,9 +87,11 @@ def static_step(
             if system.touching is None:
                 outcome = newton(system, state.u, prescribed, target, settings, begin, report)
             else:
+                known = None if state.at is None or heated else state.at.values
                 outcome, touching = newton_with_contact(
-                    system, system, state.u, prescribed, target, settings, report
-                )
+                    system, system, state.u, prescribed, target, settings, report,
+                    tangent=known, last_chance=step.fixed_increments,
+                )  # fmt: skip
         except SingularError as error:
             if number == 1 and control.number == 0:
                 raise

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.contact import ContactPair, Tie
-from corota.drivers.touching_pair import CLOSED, COVERED, Pair, Terms
+from corota.drivers.touching_pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -278,6 +278,12 @@ class Touching:
                 self.pairs, touch.terms, self.parts(self.committed), strict=True
             )
         ]
+        # Rounding leaves crumbs on what is open.
+        for pair, state, tractions in zip(
+            self.pairs, touch.states, self.parts(self.committed), strict=True
+        ):
+            for part in tractions if not pair.tied else ():
+                part[state == OPEN] = 0.0
         for i, (pair, terms) in enumerate(zip(self.pairs, touch.terms, strict=True)):
             if pair.start is not None:
                 pair.persist(terms)

@@ -10,6 +10,7 @@ the rest in; where they do not converge, a factorisation LU of the whole does.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -476,13 +477,31 @@ class Bordered:
         shape = (self.size, self.size)
         upper = sp.csc_array((data, self.rows, self.indptr), shape=shape)
         extra = sp.coo_array((rest.values, (rest.rows, rest.columns)), shape=shape)
-        matrix = (upper + sp.triu(upper, 1).T + extra).tocsc()
+        # Without this the choice of pivots would depend on the unit of length.
+        scale = self._scale(data)
+        by = sp.diags_array(scale)
+        matrix = (by @ (upper + sp.triu(upper, 1).T + extra) @ by).tocsc()
         matrix.sort_indices()
         lu = Faer(symmetric=False)
         lu.analyze(matrix.indptr, matrix.indices, self.node)
         lu.factorize(matrix.data)
-        self.system._last, self._resolve = lu, lu.solve
-        return lu.solve(b)
+        self.system._last = lu
+
+        def solve(more: Floats) -> Floats:
+            return np.asarray(scale[:, None] * lu.solve(scale[:, None] * more))
+
+        self._resolve = solve
+        return solve(b)
+
+    def _scale(self, data: Floats) -> Floats:
+        """A power of two for all multipliers that makes their rows as large as the tangent."""
+        scale = np.ones(self.size)
+        inner = self.columns < self.nf
+        tangent = float(np.abs(data[inner]).max(initial=0.0))
+        border = float(np.abs(data[~inner & (self.rows < self.nf)]).max(initial=0.0))
+        if min(tangent, border) > 0.0:
+            scale[self.nf :] = 2.0 ** round(math.log2(tangent / border))
+        return scale
 
 
 def _product(a: Floats, b: Floats) -> float:

@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.drivers.newton import newton
+from corota.drivers.newton import ElementFailure, newton
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,6 +32,8 @@ def newton_with_contact(
     settings: Settings,
     report: Callable[[int, Judgement, float, str], None] | None = None,
     weight: float = 1.0,
+    tangent: Floats | None = None,
+    last_chance: bool = False,
 ) -> tuple[Outcome[Evaluation], TouchingSystem]:
     """Newton's method on displacements and multipliers of contact.
 
@@ -43,6 +46,10 @@ def newton_with_contact(
         As for :func:`corota.drivers.newton.newton`.
     weight : float
         Share of the contact forces in the residual.
+    tangent : ndarray, shape (nnz,), optional
+        Tangent of the committed increment to start with.
+    last_chance : bool
+        Whether no shorter increment may follow: nothing is given up early then.
 
     Returns
     -------
@@ -51,14 +58,20 @@ def newton_with_contact(
     touching : TouchingSystem
         Its ``accept`` commits contact, once the increment is taken.
     """
-    from corota.drivers.touching_system import MORE, TouchingSystem
+    from corota.drivers.touching_system import MORE, PATIENCE, TouchingSystem
 
     problem = TouchingSystem(inner, system, weight)
     n = system.n_dofs
     z = problem.start(u)
     target = np.concatenate([prescribed, z[n:]])
-    more = replace(settings, max_iterations=settings.max_iterations + MORE)
-    outcome = newton(problem, z, target, step_time, more, None, report)
+    most = settings.max_iterations + MORE
+    more = replace(settings, max_iterations=most, patience=0 if last_chance else PATIENCE)
+    start = None
+    if tangent is not None:
+        with contextlib.suppress(ElementFailure):  # which Newton's method reports
+            start = problem.evaluate(z, step_time)
+            start.at.values[:] = tangent
+    outcome = newton(problem, z, target, step_time, more, start, report)
     return problem.settle(outcome), problem
 
 

@@ -35,12 +35,16 @@ if TYPE_CHECKING:
 EPS = float(np.finfo(float).eps)
 #: Iterations that contact may take beyond those of the step.
 MORE = 24
+#: Iterations without progress after which an increment is cut: few that take more converge.
+PATIENCE = 8
 #: How often a set of states may come back before single changes are made.
 RETURNS = 2
 #: And how often before the increment is given up.
 HOPELESS = 7
 #: Corrections after which partly covered nodes keep to whom they belong.
 SETTLED = 4
+#: Relative difference of lacks that is none.
+ALIKE = 1e-6
 #: Share of the friction bound from which a correction is made anew with slip, and how often.
 BEYOND, SLIPS = 2.0, 3
 
@@ -371,8 +375,10 @@ class TouchingSystem:
         best, where = -1.0, (0, 0)
         for k, (pair, terms, (p, q)) in enumerate(self._pairs(touch)):
             lack = np.where(changed[k], pair.violation(terms, p, q), -1.0)
-            if pair.n and lack.max() > best:
-                best, where = float(lack.max()), (k, int(np.argmax(lack)))
+            # Of equals, as in symmetric models, the first: rounding must not choose.
+            if pair.n and lack.max() > (1.0 + ALIKE) * best:
+                first = int(np.argmax(lack >= (1.0 - ALIKE) * lack.max()))
+                best, where = float(lack[first]), (k, first)
         out = [s.copy() for s in self.last]
         out[where[0]][where[1]] = wanted[where[0]][where[1]]
         # What sees nothing of the other side cannot be closed.
@@ -556,4 +562,4 @@ def _stack(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
     return out[0], out[1]
 
 
-__all__ = ["MORE", "Touched", "TouchingSystem"]
+__all__ = ["MORE", "PATIENCE", "Touched", "TouchingSystem"]
