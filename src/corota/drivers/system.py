@@ -300,7 +300,7 @@ class System:
         The scale is the largest of external forces and sums of absolute element forces, here
         and in the committed state: a body that is unloaded altogether has no forces of its own
         to compare with. A moment is also small against the forces times a millionth of the
-        model's size, since moments may vanish altogether.
+        model's size, and a force against the moments so, since either may vanish altogether.
         """
         scale, internal, external = at.scale, at.internal, at.external
         if at.link is not None:
@@ -312,14 +312,16 @@ class System:
         self._sizes = size
         force = larger(size[0], self._committed_sizes[0])
         moment = larger(size[1], self._committed_sizes[1])
-        moment = max(moment, 1e-6 * force * self.length)
+        moment, force = (
+            max(moment, 1e-6 * force * self.length),
+            max(force, 1e-6 * moment / self.length),
+        )
         if not self._stiffest:
             self._stiffest = float(np.abs(at.values[self.indptr[1:] - 1]).max(initial=0.0))
         # Forces that rounding of the coordinates alone would give, where nothing is loaded; a
         # load as small as that still bends what is slender enough.
         if max(force, moment / self.length) <= self.nothing and not at.external.any():
             return Judgement(0.0, 0.0, 0.0, 0)
-        force = force or moment / self.length
         relative = (residual[0] / force, residual[1] / moment)
         # Rotations round like the displacements they give an element.
         moved = max(displacement[0], self.cell_size * displacement[1])
