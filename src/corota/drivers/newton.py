@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 
 #: A residual this many times the rounding error of the internal force is as good as zero.
 FLOOR = 10.0
-#: No residual above this share of the forces is taken for rounding: displacements that run away,
-#: as of a mechanism, round so badly that nothing could be told from it.
-LARGEST_FLOOR = 1e-4
 #: Growth of the residual over its start that is given up as divergence.
 DIVERGED = 1e6
 #: Share of the tolerance that an iteration with the old tangent is expected to reach.
@@ -91,9 +88,8 @@ class Judgement:
 
     def rounding(self, tolerance: float) -> bool:
         """Whether what is left, of forces and of moments, is small or rounding."""
-        floors = (min(FLOOR * f, LARGEST_FLOOR) for f in (self.floor, self.moment_floor))
-        forces, moments = (max(tolerance, floor) for floor in floors)
-        return self.force <= forces and self.moment <= moments
+        forces = self.force <= max(tolerance, FLOOR * self.floor)
+        return forces and self.moment <= max(tolerance, FLOOR * self.moment_floor)
 
 
 @dataclass

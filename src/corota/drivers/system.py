@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 
 #: Forces below this many rounding errors of the coordinates are none.
 NOTHING = 1e3
+#: Rounding counts as such up to this share of the forces (and moments over the length), and up to
+#: forces of none this many times over, for bodies that have moved far.
+LARGEST_NOISE, FARTHEST = 1e-5, 1e3
 EPS = float(np.finfo(float).eps)
 #: Tangents whose memory is kept for the next ones.
 SPARE = 2
@@ -326,6 +329,9 @@ class System:
         # Rotations round like the displacements they give an element.
         moved = max(displacement[0], self.cell_size * displacement[1])
         noise = EPS * self._stiffest * moved
+        # Displacements that run away, as of a mechanism, round so badly that any residual passed.
+        whole = max(force, moment / self.length)
+        noise = min(noise, max(LARGEST_NOISE * whole, FARTHEST * self.nothing))
         return Judgement(
             *relative,
             noise / force,

@@ -95,7 +95,7 @@ def curve() -> Curve:
 
 def study() -> Study:
     """Distance of the paths with cells and increments refined together."""
-    cells = (8, 16, 32)
+    cells = (12, 16, 24, 32)
     return Study(
         "largest distance of the paths / length",
         {e: ([float(n) for n in cells],
