@@ -106,7 +106,28 @@ class LocalAxes:
     where: Location | None = field(default=None, compare=False, repr=False)
 
 
-Constraint = Equation | Coupling
+@dataclass
+class StraightLine:
+    """Nodes that stay on the straight line through two others, in any motion of these.
+
+    They may slide along it. Each loses the displacement along its axis that is further from
+    the line at the start; the line may turn until that axis lies along it.
+
+    Parameters
+    ----------
+    nodes : str or array_like of int
+        Node, edge or cell set, or node indices; both ends are left out.
+    first, last : int
+        The nodes that define the line, at two places.
+    """
+
+    nodes: str | Ints
+    first: int
+    last: int
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+
+Constraint = Equation | Coupling | StraightLine
 
 
 def rigid(nodes: str | ArrayLike, reference: int, name: str = "") -> Coupling:
@@ -115,4 +136,4 @@ def rigid(nodes: str | ArrayLike, reference: int, name: str = "") -> Coupling:
     return Coupling(where, int(reference), name=name)
 
 
-__all__ = ["Constraint", "Coupling", "Equation", "LocalAxes", "rigid"]
+__all__ = ["Constraint", "Coupling", "Equation", "LocalAxes", "StraightLine", "rigid"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.attachments import Dashpot, PointMass
-from corota.constraints import Constraint, Coupling, Equation, LocalAxes
+from corota.constraints import Constraint, Coupling, Equation, LocalAxes, StraightLine
 from corota.contact import ContactPair, PressureLaw, RigidCurve, Tie
 from corota.errors import InputError
 from corota.initial import InitialFields
@@ -85,7 +85,7 @@ class Model(LineSections, InitialFields):
     point_masses : list of PointMass
     dashpots : list of Dashpot
     constraints : list of Constraint
-        Equations and couplings, in force in every step.
+        Equations, couplings and straight lines, in force in every step.
     axes : list of LocalAxes
         Axes of nodes; the last for a node counts.
     contacts : list of ContactPair
@@ -381,6 +381,10 @@ class Model(LineSections, InitialFields):
     def rigid(self, nodes: str | ArrayLike, reference: int) -> None:
         """Make nodes one rigid body with a reference node, in any rotation."""
         self.constraints.append(Coupling(self._nodes(nodes), int(reference), name="rigid body"))
+
+    def straight(self, nodes: str | ArrayLike, first: int, last: int) -> None:
+        """Keep nodes on the straight line through two others; they may slide along it."""
+        self.constraints.append(StraightLine(self._nodes(nodes), int(first), int(last)))
 
     def local_axes(
         self,

@@ -19,6 +19,8 @@ def test_newton_stays_quadratic(kind: str, element: str) -> None:
     if kind == "equations":
         model.force([model.mesh.nodes_of("right")[2]], y=1.0)
         model.fix([reference], x=None, y=0.1)
+    elif kind == "straight":
+        model.force([model.mesh.nodes_of("right")[2]], x=-2.0, y=1.0)
     elif kind == "kinematic x":
         model.fix([reference], x=None, y=0.0)
         model.force([reference], x=-2.0, moment=2.0)
@@ -161,3 +163,43 @@ def test_stretch_of_a_truss_like_strip_by_an_equation() -> None:
     frame = ct.solve(model, ct.Static(nlgeom=False)).frames[-1]
     assert frame.U[right, 0] == pytest.approx(10.0 * 2.0 / 1000.0, rel=1e-12)
     assert frame.fields[0].values["S"][..., 0] == pytest.approx(10.0, rel=1e-10)
+
+
+def test_nodes_stay_on_a_line_that_turns_and_slide_along_it() -> None:
+    """A strip's end kept straight, its nodes free along it, bent through a large angle."""
+    mesh = ct.mesh.rectangle(6.0, 1.0, nx=12, ny=4)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1000.0, nu=0.3)
+    model.section("all", element="Q4I", material=material, local_strain="modified")
+    model.fix("left")
+    right = mesh.nodes_of("right")
+    right = right[np.argsort(mesh.points[right, 1])]
+    model.straight("right", right[0], right[-1])
+    model.force([right[0]], x=6.0, y=12.0)
+    model.force([right[-1]], x=-6.0)
+    watch = Residuals()
+    frame = ct.solve(model, ct.Static(increments=5), observers=[watch]).frames[-1]
+    for residuals in watch.by_attempt.values():
+        before, last = residuals[-2:]
+        assert last <= max(30.0 * before**2, ROUNDING), residuals
+    x = mesh.points[right] + frame.U[right]
+    along = (x[-1] - x[0]) / np.linalg.norm(x[-1] - x[0])
+    off = (x - x[0]) @ [-along[1], along[0]]
+    assert np.abs(off).max() < 1e-12
+    assert np.arctan2(-along[0], along[1]) > 0.6
+    # Nothing holds the nodes along the line: what is left of their forces is across it.
+    assert np.abs(frame.RF[right[1:-1], :2] @ along).max() < 1e-7
+    # Forces of the constraint are in balance: loads and the clamp's reactions, and their moments.
+    left = mesh.nodes_of("left")
+    loads = frame.F[:, :2].sum(axis=0)
+    assert frame.RF[left, :2].sum(axis=0) == pytest.approx(-loads, abs=1e-6)
+
+
+def test_a_node_off_its_line_is_refused() -> None:
+    mesh = ct.mesh.rectangle(1.0, 1.0, nx=2, ny=2)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    model.straight([4], 0, 2)
+    with pytest.raises(ct.ModelError, match=r"0\.5 away from the straight line"):
+        ct.solve(model)

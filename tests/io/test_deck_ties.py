@@ -11,7 +11,7 @@ import pytest
 from decks import MESH, SECTION, STEP, SUPPORT, read
 
 import corota as ct
-from corota.constraints import Coupling, Equation
+from corota.constraints import Coupling, Equation, StraightLine
 
 LOOSE = "*NODE\n20, 3., 0.5\n21, 3., 0.5\n"
 EDGE = "*SURFACE, NAME=END\n2, S2\n"
@@ -71,6 +71,14 @@ def test_mpc_beam(tmp_path: Path) -> None:
     assert found.reference == 6
 
 
+def test_mpc_straight_over_two_rows(tmp_path: Path) -> None:
+    model = read(tmp_path, deck("*MPC\nSTRAIGHT, 1, 3, 0\n2\n"))
+    found = model.constraints[0]
+    assert isinstance(found, StraightLine)
+    assert (found.first, found.last) == (0, 2)
+    assert np.asarray(found.nodes).tolist() == [1]
+
+
 def test_transform(tmp_path: Path) -> None:
     lines = (
         "*NSET, NSET=R\n3\n*TRANSFORM, NSET=R\n1., 1., 0., -1., 1., 0.\n"
@@ -107,7 +115,8 @@ def test_a_deck_with_a_rigid_end_bends_like_the_model(tmp_path: Path) -> None:
         ("*COUPLING, REF NODE=20, SURFACE=NO\n*KINEMATIC\n", "no surface named NO"),
         ("*COUPLING, REF NODE=20, SURFACE=END\n*KINEMATIC\n3, 4\n", "no dof of the plane"),
         ("*KINEMATIC\n1, 2\n", "belongs to a *COUPLING"),
-        ("*MPC\nSTRAIGHT, 1, 2, 3\n", "MPC type 'STRAIGHT' is not supported"),
+        ("*MPC\nSTRAIGHT, 1, 2\n", "three nodes at least"),
+        ("*MPC\nMEANROT, 1, 2, 3\n", "MPC type 'MEANROT' is not supported"),
         ("*MPC\nBEAM, 1\n", "two nodes are expected"),
         ("*TRANSFORM, NSET=END\n1., 0., 0., -1., 0., 0.\n", "b left of it"),
         (

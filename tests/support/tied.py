@@ -15,7 +15,7 @@ from corota.drivers.system import System
 if TYPE_CHECKING:
     from corota.mesh import Mesh
 
-KINDS = ("rigid", "kinematic x", "distributing", "equations", "rigid in axes", "chain")
+KINDS = ("rigid", "kinematic x", "distributing", "equations", "rigid in axes", "chain", "straight")
 
 
 def with_nodes(mesh: Mesh, *points: tuple[float, float]) -> Mesh:
@@ -49,6 +49,15 @@ def constrained(kind: str, element: str = "Q4D") -> tuple[ct.Model, int]:
         model.local_axes("right", angle=0.3)
         model.local_axes([reference], angle=-0.7)
         model.rigid("right", reference)
+    elif kind == "straight":
+        # The reference rides on the edge's end, so that the line has a master that depends too.
+        model.local_axes(right[1:2], angle=0.4)
+        model.local_axes(right[:1], angle=-0.5)
+        model.straight([right[1], reference + 1], right[0], right[2])
+        model.mesh.points[reference + 1] = [2.0, 1.6]
+        model.equation((reference, "x", 1.0), (right[1], "x", 0.5), (right[2], "y", -0.2))
+        model.equation((reference, "y", 1.0), (right[1], "y", 0.5))
+        model.equation((reference + 1, "y", 1.0), (right[2], "y", -1.0), (right[0], "x", 0.3))
     elif kind == "chain":
         model.couple("right", reference, kind="distributing")
         model.rigid([reference + 1], reference)

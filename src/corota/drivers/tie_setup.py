@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.constraints import Coupling, Equation
+from corota.constraints import Coupling, Equation, StraightLine
 from corota.drivers.relations import Follow, LinearRelation, Mean, Relation
+from corota.drivers.straight import OnLine
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 NAMES = ("x", "y", "rotation")
+#: Nodes of a straight line may be off it by this share of its length, which is taken off.
+OFF_LINE = 1e-6
 
 
 def _nodes(model: Model, where: str | Ints) -> Ints:
@@ -42,6 +45,10 @@ def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]
             for node, dof, _ in item.terms:
                 if not in_element[node]:
                     extra[node] = max(extra[node], 2, dof + 1)
+        elif isinstance(item, StraightLine):
+            named = np.append(_nodes(model, item.nodes), [item.first, item.last])
+            loose = named[~in_element[named]]
+            extra[loose] = np.maximum(extra[loose], 2)
         else:
             nodes = _nodes(model, item.nodes)
             loose = nodes[~in_element[nodes]]
@@ -96,6 +103,8 @@ class Builder:
         for item in self.model.constraints:
             if isinstance(item, Equation):
                 relations.append(self._equation(item))
+            elif isinstance(item, StraightLine):
+                relations += self._straight(item)
             elif item.kind == "kinematic":
                 relations.append(self._follow(item))
             else:
@@ -213,6 +222,43 @@ class Builder:
                 f"{self._described(item)} has no nodes besides its reference node", item.where
             )
         return nodes
+
+    def _straight(self, item: StraightLine) -> list[OnLine]:
+        points, labels = self.model.mesh.points, self.model.mesh.node_labels
+        ends = np.array([item.first, item.last])
+        for end in ends.tolist():
+            self._dof(end, 0, item.where)
+        what = f"the straight line through nodes {labels[ends[0]]} and {labels[ends[1]]}"
+        along = points[item.last] - points[item.first]
+        length = float(np.hypot(*along))
+        if not length > 0.0:
+            raise ModelError(f"{what} has no direction: they are at one place", item.where)
+        nodes = np.unique(_nodes(self.model, item.nodes))
+        nodes = nodes[~np.isin(nodes, ends)]
+        if not len(nodes):
+            raise ModelError(f"{what} has no other nodes", item.where)
+        across = np.array([-along[1], along[0]]) / length
+        out = []
+        for node in nodes.tolist():
+            off = abs(float((points[node] - points[item.first]) @ across))
+            if off > OFF_LINE * length:
+                raise ModelError(
+                    f"node {labels[node]} is {off:.3g} away from {what}; a constraint cannot move "
+                    "it there: give it a place on the line",
+                    item.where,
+                )
+            axes = self._axes_of(node)
+            bound = int(np.abs(axes.T @ across).argmax())
+            first = self._dof(node, 0, item.where)
+            masters = [first + 1 - bound, *(int(self.start[e]) + k for e in ends for k in (0, 1))]
+            out.append(
+                OnLine(
+                    np.array([first + bound]), np.array(masters, np.int64), what, item.where,
+                    points[[node, *ends]], axes[:, 1 - bound], axes[:, bound],
+                    np.array([self._axes_of(int(e)) for e in ends]),
+                )
+            )  # fmt: skip
+        return out
 
     def _follow(self, item: Coupling) -> Follow:
         nodes, points = self._members(item), self.model.mesh.points

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from corota.constraints import Coupling, Equation, LocalAxes
+from corota.constraints import Coupling, Equation, LocalAxes, StraightLine
 from corota.errors import InputError
 from corota.io.inp_deck import nearest
 from corota.io.inp_lexer import key
@@ -58,6 +58,9 @@ def _build(
         if nodes is not None:
             model.axes.append(LocalAxes(nodes, tie.angle, tie.centre, tie.where))
         return
+    if tie.kind == "straight":
+        _straight(deck, model, find, tie)
+        return
     if tie.kind == "same":
         _same(model, find, rotating, tie)
         return
@@ -88,6 +91,20 @@ def _build(
     name = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, name, tie.where))
     rotating[reference] = True
+
+
+def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
+    """Nodes on the line through the first two."""
+    found = [find(term) for term in tie.terms]
+    if any(nodes is None for nodes in found):
+        return
+    parts = [model.mesh.nodes_of(n) if isinstance(n, str) else n for n in found if n is not None]
+    nodes = np.concatenate([np.zeros(0, np.int64), *parts])
+    if len(nodes) < 3:
+        deck.error(tie.card, tie.where, "three nodes at least are expected: the line's two first")
+        return
+    ends = int(nodes[0]), int(nodes[1])
+    model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
 
 
 def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) -> None:

@@ -23,8 +23,9 @@ PLANAR = {1: 0, 2: 1, 6: 2}
 class TieDraft:
     """One constraint as written.
 
-    ``kind`` is ``equation``, ``kinematic``, ``distributing``, ``same`` or ``axes``. ``terms``
-    holds the terms of an equation; the first one the reference node of a coupling.
+    ``kind`` is ``equation``, ``kinematic``, ``distributing``, ``same``, ``straight`` or ``axes``.
+    ``terms`` holds the terms of an equation, the nodes of a straight line; the first one the
+    reference node of a coupling.
     """
 
     kind: str
@@ -171,9 +172,22 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 
 
 def mpc(deck: Deck, card: Card) -> None:
-    """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets; ``PLANE`` holds by itself."""
+    """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
+
+    ``PLANE`` holds by itself. Rows that begin with a node go on with the one before.
+    """
+    line: TieDraft | None = None
     for row in card.rows():
         type_ = key(row.get(0))
+        if type_ == "STRAIGHT":
+            line = TieDraft("straight", card, row.where, ready=True)
+            _on_line(line, card, row, 1)
+            deck.ties.append(line)
+            continue
+        if line is not None and type_.isdecimal():
+            _on_line(line, card, row, 0)
+            continue
+        line = None
         if type_ == "PLANE":
             deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
             continue
@@ -183,7 +197,7 @@ def mpc(deck: Deck, card: Card) -> None:
                 row,
                 0,
                 f"MPC type {row.get(0)!r} is not supported",
-                "BEAM, PIN, TIE and PLANE are; or write *EQUATION, *RIGID BODY or *COUPLING",
+                "BEAM, PIN, TIE, STRAIGHT, PLANE are; or write *EQUATION, *RIGID BODY, *COUPLING",
             )
             continue
         deck.extra_fields(card, row, 3)
@@ -197,6 +211,13 @@ def mpc(deck: Deck, card: Card) -> None:
         if type_ == "PIN":
             tie.dofs = (0, 1)
         deck.ties.append(tie)
+
+
+def _on_line(tie: TieDraft, card: Card, row: Row, start: int) -> None:
+    """Take the nodes of a row; zeros stand for none."""
+    for i in range(start, len(row)):
+        if row.get(i) not in ("", "0"):
+            tie.terms.append(Draft("node", card, row, row.get(i), (0.0,)))
 
 
 def transform(deck: Deck, card: Card) -> None:
