@@ -120,6 +120,7 @@ def cost(records: list[dict[str, Any]], error: float, key: str) -> float:
 def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> str:
     """Table of the errors on the finest mesh and of the cost of one per cent."""
     rows: list[list[object]] = []
+    more = [key for key in ("energy lacking",) if any(key in r for r in records)]
     for variant in case.variants:
         for element in case.elements:
             found = [r for r in records if (r["element"], r["variant"]) == (element, variant)]
@@ -133,10 +134,30 @@ def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> st
                 f"{last['iterations']}" if "iterations" in last else "",
                 "not reached" if math.isnan(dofs) else f"{dofs:.0f}",
                 "" if math.isnan(seconds) else f"{seconds:.3f}",
+                f"{last['seconds']:.2f}" if "error" in last else "",
+                *(f"{last[key]:.1e}" if key in last else "" for key in more),
             ])  # fmt: skip
     head = ("", "element", "coarsest: error (dofs)", "finest: error (dofs)", "iterations",
-            "dofs for 1 %", "CPU s for 1 %")  # fmt: skip
+            "dofs for 1 %", "CPU s for 1 %", "CPU s, finest", *more)  # fmt: skip
     return table(head, rows)
+
+
+def doubt(case: Case, records: list[dict[str, Any]]) -> str:
+    """What the references change by from a mesh half as fine."""
+    by_value: dict[str, list[str]] = {}
+    for variant in case.variants:
+        found = [r["moves"] for r in records if r["variant"] == variant and "moves" in r]
+        if found:
+            by_value.setdefault(f"{found[0]:.1e}", []).append(variant)
+    if not by_value:
+        return ""
+    common = max(by_value, key=lambda value: len(by_value[value]))
+    others = "".join(
+        f", in {' and '.join(repr(v) for v in variants)} by {value}"
+        for value, variants in by_value.items()
+        if value != common
+    )
+    return f" From a mesh half as fine the reference changes by {common}{others}."
 
 
 def has_all(case: Case, records: list[dict[str, Any]], variant: str) -> bool:
@@ -160,7 +181,7 @@ def write(case: Case, records: list[dict[str, Any]]) -> None:
         raise SystemExit(f"{PAGE}: no line {begin!r}")
     draw(case, records, IMAGES / f"comparison-{case.name}.png")
     part = (
-        f"### {case.title}\n\n{case.about}\n\n"
+        f"### {case.title}\n\n{case.about}{doubt(case, records)}\n\n"
         f"![{case.title}](images/comparison-{case.name}.png)\n\n{tables(case, records)}\n"
     )
     head, rest = text.split(begin)
@@ -174,14 +195,16 @@ def main() -> int:
     parser.add_argument("--write", action="store_true", help=f"write {PAGE.name} and its figures")
     parser.add_argument("--redraw", action="store_true", help="run nothing, take what is kept")
     args = parser.parse_args()
-    kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
     for case in cases():
         if (args.studies and case.study not in args.studies) or (
             args.cases and case.name not in args.cases
         ):
             continue
-        if not args.redraw:
-            kept[case.name] = run(case)
+        found = None if args.redraw else run(case)
+        # Read late: another run may have added to it.
+        kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+        if found is not None:
+            kept[case.name] = found
             KEPT.parent.mkdir(parents=True, exist_ok=True)
             KEPT.write_text(json.dumps(kept), encoding="utf-8")
         if case.name not in kept:

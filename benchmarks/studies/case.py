@@ -50,6 +50,11 @@ class Case:
         What the error is one of, for the axis.
     per_variant : bool
         The reference depends on the variant.
+    coarser : callable, optional
+        The reference on a mesh half as fine: their difference bounds the reference's own error,
+        by a third of it where it falls with the square of the mesh, by all of it at worst.
+    extra : callable, optional
+        Of the results: further numbers by name, columns of the table.
     """
 
     study: str
@@ -64,6 +69,8 @@ class Case:
     elements: Sequence[str] = ELEMENTS
     quantity: str = "error"
     per_variant: bool = False
+    coarser: Callable[[str], Floats] | None = None
+    extra: Callable[[ct.Results], dict[str, float]] | None = None
 
 
 def measure(case: Case, element: str, variant: str, n: int) -> dict[str, Any]:
@@ -90,11 +97,26 @@ def measure(case: Case, element: str, variant: str, n: int) -> dict[str, Any]:
             break
     exact = reference(case, variant)
     found = np.asarray(case.value(results), dtype=float)
-    error = float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
-    return record | {
-        "error": error, "seconds": seconds, "iterations": int(results.info["iterations"]),
-        "value": np.ravel(found)[-1].item(),
+    more = case.extra(results) if case.extra else {}
+    return record | more | {
+        "error": distance(found, exact), "moves": moves(case, variant), "seconds": seconds,
+        "iterations": int(results.info["iterations"]), "value": np.ravel(found)[-1].item(),
     }  # fmt: skip
+
+
+def distance(found: Floats, exact: Floats) -> float:
+    """Root mean square of the difference, over that of the exact values."""
+    return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
+
+
+@cache
+def moves(case: Case, variant: str) -> float:
+    """What the reference changes by from a mesh half as fine."""
+    if not case.per_variant and variant != case.variants[0]:
+        return moves(case, case.variants[0])
+    if case.coarser is None:
+        return float("nan")
+    return distance(np.asarray(case.coarser(variant), dtype=float), reference(case, variant))
 
 
 @cache
