@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.model import Fixed
+from corota.io.inp_write_model import write_deck
+from corota.model import Fixed, NodalForce
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "contact"))
 import bistable_beam
@@ -52,8 +53,8 @@ def pushed(model, ways):
         ("elastic", 0.0, SAME),
         ("elastic", 0.3, SAME),
         # Cut increments of the other run flow along another way.
-        ("plastic", 0.0, 2e-3),
-        ("plastic", 0.3, 5e-3),
+        ("plastic", 0.0, 1e-7),
+        ("plastic", 0.3, 5e-4),
     ],
 )
 def test_forces_are_those_of_the_prescribed_probe(kind, friction, tolerance):
@@ -125,3 +126,85 @@ def test_an_overlap_that_is_to_be_ramped_is_refused():
     probe.start, probe.clearance = "ramp", -0.1
     with pytest.raises(ct.ModelError, match=r"'probe' overlaps at the start.*static step before"):
         along(model)
+
+
+def test_deck_with_riks_and_a_contact_pair(tmp_path):
+    model = beam()
+    label = int(model.mesh.node_labels[int(model.mesh.node_sets["probe"][0])])
+    deck = write_deck(model, tmp_path / "beam.inp")
+    text = deck.read_text().partition("*STEP")[0]
+    assert "*CONTACT PAIR" in text
+    text += f"*STEP, NLGEOM, INC=100\n*STATIC, RIKS\n.05, 1., , , , {label}, 2, -4.5\n"
+    deck.write_text(f"{text}*CLOAD\n{label}, 2, -1.\n*END STEP\n")
+    found = ct.solve(ct.read(deck), threads=1)
+    assert found.critical_points[0].factor == pytest.approx(
+        along(beam()).critical_points[0].factor, rel=1e-6
+    )
+    assert found.history("U2", at="probe")[-1] == pytest.approx(-4.5)
+
+
+#: Height at which a stop waits below the middle of the beam.
+STOP = 2.0
+
+
+def stopped():
+    model = beam()
+    model.contact("bottom", ct.RigidCurve.line((6.0, STOP), (-6.0, STOP)), name="stop")
+    return model
+
+
+def test_a_stop_closes_on_the_way_down_and_opens_on_the_way_back():
+    """The path turns by a kink there, both times at the same load; an elastic way is one curve."""
+    model = stopped()
+    model.force("probe", y=-1.0)
+    there = ct.Static(path=ct.ArcLength(factor=2.0))
+    back = ct.Static(path=ct.ArcLength(factor=0.9), loads=[NodalForce("probe", 1, 0.0)])
+    found = ct.solve(model, [there, back], threads=1)
+    way, area = np.array(found.history("U2", at="probe")), found.history("stop: area")
+    force = -np.array(found.history("F2", at="probe"))
+    assert max(area) > 0.0 == area[-1]
+    assert pushed(stopped(), way[1:]) == pytest.approx(force[1:], abs=SAME)
+    loads = [p.factor if p.step == 1 else 2.0 * (1.0 - p.factor) for p in found.critical_points]
+    kinds = [(p.step, p.kind, p.negative) for p in found.critical_points]
+    assert kinds[:2] == [(1, "limit", (0, 1)), (1, "limit", (1, 0))]
+    assert kinds[-2:] == [(2, "limit", (0, 1)), (2, "limit", (1, 0))]
+    assert loads[0] == pytest.approx(loads[-1], rel=1e-8)  # smooth
+    assert loads[1] == pytest.approx(loads[-2], rel=2e-5)  # where the stop is touched
+    assert list(found.history("stable")[1:4]) == [1.0, 1.0, 1.0]
+
+
+def snap_fit(friction):
+    """A clamped arm with a bump on it, and a rigid ball to be pushed over it to the left."""
+    length, height, radius = 20.0, 1.5, 3.0
+
+    def top(t):
+        x = length * t
+        return x, height + (0.5 + 0.5 * np.cos(np.pi * (x - 14.0) / 5.0)) * (abs(x - 14.0) < 5.0)
+
+    sides = [lambda t: (length * t, 0.0), lambda t: (length, height * t)]
+    mesh = ct.mesh.mapped([*sides, top, lambda t: (0.0, height * t)], 40, 2)
+    centre = (18.3, height + 0.2 + radius)
+    ball = ct.mesh.add_node(mesh, *centre, "ball")
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=2300.0, nu=0.38), thickness=4.0)
+    curve = ct.RigidCurve.circle(centre, radius, reference=ball)
+    model.contact("top", curve, friction=friction, name="bump")
+    model.fix("left")
+    model.fix("ball", x=None, y=0.0, rotation=0.0)
+    return model
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_snap_fit_by_its_load_passes_node_after_node(friction):
+    """Each node of the coarse bump makes the load rise and fall; the ends of pieces are kinks."""
+    model = snap_fit(friction)
+    model.force("ball", x=-1.0)
+    path = ct.ArcLength(displacement=("ball", "x", -6.0))
+    found = ct.solve(model, ct.Static(path=path, max_increments=200), threads=1)
+    factor, way = np.array(found.history("load factor")), found.history("U1", at="ball")
+    assert way[-1] == pytest.approx(-6.0)
+    assert factor.max() > 0.4
+    assert sum(p.kind == "limit" for p in found.critical_points) > 5
+    steps = [ct.Static(increments=1, supports=[Fixed("ball", 0, x)]) for x in way[1:]]
+    held = ct.solve(snap_fit(friction), steps, threads=1)
+    assert -np.array(held.history("RF1", at="ball")) == pytest.approx(factor, abs=SAME)

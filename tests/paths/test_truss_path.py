@@ -199,7 +199,8 @@ def test_iterations_converge_quadratically(follow):
     radius = float(np.linalg.norm(size * base.tangent.u))
     start = Point(base.point.u, base.point.factor, None)
     arc = Arc(radius, system.counted)
-    done = correct(system, start, u, factor, 1.0, arc, Settings(tolerance=1e-13))
+    guess = Point(u, factor, None)
+    done = correct(system, start, guess, 1.0, arc, Settings(tolerance=1e-13))
     sizes = np.array([s for s in done.sizes if s > 1e-12])
     orders = np.log(sizes[2:] / sizes[1:-1]) / np.log(sizes[1:-1] / sizes[:-2])
     assert len(sizes) >= 3

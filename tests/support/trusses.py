@@ -100,7 +100,7 @@ class Truss:
     def rate(self, at, force, move):
         return self.correct(at, force, move)
 
-    def restart(self, loose=False):
+    def restart(self, loose=False, like=None):
         pass
 
     def refuse(self, at, u):
@@ -111,6 +111,9 @@ class Truss:
 
     def ahead(self, at, rate):
         return 0.0
+
+    def around(self, *_):
+        return None
 
     def solve_again(self, rhs):
         x = np.zeros_like(rhs)

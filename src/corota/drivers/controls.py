@@ -117,6 +117,37 @@ class Row:
 
 
 @dataclass
+class Plane:
+    """The increment ends in a plane: its difference from a target has no part in a direction.
+
+    Parameters
+    ----------
+    target, direction : ndarray, shape (n_dofs,)
+        Displacement of the increment, and normal of the plane.
+    target_factor, direction_factor : float
+    counted : ndarray of bool, shape (n_dofs,)
+    weight : float
+        Length of a unit of load factor [length].
+    """
+
+    target: Floats
+    target_factor: float
+    direction: Floats
+    direction_factor: float
+    counted: Mask
+    weight: float
+
+    def change(self, du: Floats, dfactor: float, a: Floats, b: Floats) -> float | None:
+        square = self.weight**2 * self.direction_factor
+        slope = product(self.direction, b, self.counted) + square
+        missing = -product(self.direction, du + a - self.target, self.counted)
+        missing -= square * (dfactor - self.target_factor)
+        if slope == 0.0 or not math.isfinite(missing / slope):
+            return None
+        return missing / slope
+
+
+@dataclass
 class Factor:
     """The load factor has a given change in this increment."""
 
@@ -126,4 +157,4 @@ class Factor:
         return self.value - dfactor
 
 
-__all__ = ["Arc", "Control", "Factor", "Row", "product"]
+__all__ = ["Arc", "Control", "Factor", "Plane", "Row", "product"]

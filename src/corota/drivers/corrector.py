@@ -110,8 +110,7 @@ class Corrected:
 def correct(
     system: PathSystem,
     base: Point,
-    u: Floats,
-    factor: float,
+    guess: Point,
     period: float,
     control: Control,
     settings: Settings,
@@ -125,9 +124,8 @@ def correct(
     system : PathSystem
     base : Point
         Where the increment starts.
-    u : ndarray, shape (n_dofs,)
-        Guess that meets the control, with held dofs where `factor` puts them.
-    factor : float
+    guess : Point
+        Meets the control, with held dofs where its load factor puts them.
     period : float
         Step time of load factor one [time].
     control : Control
@@ -142,8 +140,8 @@ def correct(
     Corrected
     """
     done = Corrected(None)
-    system.restart(loose)
-    at = _search(done, system, base, u, factor, period, control, settings, report)
+    system.restart(loose, guess.at)
+    at = _search(done, system, base, guess, period, control, settings, report)
     if done.point is not None:
         done.reason = system.refuse(at, done.point.u)
         if done.reason:
@@ -157,14 +155,14 @@ def _search(
     done: Corrected,
     system: PathSystem,
     base: Point,
-    u: Floats,
-    factor: float,
+    guess: Point,
     period: float,
     control: Control,
     settings: Settings,
     report: Callable[[int, Judgement, float, float], None] | None,
 ) -> Any:
     """Fill in what became of an attempt; returns the last evaluation, None if there is none."""
+    u, factor = guess.u, guess.factor
     n, best, at = system.n_dofs, np.inf, None
     judged: Judgement | None = None
     correction = 0.0

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+#: Cosine from which two directions tell the sense of each other.
+ALIKE = 0.5
+
+
 def direction(
     system: PathSystem,
     metric: Metric,
@@ -41,7 +45,7 @@ def direction(
     old : Tangent
         Direction there.
     aim : Tangent, optional
-        Direction at a point behind, if it is known.
+        Direction at a point behind, or the predicted one.
     sure : bool
         Whether the increment is so short that what changed its state decides alone.
 
@@ -64,9 +68,9 @@ def direction(
     if ahead == 0.0:
         return tangent, None
     length = metric.size(du, df) or 1.0
-    if aim is not None:
-        back = metric.dot(tangent.u, tangent.factor, aim.u, aim.factor) < 0.0
-        return (tangent.reversed() if back else tangent), 0.0
+    along = 0.0 if aim is None else metric.dot(tangent.u, tangent.factor, aim.u, aim.factor)
+    if abs(along) > ALIKE and along * ahead > 0.0:
+        return (tangent if along > 0.0 else tangent.reversed()), 0.0
     aside = _aside(metric, du, df, old, tangent)
     if ahead < 0.0:
         other = _aside(metric, du, df, old, tangent.reversed())

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.drivers.controls import Arc, Factor, Row
+from corota.drivers.controls import Arc, Factor, Plane, Row
 from corota.drivers.corrector import Metric, Point, Tangent, correct, tangent_at
 from corota.drivers.kinks import direction, shares
 from corota.drivers.path_plan import End, Increment, PathStalled, Plan
@@ -48,6 +48,8 @@ SHRINK, GROW = 0.5, 2.0
 CUT = 0.4
 #: Residual above which a start is out of balance.
 UNBALANCED = 1e-6
+#: Least part of a direction in the mean of two, of which the sharpest kink has none.
+SHARP = 0.02
 #: Share of an increment with a kink that may lie beside the directions before and behind ...
 ASIDE = 0.3
 #: ... and attempts after which such a turn is taken as it is.
@@ -105,6 +107,8 @@ class Follower:
         #: Tangent against which events are told: behind a critical point, not at it.
         self.mark: Tangent
         self.guess: Point | None = None
+        #: Predicted point behind kinks, and the direction there.
+        self.aim: tuple[Point, Tangent] | None = None
         #: Ways of displacements and load factor so far.
         self.way = (0.0, 0.0)
         self._evaluated: Point | None = None
@@ -236,9 +240,14 @@ class Follower:
         return wanted if not self.started else min(wanted, 4.0 * self.size)
 
     def _predict(self, size: float) -> tuple[Point, float]:
+        self.aim = None
         if self.guess is not None:
             du, df = self.guess.u - self.base.u, self.guess.factor - self.base.factor
             return self.guess, self.metric.size(du, df)
+        if self.plan.row is None or self.attempt >= OTHER_CONTROL:
+            self.aim = self.system.around(self.base, self.tangent, self.metric, size, self.period)
+            if self.aim is not None:
+                return self.aim[0], size
         u = self.base.u + size * self.tangent.u
         return Point(u, self.base.factor + size * self.tangent.factor, None), size
 
@@ -259,7 +268,8 @@ class Follower:
                 return Factor(df), "load"
             return Row(np.array([dof]), np.ones(1), float(du[dof])), "displacement"
         # Behind a kink the structure may be so stiff that displacements alone are no measure.
-        weight = self.metric.length if self.plan.spherical or self.attempt > 1 else 0.0
+        both = self.plan.spherical or self.attempt > 1 or self.aim is not None
+        weight = self.metric.length if both else 0.0
         radius = math.hypot(moved, weight * df)
         return Arc(radius, self.system.counted, weight), "arc"
 
@@ -269,7 +279,7 @@ class Follower:
                 self.report(self.attempt, iteration, judged, correction, factor, size)
 
         done = correct(
-            self.system, self.base, guess.u, guess.factor, self.period, control,
+            self.system, self.base, guess, self.period, control,
             self.settings, report, loose,
         )  # fmt: skip
         self._evaluated = done.point
@@ -281,14 +291,17 @@ class Follower:
         du, df = point.u - self.base.u, point.factor - self.base.factor
         length = self.metric.size(du, df)
         try:
+            aim = self.mark if self.guess is not None else self.aim and self.aim[1]
             tangent, aside = direction(
-                self.system, self.metric, self.base, self.tangent, point,
-                None if self.guess is None else self.mark, self.attempt > KINK,
-            )  # fmt: skip
+                self.system, self.metric, self.base, self.tangent, point, aim, self.attempt > KINK
+            )
         except SingularError as error:
             return None, str(error)
         if self.guess is None and not self.plan.fixed and (aside is None or self.attempt <= KINK):
             turn = self._angle(tangent, du, df, length)
+            if aside is not None and self.aim is not None:
+                there = self.aim[0]
+                aside = self.metric.size(point.u - there.u, point.factor - there.factor) / length
             if aside is not None and aside > ASIDE:
                 return None, "the path has more than one kink"
             if aside is None and (turn > SHARPEST or length > 3.0 * size):
@@ -316,9 +329,8 @@ class Follower:
         critical: Critical | None = None
         if self.plan.locate and has_event(self.mark, tangent):
             critical = locate(
-                self.system, Station(0.0, self.base, self.mark), end, self._between(end),
-                self._crossing,
-            )  # fmt: skip
+                self.system, Station(0.0, self.base, self.mark), end, *self._between(end)
+            )
             self._evaluated = None  # others were tried since the point that is taken
             if critical is None:
                 return None
@@ -396,23 +408,46 @@ class Follower:
             point.at = self.system.evaluate(point.u, point.factor * self.period)
         self.system.commit()
 
-    def _crossing(self, low: Station, high: Station) -> float:
-        """Share of the increment at which the directions of two stations cross."""
-        a, b, t = low.point, high.point, low.tangent
-        way, _ = shares(self.metric, b.u - a.u, b.factor - a.factor, t, high.tangent)
-        moved = self.metric.displacement(a.u + way * t.u - self.base.u)
-        return high.share * moved / self.metric.displacement(b.u - self.base.u)
+    def _between(
+        self, end: Station
+    ) -> tuple[Callable[[float], Station | None], Callable[[Station, Station], float]]:
+        """Solver for points inside an increment, and where two directions cross in it.
 
-    def _between(self, end: Station) -> Callable[[float], Station | None]:
-        """Solver for points inside an increment."""
+        The way is measured by displacements or, with a kink, across it: along the mean of the
+        directions before and behind, on which both go on.
+        """
+        metric, old, new = self.metric, self.tangent, end.tangent
         du, df = end.point.u - self.base.u, end.point.factor - self.base.factor
+        mean = Tangent(old.u + new.u, old.factor + new.factor, -1)
+
+        def part(u: Floats, f: float) -> float:
+            return metric.dot(mean.u, mean.factor, u, f)
+
+        whole, before, behind = part(du, df), part(old.u, old.factor), part(new.u, new.factor)
+        kink = end.behind and min(whole, before - SHARP, behind - SHARP) > 0.0
+
+        def place(share: float) -> tuple[Floats, float, Control]:
+            if not kink:
+                moved = share * metric.displacement(du)
+                weight = metric.length if self.plan.spherical else 0.0
+                arc = Arc(math.hypot(moved, weight * share * df), self.system.counted, weight)
+                return share * du, share * df, arc
+            first, _ = shares(metric, du, df, old, new)
+            way, back = share * whole / before, (1.0 - share) * whole / behind
+            u, f = way * old.u, way * old.factor
+            if way > first:
+                u, f = du - back * new.u, df - back * new.factor
+            plane = Plane(u, f, mean.u, mean.factor, self.system.counted, metric.length)
+            return u, f, plane
+
+        def cross(low: Station, high: Station) -> float:
+            a, b, t = low.point, high.point, low.tangent
+            way, _ = shares(metric, b.u - a.u, b.factor - a.factor, t, high.tangent)
+            return low.share + way * part(t.u, t.factor) / whole
 
         def solve(share: float) -> Station | None:
-            guess = Point(self.base.u + share * du, self.base.factor + share * df, None)
-            moved = share * self.metric.displacement(du)
-            weight = self.metric.length if self.plan.spherical else 0.0
-            control = Arc(math.hypot(moved, weight * share * df), self.system.counted, weight)
-            done = self._solve(guess, control, share)
+            u, f, control = place(share)
+            done = self._solve(Point(self.base.u + u, self.base.factor + f, None), control, share)
             if done.singular is not None:
                 raise done.singular
             if done.point is None:
@@ -422,7 +457,7 @@ class Follower:
             )
             return Station(share, done.point, tangent, aside is not None)
 
-        return solve
+        return solve, cross
 
     # -- ends --------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.drivers.corrector import Metric, Point, Tangent
     from corota.drivers.newton import Judgement
     from corota.drivers.system import Evaluation, System
 
@@ -45,10 +46,11 @@ class PathSystem(Protocol):
         """Size of the structure [length]."""
         ...
 
-    def restart(self, loose: bool = False) -> None:
+    def restart(self, loose: bool = False, like: Any = None) -> None:
         """Begin an attempt at an increment: forget what another one left.
 
-        `loose` allows what moves freely to be brought to a hold, as bodies into contact.
+        `loose` allows what moves freely to be brought to a hold, as bodies into contact; `like`
+        is an evaluation that the guess was taken from.
         """
         ...
 
@@ -94,6 +96,15 @@ class PathSystem(Protocol):
         """
         ...
 
+    def around(
+        self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
+    ) -> tuple[Point, Tangent] | None:
+        """Predict a point behind kinks that lie on the way from a committed one.
+
+        Also the direction there; None where there is no kink within a distance.
+        """
+        ...
+
     def commit(self) -> None:
         """Accept the last evaluated state."""
         ...
@@ -125,7 +136,7 @@ class SmoothPath:
         """The system's own evaluation."""
         return at
 
-    def restart(self, loose: bool = False) -> None:
+    def restart(self, loose: bool = False, like: Any = None) -> None:
         """Nothing is kept between attempts."""
 
     def refuse(self, at: Evaluation, u: Floats) -> str:
@@ -139,6 +150,9 @@ class SmoothPath:
     def ahead(self, at: Evaluation, rate: Floats) -> float:
         """No kinks are known."""
         return 0.0
+
+    def around(self, *_: Any) -> None:
+        """No kinks are known."""
 
     def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """See :class:`PathSystem`; `at` is overwritten."""

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 #: A critical point is located to this share of the increment that holds it.
 SHARPNESS = 1e-7
+#: A kink to this share, looked for beside where it is expected by one of the bracket.
+BLUNT, ASIDE = 1e-6, 0.02
 #: Behind a critical point the next one is looked for from this share of the increment on.
 CLEAR = 1e-2
 #: Distances at which a neighbour of a point without inverse is tried.
@@ -172,8 +174,10 @@ def locate(
         kink = low.behind != high.behind
         share = _propose(tests, low.share, high.share)
         if kink:
-            margin = SHARPNESS * (high.share - low.share)
-            share = min(max(crossing(low, high), low.share + margin), high.share - margin)
+            # Near the crossing, but so that both ends of the bracket come nearer in turn.
+            left = high.share - low.share
+            share = crossing(low, high) + (ASIDE if best and best[1] is low else -ASIDE) * left
+            share = min(max(share, low.share + ASIDE * left), high.share - ASIDE * left)
         sample = None
         for distance in NEARBY:
             near = max(share - distance, 0.5 * (low.share + share))
@@ -205,7 +209,9 @@ def locate(
         tests.append((now.share, test))
         if best is None or kink or abs(value) <= abs(best[0]):
             best = (value, now, mode)
-        if high.share - low.share <= SHARPNESS or _settled(tests, kink):
+        if high.share - low.share <= (BLUNT if kink else SHARPNESS):
+            break
+        if not kink and _settled(tests):
             break
     assert best is not None
     _, at, mode = best
@@ -246,12 +252,12 @@ def _propose(tests: list[tuple[float, float]], low: float, high: float) -> float
     return share
 
 
-def _settled(tests: list[tuple[float, float]], kink: bool) -> bool:
-    """Whether the last step was small and, but at a kink, its next would be smaller."""
-    if len(tests) < 3 - kink:
+def _settled(tests: list[tuple[float, float]]) -> bool:
+    """Whether the last secant step was small and its next would be smaller."""
+    if len(tests) < 3:
         return False
     (a, f), (b, g) = tests[-2:]
-    return abs(b - a) <= SHARPNESS and (kink or abs(g) <= abs(f))
+    return abs(b - a) <= SHARPNESS and abs(g) <= abs(f)
 
 
 def work_share(system: PathSystem, point: Point, mode: Floats) -> float:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.drivers.path_system import NOT_CONSERVATIVE
+from corota.drivers.touching_ahead import go_round
 from corota.drivers.touching_pair import CLOSED, OPEN, SLIPPING
 from corota.drivers.touching_system import MORE, Asked, Touched, TouchingSystem
 from corota.errors import ModelError
@@ -20,6 +21,7 @@ from corota.errors import ModelError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.drivers.corrector import Metric, Point, Tangent
     from corota.drivers.system import Evaluation, System
 
     Floats = NDArray[np.float64]
@@ -105,13 +107,14 @@ class TouchingPath(TouchingSystem):
         """The system's own evaluation, its internal force with that of contact."""
         return at.at
 
-    def restart(self, loose: bool = False) -> None:
-        """Begin an attempt with the states of the last commit."""
+    def restart(self, loose: bool = False, like: Along | None = None) -> None:
+        """Begin an attempt with the states of the last commit, or of another evaluation."""
         self.touching.restore()
         self.forget()
         self._fresh, self._loose = False, loose
-        if self._base is not None:
-            self.last = [s.copy() for s in self._base]
+        first = self._base if like is None or like.states is None else like.states
+        if first is not None:
+            self.last = [s.copy() for s in first]
 
     def evaluate(self, z: Floats, step_time: float) -> Along:
         """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
@@ -142,13 +145,36 @@ class TouchingPath(TouchingSystem):
 
         The pivots are those of the bodies: one for each closed constraint is taken off.
         """
-        asked = Asked(force[: self.n, None], move[: self.n, None], np.zeros(1))
         states = self._settled(at)
-        self._loose = False
-        x, negative = self._columns(at, asked, states)
         if self._fresh:
             self._base = states
+        return self.rate_with(at, states, force, move)
+
+    def rate_with(
+        self,
+        at: Along,
+        states: States,
+        force: Floats,
+        move: Floats,
+        senses: dict[tuple[int, int], float] | None = None,
+    ) -> tuple[Floats, int]:
+        """The same with given states, and senses of slip of some (pair, constraint)."""
+        self._loose = False
+        asked = Asked(force[: self.n, None], move[: self.n, None], np.zeros(1))
+        x, negative = self._columns(at, asked, states, senses)
         return x[:, 0], negative
+
+    def around(
+        self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
+    ) -> tuple[Point, Tangent] | None:
+        """A point round the kinks that lie on the way, and the direction behind them."""
+        if self.touching.at is not None:
+            self._base = None
+        found = go_round(self, base, tangent, metric, size, period)
+        if found is None:
+            return None
+        point, now, self._base = found
+        return point, now
 
     def solve_again(self, rhs: Floats) -> Floats:
         """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
@@ -162,7 +188,7 @@ class TouchingPath(TouchingSystem):
         """
         if self.touching.at is None:
             return 0.0
-        gaps = self._gap_rates(at, rate)
+        gaps = self.gap_rates(at, rate)
         total = 0.0
         for k, (pair, (dp, _)) in enumerate(
             zip(self.touching.pairs, self.touching.parts(rate[self.n :]), strict=True)
@@ -199,7 +225,7 @@ class TouchingPath(TouchingSystem):
             ]
         return at.states
 
-    def _gap_rates(self, at: Along, rate: Floats) -> list[tuple[Floats, Floats]]:
+    def gap_rates(self, at: Along, rate: Floats) -> list[tuple[Floats, Floats]]:
         """Change of weighted gaps and slips of each pair along a direction."""
         moved = np.append(rate[: self.n], 0.0)
         out = []

@@ -185,7 +185,13 @@ class TouchingSystem:
         z, negative = self._columns(at, asked, self._choose(at.touch))
         return z[:, 0], negative
 
-    def _columns(self, at: Touched, asked: Asked, states: States) -> tuple[Floats, int]:
+    def _columns(
+        self,
+        at: Touched,
+        asked: Asked,
+        states: States,
+        senses: dict[tuple[int, int], float] | None = None,
+    ) -> tuple[Floats, int]:
         """Solutions of one linearisation, shape (n_dofs + n_multipliers, k)."""
         self.corrections += 1
         for pair in self.touching.pairs:
@@ -193,6 +199,8 @@ class TouchingSystem:
         self.senses = {
             pair.first: pair.sense(terms, q) for pair, terms, (p, q) in self._pairs(at.touch)
         }
+        for (k, i), sense in (senses or {}).items():
+            self.senses[self.touching.pairs[k].first][i] = sense
         du, dp, negative, states = self._held(at, states, asked)
         for (pair, terms, (p, q)), state in zip(self._pairs(at.touch), states, strict=True):
             if pair.two:
@@ -300,15 +308,18 @@ class TouchingSystem:
     def _close_some(
         self, at: Touched, states: States, asked: Asked, error: SingularError
     ) -> tuple[Floats, Floats, int, States]:
-        """Bring bodies that nothing holds into contact: close their nearest nodes."""
-        for count in (1, 2, None):
+        """Bring bodies that nothing holds into contact: close the nearest nodes, ever more."""
+        gaps = [
+            np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
+            for s, (pair, terms, (p, _)) in zip(states, self._pairs(at.touch), strict=True)
+        ]
+        nearest = min(float(gap.min(initial=np.inf)) for gap in gaps)
+        for count in (0, 1, 2, None):
             tried = [s.copy() for s in states]
-            for s, (pair, terms, (p, _)) in zip(tried, self._pairs(at.touch), strict=True):
-                if pair.tied:
-                    continue
-                gap = np.where(s == OPEN, pair.trial(terms, p)[0], np.inf)
-                near = np.argsort(gap, kind="stable")[:count]
-                s[near[np.isfinite(gap[near])]] = CLOSED
+            for s, gap in zip(tried, gaps, strict=True):
+                near = np.argsort(gap, kind="stable")[: count or (None if count is None else 1)]
+                limit = nearest if count == 0 else np.finfo(float).max
+                s[near[gap[near] <= limit]] = CLOSED
             if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
                 break
             try:
