@@ -85,6 +85,8 @@ MEANING = {
     "ALPHA33": "back-stress deviator zz", "ALPHA12": "back-stress deviator xy",
     "PWORK": "plastic work density", "PDISS": "plastic dissipation density",
     "STH": "current thickness [length]",
+    "N": "axial force [force]", "M1": "moment at the first end [force*length]",
+    "M2": "moment at the second end [force*length]",
     "CPRESS": "contact pressure", "CSHEAR": "contact shear traction",
     "COPEN": "contact gap [length]", "CSLIP": "contact slip [length]",
     "CSTATUS": "contact status: 0 open, 1 closed, 2 slipping",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.mesh import Mesh
     from corota.results import Results
 
     Floats = NDArray[np.float64]
@@ -34,6 +35,10 @@ PIXELS_FROM = 60000
 
 #: Variables of line elements only.
 LINE_ONLY = ("N", "V", "M1", "M2")
+#: Variables whose nodal values are cut off below zero.
+NEVER_NEGATIVE = ("PEEQ", "PWORK", "PDISS", "ENER")
+#: Cells' edges are drawn by default where cells are larger than this share of the picture.
+EDGES_FROM = 0.008
 
 
 @dataclass
@@ -75,10 +80,14 @@ class Drawing:
         if self.per_cell:
             cells = self.results.cells(self.name, frame)
             return [(part, cells[part.owner]) for _, part in self.parts]
-        return [
+        drawn = [
             (part, part.values(self.results.nodal(self.name, frame, section=group)))
             for group, part in self.parts
         ]
+        if self.name in NEVER_NEGATIVE:
+            # Extrapolation from the points overshoots beside the plastic front.
+            return [(part, np.maximum(values, 0.0)) for part, values in drawn]
+        return drawn
 
     def line_values(self, frame: int) -> Floats:
         """Value of each line, not a number where it has none."""
@@ -212,11 +221,14 @@ def label_bar(bar: Any, name: str, per_cell: bool, limits: tuple[float, float]) 
     from matplotlib.ticker import MaxNLocator
 
     meaning = vf.MEANING.get(name, "")
-    how = ", element averages" if per_cell else "" if name in vf.NODAL else ", averaged at nodes"
+    plain = name in vf.NODAL or name in LINE_ONLY
+    how = ", element averages" if per_cell else "" if plain else ", averaged at nodes"
     label = f"{name}: {meaning}{how}" if meaning else name + how
     size = max(abs(v) for v in limits)
     low, high = (0.0 if abs(v) < 1e-6 * size else v for v in limits)
-    bar.set_label(f"{label}; {low:.5g} ... {high:.5g}")
+    # Below a lying bar the power of ten of its ticks has a row of its own.
+    lying = bar.orientation == "horizontal"
+    bar.set_label(f"{label}; {low:.5g} ... {high:.5g}", labelpad=9.0 if lying else None)
     bar.outline.set_linewidth(0.5)
     bar.locator = MaxNLocator(7)
     bar.formatter.set_powerlimits((-3, 4))
@@ -279,7 +291,7 @@ def paint(
             drawn.set_edgecolor("face")
             drawn.set_linewidth(0.15)
     _paint_lines(ax, drawing, frame, positions, colors, norm)
-    show = mesh.n_cells <= EDGES_UP_TO if edges is None else edges
+    show = _edges_show(mesh, positions) if edges is None else edges
     if show:
         width = 0.35 if mesh.n_cells < 400 else 0.2
         lines = edge_lines(mesh, positions)
@@ -289,7 +301,10 @@ def paint(
         ax.add_collection(
             LineCollection(lines, colors=PALE, linewidths=0.8, linestyles=(0, (4, 3)), zorder=0.5)
         )
-    ax.add_collection(LineCollection(outline(mesh, positions), colors=INK, linewidths=0.8))
+    slender = edges is None and not show and mesh.n_cells <= EDGES_UP_TO
+    ax.add_collection(
+        LineCollection(outline(mesh, positions), colors=INK, linewidths=0.35 if slender else 0.8)
+    )
     draw_rigid(ax, results.model, results.frame(frame), scale)
     ax.set_aspect("equal")
     ax.set_xlabel("x")
@@ -301,6 +316,21 @@ def paint(
     )
     painted.set_array([])
     return painted
+
+
+def _edges_show(mesh: Mesh, positions: Floats) -> bool:
+    """Whether cells are few, and wide enough in the picture to be seen between their edges."""
+    if mesh.n_cells > EDGES_UP_TO:
+        return False
+    sizes = [
+        np.sqrt(np.prod(np.ptp(positions[c.nodes], axis=1), axis=1))
+        for c in mesh.cells
+        if c.kind.startswith(("tri", "quad"))
+    ]
+    if not sizes:
+        return True
+    whole = float(np.ptp(positions, axis=0).max())
+    return bool(np.median(np.concatenate(sizes)) > EDGES_FROM * whole)
 
 
 def _paint_lines(

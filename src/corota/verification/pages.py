@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -167,6 +168,8 @@ def _curve(curve: Curve, target: Path, name: str) -> Path:
             ax.plot(x, y, linestyle="", marker=MARKERS[k % len(MARKERS)], markersize=5.0,
                     markerfacecolor="none", color="#20242b", label=label)  # fmt: skip
         _finish(ax, curve.x, curve.y)
+        # Beside the lines and marks, not over them.
+        ax.legend(fontsize=7.0, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
         save(figure, path, DPI * 1.15)
     return _shrunk(path)
 
@@ -174,6 +177,8 @@ def _curve(curve: Curve, target: Path, name: str) -> Path:
 def _study(study: Study, target: Path, name: str) -> Path:
     path = target / "figures" / f"{name}-convergence.png"
     with look():
+        from matplotlib.ticker import LogFormatterSciNotation, NullLocator
+
         figure = new_figure(5.2, 3.8, shown=False)
         ax = figure.add_subplot()
         for k, (label, (x, y)) in enumerate(study.series.items()):
@@ -184,8 +189,11 @@ def _study(study: Study, target: Path, name: str) -> Path:
         _finish(ax, study.across, study.label)
         sizes = sorted({s for at, _ in study.series.values() for s in at})
         if len(sizes) <= 8:
+            ax.xaxis.set_minor_locator(NullLocator())
             ax.set_xticks(sizes, [f"{s:g}" for s in sizes])
-            ax.minorticks_off()
+        # Less than a decade or two: the ticks between get numbers too.
+        ax.yaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.5, 0.6)))
+        ax.tick_params(axis="y", which="minor", labelsize=6.5)
         save(figure, path, DPI * 1.15)
     return _shrunk(path)
 
@@ -194,8 +202,8 @@ def _finish(ax: Any, x: str, y: str) -> None:
     ax.grid(True, color="#e6e9ee", linewidth=0.6)
     ax.set_axisbelow(True)
     ax.set_xlabel(x)
-    ax.set_ylabel(y)
-    ax.legend(fontsize=7.0)
+    ax.set_ylabel("\n".join(wrap(y, 40)))
+    ax.legend(fontsize=7.0, frameon=True, framealpha=0.85, edgecolor="none")
 
 
 def _shrunk(path: Path) -> Path:

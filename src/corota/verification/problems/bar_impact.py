@@ -5,7 +5,8 @@ contact for 0.6667 under the force rho c A v = 3, is 1/30 shorter when the wave 
 and leaves with the velocity it came with. Steel (210 GPa, 7850 kg/m^3, 1 m, 1 cm^2, 10 m/s: 386.7
 us, 40.6 kN, which is 406 MPa) and the unit bar (2, 0.1) follow by scaling. A contact force that
 acts on nodes with mass creates energy instead and chatters; here it is redistributed. Two hundred
-cells along the bar, increments of half the time that a wave takes through one.
+cells along the bar, increments of half the time that a wave takes through one. The rebound
+stays 0.1 to 0.5 % slow on every mesh: that energy is left in waves.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -66,12 +67,12 @@ def curve() -> Curve:
 
 
 def study() -> Study:
-    """Error of the rebound with cells and increments together."""
+    """Error of the shortening with cells and increments together."""
     cells = (25, 50, 100, 200)
     return Study(
-        "error of the velocity of the rebound",
+        "error of the largest shortening",
         {e: ([float(n) for n in cells],
-             [abs(struck(e, "hht", n).rebound - 1.0) for n in cells]) for e in ("Q4I", "Q4D")},
+             [abs(struck(e, "hht", n).shortening - 1.0) for n in cells]) for e in ("Q4I", "Q4D")},
         "cells along the bar",
     )  # fmt: skip
 

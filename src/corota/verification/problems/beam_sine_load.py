@@ -118,7 +118,7 @@ def study() -> Study:
         known = exact(time, 30.0)
         return float(np.abs(found - known).max() / np.abs(known).max())
 
-    return Study("largest error over the largest displacement",
+    return Study("largest error / largest displacement, down to that of 40 beams",
                  {w: ([float(n) for n in counts], [worst(w, n) for n in counts])
                   for w in ("newmark", "modal")}, "increments")  # fmt: skip
 

@@ -63,7 +63,7 @@ def measure() -> Iterator[Value]:
 
 def picture() -> Picture:
     """The sheared rectangle of aspect 4."""
-    return Picture(sheared("Q4", 4.0), "E12")
+    return Picture(sheared("Q4", 4.0), "U1")
 
 
 def curve() -> Curve:

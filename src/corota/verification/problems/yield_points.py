@@ -82,7 +82,7 @@ def measure() -> Iterator[Value]:
 
 def curve() -> Curve:
     """Stress against strain of the three loadings without hardening."""
-    size = np.linspace(0.0, 0.006, 13)[1:]
+    size = np.linspace(0.0, 0.006, 49)[1:]
     cases = {"shear": (0.0, 0.0, 1.0), "tension, no strain across": (1.0, 0.0, 0.0),
              "equal tension": (1.0, 1.0, 0.0)}  # fmt: skip
     series = {}
