@@ -14,6 +14,7 @@ from corota import elements
 from corota.drivers.damping import damping_matrix
 from corota.drivers.explicit import explicit_step
 from corota.drivers.increments import SAME, Increments
+from corota.drivers.localising import softening
 from corota.drivers.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
 from corota.drivers.newton import Outcome, Settings, newton
 from corota.drivers.schemes import SCHEMES
@@ -118,7 +119,8 @@ def dynamic_step(
             if end:
                 raise ConvergenceError(
                     f"step {number} stopped at step time {control.time:g} of {step.period:g}: "
-                    f"{end}; last attempt: {reason}. All converged increments are kept"
+                    f"{end}; last attempt: {reason}{softening(system.blocks)}. "
+                    "All converged increments are kept"
                 )
             observers.cut_back(
                 number, control.number + 1, control.attempt - 1, reason, control.size

@@ -1,4 +1,4 @@
-"""Flow that runs into half of a Q4I element: found in the results, and said."""
+"""Flow that localises because of an element or a strain: found in the results, and said."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -10,6 +10,8 @@ import numpy as np
 from corota.materials_plastic import Mises
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from corota.drivers.cells import BlockOfCells
     from corota.results import PointFields
 
@@ -52,4 +54,21 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
         f"hardens by less ({slope:.3g}) than its stress ({stress[-1]:.3g}): incompatible modes "
         "let flow run into half an element then, and a finer mesh makes it worse; compare with "
         "Q8 or Q8R"
+    )
+
+
+def softening(blocks: Sequence[BlockOfCells]) -> str:
+    """What to say of a run that stops with plastic flow and the local strain `modified`.
+
+    The nominal stress is the stretch times a stress S of the size of the yield stress; its slope
+    is S plus the hardening times the square of the stretch, in compression negative.
+    """
+    if not any(
+        b.section.local_strain == "modified" and isinstance(b.section.material, Mises)
+        for b in blocks
+    ):
+        return ""
+    return (
+        ". Plastic flow with the local strain 'modified' softens under compression where "
+        "hardening, times the square of the stretch, is below the yield stress: take 'logarithmic'"
     )

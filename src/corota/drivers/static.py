@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from corota.drivers.arc_length import path_step
 from corota.drivers.increments import Increments
+from corota.drivers.localising import softening
 from corota.drivers.newton import Outcome, Settings, newton
 from corota.drivers.system import Evaluation
 from corota.drivers.touching_start import newton_with_contact
@@ -17,7 +18,6 @@ from corota.errors import (
     ModelError,
     SingularError,
 )
-from corota.materials_plastic import Mises
 from corota.paths import ArcLength
 from corota.results import Iteration
 
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from corota.drivers.observers import Observers
     from corota.drivers.state import State
     from corota.drivers.system import System
-    from corota.model import Section
     from corota.steps import Static
 
     Floats = NDArray[np.float64]
@@ -270,13 +269,4 @@ def _reason(
             "ahead, the structure cannot carry more this way; prescribe a displacement "
             "instead of the load"
         )
-    if any(_softens(b.section) for b in system.blocks):
-        where += (
-            ". Plastic flow with the local strain 'modified' softens under compression where "
-            "hardening is below the yield stress: take 'logarithmic'"
-        )
-    return where + ". All converged increments are kept"
-
-
-def _softens(section: Section) -> bool:
-    return section.local_strain == "modified" and isinstance(section.material, Mises)
+    return where + softening(system.blocks) + ". All converged increments are kept"
