@@ -1,7 +1,8 @@
 //! Every lane of a pack gives what plain numbers give, for everything that is registered.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::problem::{BlockInput, Problem};
+use super::build::{BlockInput, Options};
+use super::problem::Problem;
 use super::registry::{self, Facts};
 use crate::base::Lanes;
 use crate::kinematics::local_strain::LocalStrain;
@@ -123,7 +124,7 @@ fn case(facts: &Facts, law: &str, strain: &str, turning: bool) -> Case {
         profile: [0.7, 0.1, 0.4],
         table: if strain == "logarithmic" { TABLE.to_vec() } else { Vec::new() },
         rho: 1.0,
-        options: super::problem::Options::default(),
+        options: Options::default(),
         nodes: (0..x.len() as u32).collect(),
     };
     let dofs_per_element = facts.n_nodes * facts.dofs_per_node;

@@ -1,6 +1,7 @@
 //! The discrete model: dofs, sparsity pattern, chunks of elements, assembly and recovery.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod build;
 pub mod chunk;
 pub mod dofs;
 pub mod dynamics;
@@ -12,7 +13,8 @@ pub mod registry;
 pub mod scatter;
 pub mod sizes;
 
-pub use problem::{BlockInput, Problem};
+pub use build::BlockInput;
+pub use problem::Problem;
 
 #[cfg(test)]
 mod lanes_test;

@@ -1,70 +1,19 @@
 //! The whole discrete model: blocks of elements, their chunks by colour, assembly.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::chunk::{CHUNK, Chunk, ChunkOf, Context, Shared as BlockData};
+use super::build::{Block, BlockInput, build, colour};
+use super::chunk::{Chunk, Context};
 use super::dofs::Dofs;
 use super::dynamics::{Between, Momenta, Motion};
 use super::held::Held;
-use super::locality;
 use super::recover::Fields;
 use super::registry;
 use super::scatter::{Shared, Sink};
 use crate::base::Lanes;
 use crate::base::race::Race;
-use crate::elements::Element;
-use crate::for_each_element;
 use crate::kinematics::inertia::MassKind;
-use crate::kinematics::integrate::Section;
-use crate::kinematics::local_strain::LocalStrain;
 use crate::loads::body::Field;
-use crate::materials::{Law, Plane};
 use rayon::prelude::*;
-use std::sync::Arc;
-
-/// Elements of one type with one material and section.
-#[derive(Clone, Debug)]
-pub struct BlockInput {
-    pub element: String,
-    pub law: String,
-    pub parameters: Vec<f64>,
-    pub plane: Plane,
-    pub local_strain: String,
-    pub thickness: f64,
-    /// Section numbers of line elements.
-    pub profile: [f64; 3],
-    /// Pairs of elongation and force of nonlinear springs.
-    pub table: Vec<[f64; 2]>,
-    pub rho: f64,
-    pub options: Options,
-    /// Node indices, element by element.
-    pub nodes: Vec<u32>,
-}
-
-/// Choices of a section that few need.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Options {
-    /// Mean dilatation over each element: see [`crate::kinematics::dilatation`].
-    pub mean_dilatation: bool,
-    /// Weight of the higher-order stiffness of OPT; by default from the elastic moduli.
-    pub beta0: Option<f64>,
-}
-
-/// What is kept of a block beside its chunks.
-#[derive(Clone, Debug)]
-pub struct Block {
-    pub facts: registry::Facts,
-    pub n_elements: usize,
-    pub law: Law,
-    /// Shape functions at the points, `[p, N]`.
-    pub shape: Vec<f64>,
-}
-
-impl Block {
-    /// Names of the scalars that recovery gives.
-    pub fn outputs(&self) -> &'static [&'static str] {
-        if self.facts.line { self.facts.outputs } else { self.law.outputs() }
-    }
-}
 
 /// Elements that could not be evaluated: pairs of block and index in it.
 #[derive(Clone, Debug, Default)]
@@ -503,98 +452,4 @@ fn zero(values: &mut [f64], parallel: bool) {
     } else {
         values.fill(0.0);
     }
-}
-
-/// The chunks of one block.
-fn build(
-    index: usize,
-    input: &BlockInput,
-    x: &[[f64; 2]],
-    dofs: &Dofs,
-) -> Result<(Block, Vec<Box<dyn Chunk>>), String> {
-    fn of<E, const N: usize, const M: usize, const A: usize>(
-        index: usize,
-        input: &BlockInput,
-        x: &[[f64; 2]],
-        dofs: &Dofs,
-    ) -> Result<(Block, Vec<Box<dyn Chunk>>), String>
-    where
-        E: Element<N, M, A>,
-    {
-        let law = Law::new(&input.law, &input.parameters, input.plane)?;
-        if input.options.mean_dilatation
-            && (E::rule().len() < 4 || E::NAME == "Q4I" || input.plane == Plane::Stress)
-        {
-            return Err(format!(
-                "mean dilatation is for quadrilaterals without incompatible modes in plane strain, \
-                 not for {} in plane {}",
-                E::NAME,
-                if input.plane == Plane::Stress { "stress" } else { "strain" },
-            ));
-        }
-        let section = Section {
-            points: E::points(&E::rule()),
-            strain: LocalStrain::new(&input.local_strain)?,
-            thickness: input.thickness,
-            parameter: match input.options.beta0 {
-                Some(beta0) => E::parameter_of(beta0)
-                    .ok_or_else(|| format!("{} has no parameter beta0", E::NAME))?,
-                None => E::parameter(&law.moduli()),
-            },
-            law: law.clone(),
-            plane: input.plane,
-            profile: input.profile,
-            table: input.table.clone(),
-            mean_dilatation: input.options.mean_dilatation,
-            finite: true,
-        };
-        let shape = section.points.iter().flat_map(|p| p.n).collect();
-        let mass_points = E::points(&E::mass_rule());
-        let linear = section.linearised();
-        let shared = BlockData { block: index, section, linear, rho: input.rho, mass_points };
-        let shared = Arc::new(shared);
-        let nodes: Vec<[u32; N]> = input.nodes.as_chunks::<N>().0.to_vec();
-        let order = locality::order(x, &input.nodes, N, CHUNK);
-        let chunks = order.chunks(CHUNK).map(|elements| {
-            let chunk = ChunkOf::<E, N, M, A>::new(&shared, elements, &nodes, dofs);
-            Box::new(chunk) as Box<dyn Chunk>
-        });
-        let facts = registry::find(E::NAME)?;
-        Ok((Block { facts, n_elements: nodes.len(), law, shape }, chunks.collect()))
-    }
-    macro_rules! pick {
-        ($e:ty, $n:literal, $m:literal, $a:literal) => {
-            if input.element == <$e as Element<$n, $m, $a>>::NAME {
-                return of::<$e, $n, $m, $a>(index, input, x, dofs);
-            }
-        };
-    }
-    for_each_element!(pick);
-    Err(format!("no element named {:?}", input.element))
-}
-
-/// Greedy colouring: chunks of a colour share no node.
-fn colour(chunks: Vec<Box<dyn Chunk>>, n_nodes: usize) -> Vec<Vec<Box<dyn Chunk>>> {
-    let mut colours: Vec<Vec<Box<dyn Chunk>>> = Vec::new();
-    // Colours seen at each node, 64 at a time; more fall into colours of their own.
-    let mut seen = vec![0u64; n_nodes];
-    for chunk in chunks {
-        let nodes = chunk.nodes();
-        let taken = nodes.iter().fold(0u64, |m, &n| m | seen[n as usize]);
-        let free = (!taken).trailing_zeros() as usize;
-        if free >= 64 {
-            colours.resize_with(colours.len().max(64), Vec::new);
-            colours.push(vec![chunk]);
-            continue;
-        }
-        for &n in &nodes {
-            seen[n as usize] |= 1 << free;
-        }
-        if colours.len() <= free {
-            colours.resize_with(free + 1, Vec::new);
-        }
-        colours[free].push(chunk);
-    }
-    colours.retain(|c| !c.is_empty());
-    colours
 }

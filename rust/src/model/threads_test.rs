@@ -1,7 +1,8 @@
 //! Sums do not depend on the number of threads, to the last bit.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::problem::{BlockInput, Options, Problem};
+use super::build::{BlockInput, Options};
+use super::problem::Problem;
 use crate::materials::Plane;
 
 /// A sheet of quadrilaterals, numbered at random if that is wanted.

@@ -6,8 +6,9 @@ use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
 use crate::loads::edge;
 use crate::materials::Law;
+use crate::model::build::{BlockInput, Options};
 use crate::model::dynamics::{Between, Motion};
-use crate::model::problem::{BlockInput, Failed, Options, Problem};
+use crate::model::problem::{Failed, Problem};
 use crate::model::registry;
 use crate::model::sizes;
 use numpy::{
