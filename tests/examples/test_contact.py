@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -110,3 +111,20 @@ def test_bistable_beam_leaves_the_probe_where_its_force_vanishes(load: Load) -> 
     assert way[last] == pytest.approx(4.0 / 3.0 * beam.HEIGHT, rel=0.02)
     middle = -np.array(results.history("U2", at="left"))
     assert middle[-1] > way[-1]
+
+
+def test_beam_snaps_through_by_its_load_onto_the_stop(
+    load: Load, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same curve as with a held probe, in mm and in m the same iterations."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "examples" / "contact"))
+    example = load("contact/snap_by_load.py")
+    case = example.CASES["friction 0.3"]
+    results = example.by_load(*case)
+    way, force = example.curve(results)
+    assert example.held(*case, way[1:]) == pytest.approx(force[1:], abs=1e-7)
+    other = example.by_load(*case, unit=1e3)
+    assert list(other.history("iterations")) == list(results.history("iterations"))
+    limit, lowest = results.critical_points[:2]
+    assert limit.factor > lowest.factor
+    assert np.array(results.history("stop: area"))[-1] > 0.0

@@ -332,9 +332,10 @@ class Follower:
                 self.system, Station(0.0, self.base, self.mark), end, *self._between(end)
             )
             self._evaluated = None  # others were tried since the point that is taken
-            if critical is None:
+            # A kink that cannot be told to seven digits is passed all the same.
+            if critical is None and not (end.behind and self.attempt > KINK):
                 return None
-            point = critical.point
+            point = end.point if critical is None else critical.point
         crossed = self._crossed(point)
         if crossed is not None:
             landed = self._land(crossed, point)

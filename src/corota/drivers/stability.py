@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: A critical point is located to this share of the increment that holds it.
 SHARPNESS = 1e-7
 #: A kink to this share, looked for beside where it is expected by one of the bracket.
-BLUNT, ASIDE = 1e-6, 0.02
+BLUNT, ASIDE = 1e-4, 0.02
 #: Behind a critical point the next one is looked for from this share of the increment on.
 CLEAR = 1e-2
 #: Distances at which a neighbour of a point without inverse is tried.
@@ -179,12 +179,13 @@ def locate(
             share = crossing(low, high) + (ASIDE if best and best[1] is low else -ASIDE) * left
             share = min(max(share, low.share + ASIDE * left), high.share - ASIDE * left)
         sample = None
+        now: Station | None = low
         for distance in NEARBY:
             near = max(share - distance, 0.5 * (low.share + share))
             try:
                 now = solve(near)
                 if now is None:
-                    return None
+                    break
                 # Where the tangent jumps, no mode tells how far it is.
                 sample = now, *((0.0, None) if kink else softest_mode(system, mode))
                 break
@@ -193,7 +194,8 @@ def locate(
                 if best is not None and abs(near - best[1].share) <= BESIDE:
                     break
         if sample is None:
-            if best is None:
+            # Close to a kink rounding decides the states.
+            if best is None or (now is None and not (kink and high.share - low.share < CLEAR)):
                 return None
             break
         now, value, mode = sample
