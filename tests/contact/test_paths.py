@@ -208,3 +208,15 @@ def test_snap_fit_by_its_load_passes_node_after_node(friction):
     steps = [ct.Static(increments=1, supports=[Fixed("ball", 0, x)]) for x in way[1:]]
     held = ct.solve(snap_fit(friction), steps, threads=1)
     assert -np.array(held.history("RF1", at="ball")) == pytest.approx(factor, abs=SAME)
+
+
+def test_load_control_names_the_limit_point_or_goes_on_to_the_stop():
+    model = beam()
+    model.force("probe", y=-1.6)
+    with pytest.raises(ct.ConvergenceError, match=r"limit point at load factor 0\.6653"):
+        ct.solve(model, ct.Static(increments=20), threads=1)
+    model = stopped()
+    model.force("probe", y=-1.6)
+    found = ct.solve(model, ct.Static(increments=40, at_limit="follow"), threads=1)
+    assert found.frames[-1].factor == pytest.approx(1.0)
+    assert [p.negative for p in found.critical_points] == [(0, 1), (1, 0)]
