@@ -87,7 +87,7 @@ def test_friction_that_slips_tells_no_stability():
 
 @pytest.mark.parametrize("kind", ["elastic", "plastic"])
 def test_units_do_not_matter(kind):
-    one, other = (along(beam(kind, 0.3, unit), unit) for unit in (1.0, 1e3))
+    one, other = (along(beam(kind, 0.3, unit), unit, -2.0) for unit in (1.0, 1e3))
     assert list(one.history("iterations")) == list(other.history("iterations"))
     assert np.array(one.history("load factor")) == pytest.approx(
         other.history("load factor"), rel=1e-6
@@ -199,12 +199,12 @@ def test_snap_fit_by_its_load_passes_node_after_node(friction):
     """Each node of the coarse bump makes the load rise and fall; the ends of pieces are kinks."""
     model = snap_fit(friction)
     model.force("ball", x=-1.0)
-    path = ct.ArcLength(displacement=("ball", "x", -6.0))
+    path = ct.ArcLength(displacement=("ball", "x", -4.0))
     found = ct.solve(model, ct.Static(path=path, max_increments=200), threads=1)
     factor, way = np.array(found.history("load factor")), found.history("U1", at="ball")
-    assert way[-1] == pytest.approx(-6.0)
+    assert way[-1] == pytest.approx(-4.0)
     assert factor.max() > 0.4
-    assert sum(p.kind == "limit" for p in found.critical_points) > 5
+    assert sum(p.kind == "limit" for p in found.critical_points) > 3
     steps = [ct.Static(increments=1, supports=[Fixed("ball", 0, x)]) for x in way[1:]]
     held = ct.solve(snap_fit(friction), steps, threads=1)
     assert -np.array(held.history("RF1", at="ball")) == pytest.approx(factor, abs=SAME)
@@ -214,7 +214,7 @@ def test_load_control_names_the_limit_point_or_goes_on_to_the_stop():
     model = beam()
     model.force("probe", y=-1.6)
     with pytest.raises(ct.ConvergenceError, match=r"limit point at load factor 0\.6653"):
-        ct.solve(model, ct.Static(increments=20), threads=1)
+        ct.solve(model, ct.Static(increments=8), threads=1)
     model = stopped()
     model.force("probe", y=-1.6)
     found = ct.solve(model, ct.Static(increments=40, at_limit="follow"), threads=1)
