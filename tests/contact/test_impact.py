@@ -82,22 +82,3 @@ def test_block_rests_on_a_wall_after_a_static_step():
     force = np.array([f.scalars["wall: force y"] for f in moving])
     assert force == pytest.approx(2.0, rel=1e-6)
     assert max(f.scalars["kinetic energy"] for f in moving) < 1e-12
-
-
-def test_block_slides_to_rest_by_friction():
-    """Deceleration mu g: it stops after v / (mu g), and friction has taken its energy."""
-    mu, g, v = 0.4, 10.0, 1.0
-    mesh = ct.mesh.rectangle(1.0, 0.5, nx=4, ny=2)
-    model = ct.Model(mesh)
-    model.section("all", element="Q4I", material=ct.Elastic(E=1e6, nu=0.0, rho=1.0))
-    model.gravity(y=-g)
-    model.velocity(x=v)
-    wall = ct.RigidCurve.line((9.0, 0.0), (-9.0, 0.0))
-    model.contact("bottom", wall, name="wall", friction=mu)
-    period = 0.8 * v / (mu * g)
-    step = ct.Dynamic(period=period, increments=80, scheme="generalized_alpha", rho_inf=0.5)
-    frames = ct.solve(model, step, fields=False).frames
-    last = frames[-1].scalars
-    assert last["momentum x"] == pytest.approx(0.5 * v * 0.2, abs=0.5 * v * 0.02)
-    taken = 0.25 * v**2 * (1.0 - 0.2**2)
-    assert last["friction energy"] == pytest.approx(taken, rel=0.03)

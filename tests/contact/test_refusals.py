@@ -97,3 +97,14 @@ def test_procedures_without_contact():
     model.contact("up.bottom", "low.top")
     with pytest.raises(ct.UnsupportedError, match="takes no contact pairs or ties"):
         ct.solve(model, ct.Frequency(modes=1), threads=1)
+
+
+def test_explicit_motion_takes_no_contact():
+    """It went on without: bodies passed through each other."""
+    mesh = ct.mesh.rectangle(1.0, 0.5, 4, 2)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3, rho=1.0))
+    model.velocity(y=-1.0)
+    model.contact("bottom", ct.RigidCurve.line((2.0, -0.01), (-1.0, -0.01)))
+    with pytest.raises(ct.UnsupportedError, match="central differences take no contact"):
+        ct.solve(model, ct.Dynamic(period=0.1, scheme="central_difference"), threads=1)

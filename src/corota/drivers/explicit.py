@@ -76,7 +76,7 @@ def explicit_step(
     InputError
         If there is damping, which this scheme leaves out.
     UnsupportedError
-        If there are constraints.
+        If there are constraints or contact.
     ModelError
         If the asked increment is not stable; the message gives the stable one.
     ConvergenceError
@@ -94,6 +94,12 @@ def explicit_step(
         raise UnsupportedError(
             "central differences take no constraints and no local axes: eliminated dofs couple "
             "the masses of others, and the mass is no diagonal any more; use an implicit scheme",
+            step.where,
+        )
+    if system.touching is not None:
+        raise UnsupportedError(
+            "central differences take no contact pairs and no ties; use an implicit scheme "
+            "(hht, generalized_alpha, energy_momentum; *DYNAMIC without EXPLICIT)",
             step.where,
         )
     mass = diagonal(system)

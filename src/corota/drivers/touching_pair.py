@@ -343,9 +343,12 @@ class Pair:
         if self.friction:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
-            # What stuck, or turned round, slid after its traction had grown.
-            mean = np.where(stuck | (before * q < 0.0), q, 0.5 * (before + q))
-            self.friction_work -= float(mean @ terms.slip)
+            # What stuck, or turned round, slid after its traction had grown. In the scheme of
+            # rate conditions the traction of the end acts all the way.
+            whole = stuck | (before * q < 0.0) | (self.start is not None)
+            mean = np.where(whole, q, 0.5 * (before + q))
+            # What parted may have slid back without traction.
+            self.friction_work += float(np.maximum(-mean * terms.slip, 0.0).sum())
 
 
 __all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "Pair", "Terms"]

@@ -55,41 +55,52 @@ class Impact:
     history: np.ndarray
 
 
-def bar(element: str = "Q4I", cells: int = 200, **contact: Any) -> Model:
-    """Build the bar, just touching the wall x = 0, on its way into it."""
-    height = LENGTH / cells * 2.0
-    mesh = meshes.rectangle(LENGTH, height, nx=cells, ny=1, cell=cell(element))
+def bar(element: str = "Q4I", cells: int = 200, unit: float = 1.0, **contact: Any) -> Model:
+    """Build the bar, just touching the wall x = 0, on its way into it.
+
+    `unit` is one metre in the unit of length; masses stay, so stresses scale with 1 / unit.
+    """
+    length = LENGTH * unit
+    height = length / cells * 2.0
+    mesh = meshes.rectangle(length, height, nx=cells, ny=1, cell=cell(element))
     model = Model(mesh, name="bar")
-    material = Elastic(E=YOUNG, nu=0.0, rho=DENSITY)
-    model.section("all", element=element, material=material, thickness=1.0 / height)
+    material = Elastic(E=YOUNG / unit, nu=0.0, rho=DENSITY / unit**3)
+    model.section("all", element=element, material=material, thickness=unit**2 / height)
     model.fix("bottom", x=None)
-    model.velocity(x=-SPEED)
-    wall = RigidCurve.line((0.0, -1.0), (0.0, 1.0 + height))
+    model.velocity(x=-SPEED * unit)
+    wall = RigidCurve.line((0.0, -unit), (0.0, unit + height))
     model.contact("left", wall, name="wall", **contact)
     return model
 
 
-def strike(
+def run_bar(
     element: str = "Q4I",
     scheme: str = "hht",
     cells: int = 200,
     redistribute: bool = True,
     mass: Any = "consistent",
     step: float = 0.5,
-) -> Impact:
-    """Run the impact; `step` is the increment over the time of a wave through a cell."""
-    model = bar(element, cells)
-    exact = 2.0 * LENGTH / WAVE
-    increment = step * LENGTH / cells / WAVE
+    unit: float = 1.0,
+    **contact: Any,
+) -> Results:
+    """Run the impact; `step` is the increment over the time of a wave through a cell, or 0."""
+    period = 2.6 * LENGTH / WAVE
     dynamic = Dynamic(
-        period=1.3 * exact,
-        increments=round(1.3 * exact / increment),
+        period=period,
+        increments=round(period / (step * LENGTH / cells / WAVE)) if step else 0,
         scheme=scheme,
         mass=mass,
         redistribute=redistribute,
     )
-    frames = solve(model, dynamic, fields=False).frames[1:]
-    end = model.mesh.nodes_of("right")
+    return solve(bar(element, cells, unit, **contact), dynamic, fields=False)
+
+
+def strike(element: str = "Q4I", scheme: str = "hht", **options: Any) -> Impact:
+    """Run the impact and measure it; options as for :func:`run_bar`."""
+    exact = 2.0 * LENGTH / WAVE
+    results = run_bar(element, scheme, **options)
+    frames = results.frames[1:]
+    end = results.mesh.nodes_of("right")
     shorter = max(-float(f.U[end, 0].mean()) for f in frames)
     value = {n: np.array([f.scalars[n] for f in frames]) for n in frames[-1].scalars}
     time = np.array([f.time for f in frames])
@@ -103,7 +114,7 @@ def strike(
         force=float(force.max() / (DENSITY * WAVE * SPEED)),
         rebound=float(value["momentum x"][-1] / (DENSITY * LENGTH * SPEED)),
         energy=float(total[-1] / first),
-        mean_force=float(force.sum() * increment / exact / (DENSITY * WAVE * SPEED)),
+        mean_force=float(force @ value["dt"] / exact / (DENSITY * WAVE * SPEED)),
         shortening=shorter / (SPEED * LENGTH / WAVE),
         iterations=float(value["iterations"].mean()),
         history=np.column_stack([time / exact, force / (DENSITY * WAVE * SPEED), total / first]),
@@ -147,12 +158,14 @@ class Flight:
 
 def ring(
     element: str = "Q4I", around: int = 64, through: int = 2, *, plastic: bool = False,
-    speed: float = 2.0, unit: float = 1.0, local_strain: Any = "modified", body: str = "ring",
+    speed: float = 2.0, sideways: float = 0.0, spin: float = 0.0, unit: float = 1.0,
+    local_strain: Any = "modified", body: str = "ring", **contact: Any,
 ) -> Model:  # fmt: skip
     """Build the ring, or a bar upright, nearly touching the wall y = 0.
 
-    `around` counts the elements along the ring or bar; `unit` is one metre in the unit of length.
-    Masses stay, so stresses scale with 1 / unit (force = mass length / time^2).
+    `around` counts the elements along the ring or bar; `sideways` and `spin` are velocities along
+    the wall and about the centre, `contact` goes to the pair; `unit` is one metre in the unit of
+    length. Masses stay, so stresses scale with 1 / unit (force = mass length / time^2).
     """
     if body == "bar":
         # 1 x 0.2, standing on the wall; it bulges at the foot like a Taylor bar.
@@ -176,23 +189,24 @@ def ring(
     model.section(
         "all", element=element, material=material, thickness=unit, local_strain=local_strain
     )
-    model.velocity(y=-speed * unit)
+    centre = (0.0, 1.001 * RADIUS * unit)
+    model.velocity(x=sideways * unit, y=-speed * unit, spin=spin, about=centre)
     # The wall lies to the left of the line, below it.
     wall = RigidCurve.line((3.0 * unit, 0.0), (-3.0 * unit, 0.0))
-    model.contact("outer" if body == "ring" else "bottom", wall, name="wall")
+    model.contact("outer" if body == "ring" else "bottom", wall, name="wall", **contact)
     return model
 
 
-def fly(
-    element: str = "Q4I", *, plastic: bool = False, speed: float = 2.0, around: int = 64,
-    through: int = 2, unit: float = 1.0, scheme: str = "energy_momentum", period: float = 1.0,
-    increments: int = 200, mass_kind: Any = "consistent", redistribute: bool = True,
-    tolerance: float = 5e-3, body: str = "ring",
-) -> Flight:  # fmt: skip
-    """Run the impact; 0 increments for automatic ones."""
+def run_ring(
+    element: str = "Q4I", around: int = 64, through: int = 2, *, plastic: bool = False,
+    scheme: str = "energy_momentum", period: float = 1.0, increments: int = 0,
+    mass_kind: Any = "consistent", redistribute: bool = True, tolerance: float = 5e-3,
+    **options: Any,
+) -> Results:  # fmt: skip
+    """Run the impact; 0 increments for automatic ones, other options as for :func:`ring`."""
     model = ring(
-        element, around, through, plastic=plastic, speed=speed, unit=unit,
-        local_strain="simplified" if plastic else "modified", body=body,
+        element, around, through, plastic=plastic,
+        local_strain="simplified" if plastic else "modified", **options,
     )  # fmt: skip
     step = Dynamic(
         period=period,
@@ -203,7 +217,15 @@ def fly(
         mass=mass_kind,
         redistribute=redistribute,
     )
-    results = solve(model, step)
+    return solve(model, step)
+
+
+def fly(
+    element: str = "Q4I", *, speed: float = 2.0, unit: float = 1.0, increments: int = 200,
+    **options: Any,
+) -> Flight:  # fmt: skip
+    """Run the impact and measure it; options as for :func:`run_ring`."""
+    results = run_ring(element, speed=speed, unit=unit, increments=increments, **options)
     frames = results.frames
 
     def total(name: str) -> np.ndarray:
@@ -223,7 +245,7 @@ def fly(
     force = value["wall: force y"]
     closed = force > 1e-9 * force.max()
     time = np.array([f.time for f in frames[1:]])
-    rest = model.mesh.points[:, 1]
+    rest = results.mesh.points[:, 1]
     y = rest + frames[-1].U[:, 1]
     momentum = mass * speed * unit
     return Flight(
@@ -245,5 +267,98 @@ def fly(
 
 def mass_of(results: Results) -> float:
     """Mass of the ring from the volume of its quadrature points."""
+    return body_of(results, 0)[0]
+
+
+@dataclass
+class Budget:
+    """Momenta and energies of a flight; energies over the kinetic energy of the start.
+
+    Parameters
+    ----------
+    before, after, impulse : ndarray, shape (3,)
+        Momentum along and across the wall and about the origin at both ends, and what the wall
+        gave: its force and moment, summed over the increments.
+    travel, spin, vibration : float
+        Energy at the end of the motion of the centre of mass, of the mean spin about it, and the
+        rest, kinetic and elastic.
+    friction : float
+        What friction took.
+    lack : float
+        What is missing in the end: taken by scheme and contact, or made up if negative.
+    depth : float
+        Deepest penetration of a slave node's weighted gap [length].
+    contacts : int
+        How often the ring came to touch the wall.
+    ratio : float
+        Largest ratio of the friction of the wall to its pressure.
+    history : dict of ndarray
+        Times, forces, momenta and energies of every increment.
+    """
+
+    before: np.ndarray
+    after: np.ndarray
+    impulse: np.ndarray
+    travel: float
+    spin: float
+    vibration: float
+    friction: float
+    lack: float
+    depth: float
+    contacts: int
+    ratio: float
+    history: dict[str, np.ndarray]
+
+
+def body_of(results: Results, frame: int) -> tuple[float, np.ndarray, float]:
+    """Mass, centre of mass and inertia about it in a frame."""
     rho = results.model.sections[0].material.rho
-    return float(sum(f.volume.sum() for f in results.frames[0].fields) * rho)
+    fields = results.frames[frame].fields
+    weight = rho * np.concatenate([f.volume.ravel() for f in fields])
+    x = np.concatenate([f.points.reshape(-1, 2) for f in fields])
+    mass = float(weight.sum())
+    centre = weight @ x / mass
+    return mass, centre, float(weight @ ((x - centre) ** 2).sum(axis=1))
+
+
+def budget(results: Results) -> Budget:
+    """Balance of momenta and energies of an elastic ring against the wall."""
+    frames, mesh = results.frames, results.mesh
+    value = {n: np.array([f.scalars[n] for f in frames[1:]]) for n in frames[-1].scalars}
+    mass, _, inertia = body_of(results, 0)
+    motion = results.model.velocities[0].value
+    velocity, spin, about = np.array(motion[:2]), motion[2], np.array(motion[3:5])
+    turn = mass * (about[0] * velocity[1] - about[1] * velocity[0]) + inertia * spin
+    first = 0.5 * mass * float(velocity @ velocity) + 0.5 * inertia * spin**2
+    names = ("momentum x", "momentum y", "angular momentum")
+    after = np.array([value[n][-1] for n in names])
+    force = {n: value[f"wall: {n}"] for n in ("force x", "force y", "moment")}
+    _, centre, spread = body_of(results, -1)
+    own = after[2] - (centre[0] * after[1] - centre[1] * after[0])
+    energy = value["kinetic energy"] + value["strain energy"]
+    travel = 0.5 * float(after[:2] @ after[:2]) / mass
+    turning = 0.5 * own**2 / spread
+    friction = value["friction energy"]
+    closed = force["force y"] > 1e-9 * force["force y"].max()
+    ratio = np.abs(force["force x"][closed]) / force["force y"][closed]
+    gaps = [f.C[mesh.nodes_of("outer"), 2].min() for f in frames[1:] if f.C is not None]
+    return Budget(
+        before=np.array([*(mass * velocity), turn]),
+        after=after,
+        impulse=np.array([float(f @ value["dt"]) for f in force.values()]),
+        travel=travel / first,
+        spin=turning / first,
+        vibration=(float(energy[-1]) - travel - turning) / first,
+        friction=float(friction[-1]) / first,
+        lack=1.0 - float(energy[-1] + friction[-1]) / first,
+        depth=max(0.0, -min(gaps)),
+        contacts=int(closed[0]) + int((np.diff(closed.astype(int)) > 0).sum()),
+        ratio=float(ratio.max(initial=0.0)),
+        history={
+            "time": np.array([f.time for f in frames[1:]]),
+            "energy": energy / first,
+            "friction": friction / first,
+            **{n: value[n] for n in names},
+            **force,
+        },
+    )

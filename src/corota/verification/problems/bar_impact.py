@@ -28,7 +28,7 @@ CASES = [
 @cache
 def struck(element: str, scheme: str, cells: int, redistribute: bool = True) -> Impact:
     """One impact."""
-    return strike(element, scheme, cells, redistribute)
+    return strike(element, scheme, cells=cells, redistribute=redistribute)
 
 
 def measure() -> Iterator[Value]:
