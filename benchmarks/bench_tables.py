@@ -20,13 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.common import table
+from benchmarks.common import table, write_between
 from benchmarks.side_by_side import PROGRAMS, RUNS
 
 ROOT = Path(__file__).resolve().parent.parent
 README = ROOT / "benchmarks" / "README.md"
 IMAGES = ROOT / "benchmarks" / "images"
-BEGIN, END = "<!-- side by side: begin -->", "<!-- side by side: end -->"
 SIZES = ("400", "1k", "4k", "33k", "40k", "200k", "400k", "1M")
 TITLES = {
     "P1": "P1, cantilever with large rotations",
@@ -246,8 +245,7 @@ def main() -> int:
     if args.write:
         IMAGES.mkdir(exist_ok=True)
         draw(records, IMAGES / "side-by-side.png")
-        before, rest = README.read_text(encoding="utf-8").split(BEGIN)
-        README.write_text(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+        write_between(README, "side by side", text)
     return 0
 
 

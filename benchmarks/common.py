@@ -165,3 +165,11 @@ def report(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) ->
     """Print a titled table and the machine."""
     sys.stdout.write(f"\n### {title}\n\n{machine()}\n\n{table(head, rows)}\n")
     sys.stdout.flush()
+
+
+def write_between(page: Path, name: str, text: str) -> None:
+    """Replace what stands between the marks ``name: begin`` and ``name: end`` of a page."""
+    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+    head, rest = page.read_text(encoding="utf-8").split(begin)
+    body = f"{head}{begin}\n{text}\n{end}{rest.split(end)[1]}"
+    page.write_text(body, encoding="utf-8", newline="\n")

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 import corota as ct
-from benchmarks.common import machine
+from benchmarks.common import machine, write_between
 
 ELEMENTS = {"Q4I": "quad4", "Q8": "quad8", "OPT": "tri3", "Q4D": "quad4"}
 MASSES = ("consistent", "constant", "lumped")
@@ -35,7 +35,6 @@ CASES = {
 }
 MESHES = (8, 16)
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "dynamics.md"
-BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
 
 
 def model(case: str, element: str, cells: int) -> ct.Model:
@@ -169,10 +168,7 @@ def main() -> None:
     table = masses(MESHES[:1] if args.quick else MESHES)
     text = "\n".join([f"Measured on {machine()}.", "", *drift, "", *table])
     if args.write:
-        page = PAGE.read_text(encoding="utf-8")
-        head, rest = page.split(BEGIN)
-        tail = rest.split(END)[1]
-        PAGE.write_text(f"{head}{BEGIN}\n{text}\n{END}{tail}", encoding="utf-8")
+        write_between(PAGE, "tables", text)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
 """Impacts: schemes on an elastic bar, rings and bars that yield: the tables of docs/impact.md.
 
 The bar (200 elements, increments of half the time a wave takes through one) with every implicit
-scheme, with the mass of the contact nodes redistributed and without; then bars and rings that
-hit a wall at two speeds and yield, with four elements, consistent inertia and the trapezoidal rule
-with automatic increments: rebound, energies, what their balance lacks, momentum along the
-wall, residual shape, iterations, time.
+scheme, with the mass of the contact nodes redistributed and without; an elastic ring that hits the
+wall straight and obliquely with friction: momenta, energies and where they go; then bars and rings
+that hit a wall at two speeds and yield, with four elements, consistent inertia and the scheme of
+energy and momentum with automatic increments: rebound, energies, what their balance lacks, momentum
+along the wall, residual shape, iterations, time.
 
 ``--quick`` runs coarser models; ``--write`` puts the tables between the marks in docs/impact.md
 and draws the picture there.
@@ -19,16 +20,13 @@ import time
 import warnings
 from pathlib import Path
 
-from benchmarks.common import machine
+from benchmarks.common import machine, write_between
+from corota.verification.impact_models import Budget, Flight, budget, fly, run_ring, strike
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "examples" / "impact"))
-import bar  # noqa: E402
-import ring  # noqa: E402
-
 PAGE = ROOT / "docs" / "impact.md"
 PICTURE = ROOT / "docs" / "images" / "impact.png"
-BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
+SCHEME_PICTURE = ROOT / "docs" / "images" / "impact-schemes.png"
 SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
 ELEMENTS = ("Q4I", "Q8", "OPT", "Q4D")
 
@@ -53,7 +51,7 @@ def schemes(cells: int) -> list[str]:
         say(line)
     for scheme in SCHEMES:
         for redistribute in (True, False):
-            hit = bar.strike("Q4I", scheme, cells=cells, redistribute=redistribute)
+            hit = strike("Q4I", scheme, cells=cells, redistribute=redistribute)
             lines.append(
                 say(
                     f"| {scheme} | {'redistributed' if redistribute else 'kept'} | {hit.contacts} "
@@ -64,7 +62,78 @@ def schemes(cells: int) -> list[str]:
     return lines
 
 
-def yielding(around: int, cells: int) -> tuple[list[str], dict[str, ring.Flight]]:
+#: Elastic rings: friction, velocity along the wall.
+RINGS = {"straight": (0.0, 0.0), "oblique, friction 0.3": (0.3, 1.0)}
+
+
+def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
+    """Table of momenta and energies of the elastic ring with each scheme, and the figures."""
+    lines = [
+        f"Elastic ring, {around} x 2 `Q4I`, speed 1 towards the wall, 400 fixed increments of "
+        "1/500; momenta over that of the start across the wall, energies over that of the start.",
+        "",
+        "| hit | scheme | mass of contact nodes | momentum across | along | gain less impulse "
+        "| angular gain | less moment | travel | spin | vibration | friction | lost | contacts "
+        "| largest force |",
+        "| " + " | ".join(["---"] * 15) + " |",
+    ]
+    for line in lines:
+        say(line)
+    found = {}
+    for hit, (friction, along) in RINGS.items():
+        for scheme in ("hht", "generalized_alpha", "energy_momentum"):
+            for redistribute in (True, False):
+                b = budget(
+                    run_ring(
+                        "Q4I", around, speed=1.0, sideways=along, friction=friction, scheme=scheme,
+                        redistribute=redistribute, increments=400, period=0.8,
+                    )
+                )  # fmt: skip
+                found[f"{hit} {scheme} {redistribute}"] = b
+                size = abs(b.before[1])
+                gained, rest = b.after - b.before, (b.after - b.before - b.impulse) / size
+                lines.append(
+                    say(
+                        f"| {hit} | {scheme} | {'redistributed' if redistribute else 'kept'} "
+                        f"| {b.before[1] / size:+.3f} to {b.after[1] / size:+.4f} "
+                        f"| {b.before[0] / size:.3f} to {abs(b.after[0]) / size:.4f} "
+                        f"| {abs(rest[:2]).max():.0e} | {abs(gained[2]) / size:.4f} "
+                        f"| {abs(rest[2]):.0e} | {b.travel:.4f} | {b.spin:.4f}"
+                        f" | {b.vibration:.4f} | {b.friction:.4f} | {b.lack:+.4f} | {b.contacts} "
+                        f"| {b.history['force y'].max() / size:.1f} |"
+                    )
+                )
+    return lines, found
+
+
+def compare(found: dict[str, Budget], path: Path) -> None:
+    """Force and energy over time of the straight hit: schemes, mass kept or not."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    chosen = [k for k in found if k.startswith("straight")]
+    figure, axes = plt.subplots(2, 3, figsize=(10.0, 4.8), sharex=True, layout="constrained")
+    for key in chosen:
+        _, scheme, redistributed = key.split()
+        kept = redistributed == "False"
+        history = found[key].history
+        column = ["hht", "generalized_alpha", "energy_momentum"].index(scheme)
+        style = {"color": "#cc6677" if kept else "#4477aa", "linewidth": 0.9, "zorder": 1 - kept}
+        label = "mass kept" if kept else "mass redistributed"
+        axes[0, column].plot(history["time"], history["force y"], label=label, **style)
+        axes[1, column].plot(history["time"], history["energy"], label=label, **style)
+        axes[0, column].set(title=scheme.replace("_", " "), ylim=(0, 31))
+        axes[1, column].set(xlabel="time", ylim=(0.86, 1.04))
+    axes[0, 0].set(ylabel="contact force", xlim=(0, 0.8))
+    axes[1, 0].set(ylabel="energy / energy of the start")
+    axes[1, 2].legend(frameon=False, loc="lower left")
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def yielding(around: int, cells: int) -> tuple[list[str], dict[str, Flight]]:
     """Table of the rings and bars that yield, and the flights of the rings."""
     lines = [
         f"Energies over that of the start. Ring: {around} x 2 elements; bar: {cells} x 4.",
@@ -83,7 +152,7 @@ def yielding(around: int, cells: int) -> tuple[list[str], dict[str, ring.Flight]
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
                     if body == "ring":
-                        f = ring.fly(
+                        f = fly(
                             element,
                             plastic=True,
                             speed=speed,
@@ -94,7 +163,7 @@ def yielding(around: int, cells: int) -> tuple[list[str], dict[str, ring.Flight]
                         )
                         flights[f"{element} {speed}"] = f
                     else:
-                        f = ring.fly(
+                        f = fly(
                             element, plastic=True, speed=2.0 * speed, around=cells, through=4,
                             body="bar", increments=0, period=0.4, tolerance=2e-3,
                         )  # fmt: skip
@@ -111,7 +180,7 @@ def yielding(around: int, cells: int) -> tuple[list[str], dict[str, ring.Flight]
     return lines, flights
 
 
-def picture(flight: ring.Flight, path: Path) -> None:
+def picture(flight: Flight, path: Path) -> None:
     """Energies and force over time of one flight."""
     import matplotlib
 
@@ -141,16 +210,15 @@ def main() -> int:
     args = parser.parse_args()
     begin = time.perf_counter()
     lines = schemes(50 if args.quick else 200)
+    table, found = budgets(32 if args.quick else 48)
+    lines += ["", *table]
     table, flights = yielding(32 if args.quick else 48, 20 if args.quick else 40)
     lines += ["", *table]
     if args.write:
-        text = PAGE.read_text(encoding="utf-8")
-        head, rest = text.split(BEGIN)
-        tail = rest.split(END)[1]
         command = f"`python -m benchmarks impact_table --write`, {machine()}"
-        body = "\n".join(["", command, "", *lines, ""])
-        PAGE.write_text(head + BEGIN + body + END + tail, encoding="utf-8", newline="\n")
+        write_between(PAGE, "tables", "\n".join([command, "", *lines]))
         picture(flights["Q4D 1.0"], PICTURE)
+        compare(found, SCHEME_PICTURE)
     say(f"{time.perf_counter() - begin:.0f} s")
     return 0
 

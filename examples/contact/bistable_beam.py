@@ -61,7 +61,7 @@ def beam(nx: int = 40, ny: int = 2, element: str = "Q4I", unit: float = 1.0) -> 
 def run(unit: float = 1.0, **options: int | str) -> ct.Results:
     """Push slowly, a dozen periods of the beam, which a little damping brings to rest."""
     down = ct.Dynamic(
-        period=0.1, increments=150, alpha=-0.3, ramp=True, rayleigh=(500.0, 0.0),
+        period=0.1, alpha=-0.3, ramp=True, rayleigh=(500.0, 0.0),
         supports=[Fixed("probe", 1, -DOWN / unit)],
     )  # fmt: skip
     return ct.solve(beam(unit=unit, **options), down)  # type: ignore[arg-type]

@@ -57,9 +57,12 @@ def steps(unit: float = 1.0, way: float = DOWN) -> list[ct.Static]:
     return [down, ct.Static(first_increment=0.01, supports=at(-0.8 * way), name="up")]
 
 
-def run(friction: float = 0.0, unit: float = 1.0, **options: int | str) -> ct.Results:
+def run(
+    friction: float = 0.0, unit: float = 1.0, way: float = DOWN, **options: int | str
+) -> ct.Results:
     """Crush and release."""
-    return ct.solve(ring(friction, unit=unit, **options), steps(unit))  # type: ignore[arg-type]
+    model = ring(friction, unit=unit, **options)  # type: ignore[arg-type]
+    return ct.solve(model, steps(unit, way))
 
 
 def limit_load() -> float:

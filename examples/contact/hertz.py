@@ -11,11 +11,19 @@ from __future__ import annotations
 
 import argparse
 import sys
+from typing import Any, Literal
 
 import corota as ct
 from corota.verification.contact_models import cylinder, measured, theory
 
-__all__ = ["cylinder", "measured", "theory"]
+__all__ = ["cylinder", "measured", "run", "theory"]
+
+
+def run(
+    plane: Literal["stress", "strain"] = "strain", unit: float = 1.0, **options: Any
+) -> ct.Results:
+    """Press, in one geometrically linear increment."""
+    return ct.solve(cylinder(plane, unit=unit, **options), ct.Static(nlgeom=False))
 
 
 def main() -> None:
@@ -23,7 +31,7 @@ def main() -> None:
     sys.stdout.write("plane   element    n         a     Hertz        p0     Hertz  iterations\n")
     for plane in ("stress", "strain"):
         for element, n in (("Q4I", 24), ("Q4I", 48), ("Q8", 24), ("Q4D", 48)):
-            results = ct.solve(cylinder(plane, n, element), ct.Static(nlgeom=False))
+            results = run(plane, n=n, element=element)
             (a, p), (wide, top) = measured(results), theory(plane)
             iterations = int(results.history("iterations")[-1])
             sys.stdout.write(

@@ -12,7 +12,10 @@ from __future__ import annotations
 import argparse
 import sys
 
+from corota.verification.impact_models import run_bar as run
 from corota.verification.impact_models import strike
+
+__all__ = ["run", "strike"]
 
 
 def main() -> None:

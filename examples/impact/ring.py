@@ -11,8 +11,9 @@ import argparse
 import sys
 
 from corota.verification.impact_models import Flight, fly, mass_of, ring
+from corota.verification.impact_models import run_ring as run
 
-__all__ = ["Flight", "fly", "mass_of", "ring"]
+__all__ = ["Flight", "fly", "mass_of", "ring", "run"]
 
 
 def main() -> None:

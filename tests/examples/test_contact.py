@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -28,12 +28,26 @@ def iterations(results: ct.Results) -> list[float]:
     return np.array(results.history("iterations")).tolist()
 
 
-@pytest.mark.parametrize("name", ["ironing", "seal"])
+#: Examples and what makes them quick.
+QUICK: dict[str, dict[str, Any]] = {
+    "hertz": {"n": 16},
+    "ironing": {"friction": 0.3},
+    "seal": {},
+    "crushed_ring": {"n": 30, "ny": 2, "way": 3.0},
+    "bistable_beam": {"nx": 20},
+}
+
+
+@pytest.mark.parametrize("name", QUICK)
 def test_units_do_not_matter(load: Load, name: str) -> None:
-    """The same increments and iterations in mm and in m, and displacements to rounding."""
+    """The same increments and iterations in mm and in m, and displacements to rounding.
+
+    `python -m benchmarks contact_units` does it with all examples in full.
+    """
     example = load(f"contact/{name}.py")
-    small, large = example.run(), example.run(unit=1000.0)
+    small, large = (example.run(unit=unit, **QUICK[name]) for unit in (1.0, 1000.0))
     assert iterations(small) == iterations(large)
+    assert small.info.get("cut-backs") == large.info.get("cut-backs")
     # The residual is relative to the largest force, so states agree to a multiple of 1e-9.
     np.testing.assert_allclose(
         small.frame().U, 1000.0 * large.frame().U, atol=1e-6 * np.abs(small.frame().U).max()
