@@ -253,9 +253,10 @@ class TouchingSystem:
         out = []
         for s, (pair, terms, (p, q)) in zip(states, self._pairs(at.touch), strict=True):
             slips = np.flatnonzero(s == SLIPPING)
-            over = np.abs(pair.shear(terms, q))[slips] / np.maximum(p[slips], 1e-300)
+            shear, loaded = np.abs(pair.shear(terms, q))[slips], p[slips] > 0.0
+            over = np.where(loaded, shear / np.where(loaded, p[slips], 1.0), np.inf)
             s = s.copy()
-            s[slips[np.argsort(over, kind="stable")[: (len(slips) + 1) // 2]]] = CLOSED
+            s[slips[np.lexsort((shear, over))[: (len(slips) + 1) // 2]]] = CLOSED
             out.append(s)
         return out
 
