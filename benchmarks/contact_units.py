@@ -110,8 +110,9 @@ def differ(case: Case, one: ct.Results, other: ct.Results, factor: float) -> tup
 def compare(case: Case) -> tuple[list[object], list[str]]:
     """A row of the table, and what is wrong with it."""
     (mm, cpu), (m, cpu_m), (binary, _) = (timed(case, unit) for unit in (1.0, 1000.0, 1024.0))
+    lost = str(wasted(mm)) + (f" ({wasted(m)})" if wasted(m) != wasted(mm) else "")
     row: list[object] = [
-        f"`{case.module}.py`", case.what, mm.mesh.n_cells, *counts(mm), wasted(mm),
+        f"`{case.module}.py`", case.what, mm.mesh.n_cells, *counts(mm), lost,
         round(cpu, 1), round(cpu_m, 1),
     ]  # fmt: skip
     problems = []
