@@ -1,6 +1,7 @@
 //! The border to Python: conversions, names, docstrings; no numerics.
 // SPDX-License-Identifier: BSD-3-Clause
 
+mod blocks;
 mod contact;
 mod io;
 mod linear;

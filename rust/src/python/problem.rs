@@ -1,12 +1,12 @@
 //! `Problem` and the list of elements for Python.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::blocks::block_inputs;
 use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
 use crate::loads::edge;
 use crate::materials::Law;
-use crate::model::build::{BlockInput, Options};
 use crate::model::dynamics::{Between, Motion};
 use crate::model::problem::{Failed, Problem};
 use crate::model::registry;
@@ -19,7 +19,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-fn value_error(message: impl Into<String>) -> PyErr {
+pub fn value_error(message: impl Into<String>) -> PyErr {
     PyValueError::new_err(message.into())
 }
 
@@ -48,43 +48,7 @@ impl PyProblem {
         extra_dofs: PyReadonlyArray1<'_, u8>,
     ) -> PyResult<Self> {
         let x: Vec<[f64; 2]> = points.as_slice()?.as_chunks::<2>().0.to_vec();
-        let mut inputs = Vec::new();
-        for block in blocks {
-            let d = block.cast::<PyDict>()?;
-            let get = |key: &str| -> PyResult<Bound<'_, PyAny>> {
-                d.get_item(key)?.ok_or_else(|| value_error(format!("block lacks {key:?}")))
-            };
-            let plane: String = get("plane")?.extract()?;
-            let nodes: PyReadonlyArray1<'_, u32> = get("nodes")?.extract()?;
-            inputs.push(BlockInput {
-                element: get("element")?.extract()?,
-                law: get("law")?.extract()?,
-                parameters: get("parameters")?.extract()?,
-                plane: super::material::plane(&plane)?,
-                local_strain: get("local_strain")?.extract()?,
-                thickness: get("thickness")?.extract()?,
-                profile: match d.get_item("profile")? {
-                    Some(v) => v.extract()?,
-                    None => [0.0; 3],
-                },
-                table: match d.get_item("table")? {
-                    Some(v) => v.extract()?,
-                    None => Vec::new(),
-                },
-                rho: get("rho")?.extract()?,
-                options: Options {
-                    mean_dilatation: match d.get_item("mean_dilatation")? {
-                        Some(v) => v.extract()?,
-                        None => false,
-                    },
-                    beta0: match d.get_item("beta0")? {
-                        Some(v) => v.extract()?,
-                        None => None,
-                    },
-                },
-                nodes: nodes.as_slice()?.to_vec(),
-            });
-        }
+        let inputs = block_inputs(blocks)?;
         let extra = extra_dofs.as_slice()?;
         let inner = Problem::new(x, &inputs, extra).map_err(value_error)?;
         Ok(Self { inner })
