@@ -110,3 +110,12 @@ def test_arrays_that_only_an_earlier_step_had_do_not_spoil_the_file(tmp_path: Pa
                 assert np.allclose(mine.V, theirs.V)
             for name, value in mine.scalars.items():
                 assert theirs.scalars[name] == value
+
+
+@pytest.mark.parametrize("blank", ["\x1c", "\x1f", "\x85", "\xa0", "\u2003", "\u3000"])
+def test_blanks_that_only_python_knows_are_no_number(tmp_path: Path, blank: str) -> None:
+    """``str.split`` takes them for blanks, the reader of numbers does not: it found no word."""
+    text = f"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n{blank}\n$EndNodes\n"
+    (tmp_path / "mesh.msh").write_bytes(text.encode())
+    with pytest.raises(ct.CorotaError, match=r"mesh\.msh:6"):
+        ct.mesh.read(tmp_path / "mesh.msh")

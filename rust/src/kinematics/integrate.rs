@@ -169,7 +169,7 @@ fn folded<T: Real, const N: usize, const M: usize>(
         let (next, last) =
             ([after[0] - at[0], after[1] - at[1]], [before[0] - at[0], before[1] - at[1]]);
         *turn = next[0] * last[1] - next[1] * last[0];
-        mean = mean + turn.scale(1.0 / N as f64);
+        mean += turn.scale(1.0 / N as f64);
     }
     let mut failed = T::none();
     for turn in turns {

@@ -434,7 +434,9 @@ def _numbers(reader: Reader, start: int, end: int) -> Floats:
     """Numbers of a text section."""
     found = parse_reals(reader.data, start, end)
     if isinstance(found, int):
-        word = decode(reader.data[start + found : min(end, start + found + 40)]).split()[0]
+        text = decode(reader.data[start + found : min(end, start + found + 40)])
+        # Python takes more characters for blanks than the number reader does.
+        word = next(iter(text.split()), text)
         raise reader.fault(_reason(word), start + found)
     _check_finite(reader, found, start)
     return found
