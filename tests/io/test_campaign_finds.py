@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from decks import DECK, MESH, SECTION, SUPPORT, faults
@@ -86,6 +87,19 @@ def test_damaged_results_are_refused(tmp_path: Path) -> None:
         except ct.errors.FileError:
             outcomes.add("refused")
     assert outcomes == {"read", "refused"}
+
+
+def test_elements_of_a_block_that_are_not_there(tmp_path: Path) -> None:
+    """Averages at nodes ended in an index error, behind exit 70."""
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1), name="deck")
+    model.section("all", element="Q4I", material=ct.Elastic(E=1.0, nu=0.3))
+    model.fix("left")
+    model.force("right", y=1e-4)
+    ct.solve(model, ct.Static(), observers=[ct.JobFiles(tmp_path)], threads=1)
+    with h5py.File(tmp_path / "deck.vtkhdf", "r+") as file:
+        file["corota/points/0/cells"][2] = 205
+    with pytest.raises(ct.errors.FileError, match="damaged or incomplete: elements of a block"):
+        ct.read_results(tmp_path / "deck.vtkhdf")
 
 
 def test_arrays_that_only_an_earlier_step_had_do_not_spoil_the_file(tmp_path: Path) -> None:

@@ -100,6 +100,11 @@ class StoredFrames(Sequence[Frame]):
         self._fixed = [
             (str(b.attrs["element"]), b["cells"][:], b["shape functions"][:]) for b in self._blocks
         ]
+        types = file["VTKHDF/Types"][:]
+        run = np.cumsum(np.diff(types, prepend=types[:1]) != 0)
+        for _, cells, _ in self._fixed:
+            inside = len(cells) and cells.min() >= 0 and cells.max() < len(types)
+            _whole(bool(inside) and len(set(run[cells].tolist())) == 1, "elements of a block")
         self._last: tuple[int, Frame] | None = None
 
     def __len__(self) -> int:
