@@ -41,6 +41,14 @@ COMBINED = (
             MESH + "*ELSET, ELSET=none\n,\n" + SECTION + SUPPORT + STEP.format("none, P1, 1."),
             "element set none is empty",
         ),
+        (
+            MESH + SECTION + "*RIGID BODY, REF NODE=2, ELSET\n" + SUPPORT + STEP.format("2, 1, 1."),
+            "ELSET",
+        ),
+        (
+            MESH + SECTION + "*RIGID BODY, REF NODE=2, NSET=\n" + SUPPORT + STEP.format("2, 1, 1."),
+            "NSET",
+        ),
     ],
 )
 def test_refused_with_a_message(tmp_path: Path, text: str, words: str) -> None:

@@ -104,6 +104,8 @@ def rigid_body(deck: Deck, card: Card) -> None:
     deck.no_rows(card)
     reference = _reference(deck, card, "REFNODE")
     if card.has("ANALYTICALSURFACE") and reference is not None:
+        if not deck.required(card, "ANALYTICALSURFACE"):
+            return
         deck.carriers[key(card.value("ANALYTICALSURFACE"))] = (card, reference)
         _rotation_node(deck, card, reference)
         if not card.has("NSET") and not card.has("ELSET"):
@@ -111,13 +113,14 @@ def rigid_body(deck: Deck, card: Card) -> None:
     if card.has("NSET") == card.has("ELSET"):
         deck.error(card, card.where, "either NSET= or ELSET= is expected")
         return
-    if reference is None:
+    name = deck.required(card, "NSET" if card.has("NSET") else "ELSET")
+    if reference is None or not name:
         return
     tie = TieDraft("kinematic", card, card.where, [reference], ready=True)
     if card.has("NSET"):
-        tie.target = Draft("set", card, _parameter_row(card, "NSET"), card.value("NSET"), (0.0,))
+        tie.target = Draft("set", card, _parameter_row(card, "NSET"), name, (0.0,))
     else:
-        tie.elset = card.value("ELSET")
+        tie.elset = name
     _rotation_node(deck, card, reference)
     deck.ties.append(tie)
 

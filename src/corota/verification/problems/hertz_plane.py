@@ -3,12 +3,14 @@
 E = 200, nu = 0.3, a force of 10 a unit of thickness; a quarter of the disc, geometrically linear.
 Plane strain: half width 0.6807783738, peak pressure 9.351351289; plane stress, whose contact
 modulus has no 1 - nu^2: 0.7136496465 and 8.920620581. The largest shear stress, 0.3002831 of the
-peak pressure, lies at a depth of 0.7861514 half widths below the middle.
+peak pressure, lies at a depth of 0.7861514 half widths below the middle. Between two plates, which
+come near to the middle by F / (pi E*) (2 ln(4 R / a) - 1) each, the force must be the same.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -18,7 +20,15 @@ import numpy as np
 from corota.results import Results
 from corota.steps import Static
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
-from corota.verification.contact_models import FORCE, RADIUS, cylinder, measured, theory
+from corota.verification.contact_models import (
+    FORCE,
+    NU,
+    RADIUS,
+    YOUNG,
+    cylinder,
+    measured,
+    theory,
+)
 from corota.verification.models import run
 
 SHEAR, DEPTH = 0.3002831, 0.7861514
@@ -29,6 +39,21 @@ CASES = [("strain", "Q4I", 48), ("stress", "Q4I", 48), ("strain", "Q8", 32), ("s
 def solved(plane: Any, element: str, n: int) -> Results:
     """The pressed cylinder."""
     return run(cylinder(plane, n, element), Static(nlgeom=False), fields=True)
+
+
+def approach(plane: str, force: float = FORCE) -> float:
+    """Way of the middle plane towards each of two plates (Johnson 1985, 5.57)."""
+    modulus = YOUNG if plane == "stress" else YOUNG / (1.0 - NU**2)
+    return force / (math.pi * modulus) * (2.0 * math.log(4.0 * RADIUS / theory(plane)[0]) - 1.0)
+
+
+@cache
+def between_plates(plane: Any, element: str, n: int) -> Results:
+    """The same cylinder between two plates: its middle stays plane and moves by that way."""
+    model = cylinder(plane, n, element)
+    model.loads.clear()
+    model.fix("top", x=None, y=-approach(plane))
+    return run(model, Static(nlgeom=False))
 
 
 def below(results: Results) -> tuple[np.ndarray, np.ndarray]:
@@ -62,6 +87,10 @@ def measure() -> Iterator[Value]:
         shear, depth = largest(results)
         yield Value(f"largest shear stress / peak, {text}", SHEAR, shear / exact[1], 0.03)
         yield Value(f"its depth / half width, {text}", DEPTH, depth / exact[0], 0.05)
+        pressed = between_plates(plane, element, n)
+        top = pressed.mesh.nodes_of("top")
+        reaction = -2.0 * float(pressed.frames[-1].RF[top, 1].sum())
+        yield Value(f"force between two plates, {text}", FORCE, reaction, 0.005)
 
 
 def picture() -> Picture:
