@@ -82,7 +82,7 @@ def contenders(n: int) -> dict[str, Callable[[], Any]]:
         "corota 2": threaded(Faer, 2),
         "faer 1": reference,
     }
-    if pardiso.library() is not None:
+    if pardiso.find_mkl() is not None:
         found["PARDISO 1"] = threaded(Pardiso, 1)
         found["PARDISO 2"] = threaded(Pardiso, 2)
     if n < SUPERLU_LIMIT:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 #: Those whose library is here; the refusal of the others is tested too.
-NAMES = [name for name in SOLVERS if name != "pardiso" or pardiso.library() is not None]
+NAMES = [name for name in SOLVERS if name != "pardiso" or pardiso.find_mkl() is not None]
 
 
 def chain(n: int, *, held: bool = True) -> sp.csc_array:
@@ -136,6 +136,6 @@ def test_bad_input_is_named() -> None:
 
 
 def test_missing_pardiso_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pardiso, "library", lambda: None)
+    monkeypatch.setattr(pardiso, "find_mkl", lambda: None)
     with pytest.raises(UnsupportedError, match=r"pip install 'corota\[pardiso\]'"):
         make_solver("pardiso")

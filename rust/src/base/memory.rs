@@ -93,17 +93,24 @@ fn of_group() -> Option<u64> {
             let read = |name: &str| fs::read_to_string(format!("{folder}/{name}")).ok();
             let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
             let (Some(limit), Some(used)) = (number(limit), number(used)) else { continue };
-            // Pages of files that nobody has touched for a while are given back first.
+            // Pages of files are given back before a process is refused.
             let stat = read("memory.stat").unwrap_or_default();
-            let idle = ["total_inactive_file", "inactive_file"].iter().find_map(|name| {
-                let line = stat.lines().find(|l| l.split(' ').next() == Some(name))?;
-                line.split(' ').nth(1)?.parse::<u64>().ok()
-            });
-            let left = limit.saturating_sub(used.saturating_sub(idle.unwrap_or(0)));
+            let pages = cached(&stat, "total_").or_else(|| cached(&stat, "")).unwrap_or(0);
+            let left = limit.saturating_sub(used.saturating_sub(pages));
             least = Some(least.map_or(left, |l: u64| l.min(left)));
         }
     }
     least
+}
+
+/// Bytes of files that a control group holds in memory, of the lines with a prefix.
+fn cached(stat: &str, prefix: &str) -> Option<u64> {
+    let value = |name: &str| {
+        let mut words = stat.lines().map(|l| l.split(' '));
+        words.find_map(|mut w| (w.next()? == format!("{prefix}{name}")).then(|| w.next())?)
+    };
+    let bytes = |name: &str| value(name)?.parse::<u64>().ok();
+    Some(bytes("inactive_file")? + bytes("active_file")?)
 }
 
 /// Value of a line `name   number kB`, in bytes.
@@ -130,5 +137,14 @@ mod tests {
     fn a_large_block_shows_in_what_is_left() {
         assert_eq!(kilobytes("VmSize:\t  12 kB\n", "VmSize:"), Some(12 << 10));
         assert_eq!(kilobytes("VmSize:\t  12 kB\n", "VmPeak:"), None);
+    }
+
+    #[test]
+    fn pages_of_files_are_free() {
+        let stat = "cache 9\ninactive_file 3\nactive_file 4\ntotal_inactive_file 30\n\
+                    total_active_file 40\n";
+        assert_eq!(cached(stat, "total_"), Some(70));
+        assert_eq!(cached(stat, ""), Some(7));
+        assert_eq!(cached("anon 5\n", ""), None);
     }
 }

@@ -25,7 +25,7 @@ _ANALYZE, _FACTORIZE, _SOLVE, _RELEASE = 11, 22, 33, -1
 _REFUSE_ABOVE = 1e-9
 
 
-def library() -> Path | None:
+def find_mkl() -> Path | None:
     """Where oneMKL's single library is: beside this Python, or where the system looks."""
     prefix = Path(sys.prefix)
     for folder, pattern in (("lib", "libmkl_rt.*"), ("Library/bin", "mkl_rt*.dll")):
@@ -51,7 +51,7 @@ class Pardiso:
     """
 
     def __init__(self, symmetric: bool = True) -> None:
-        path = library()
+        path = find_mkl()
         if path is None:
             raise UnsupportedError(
                 "the solver 'pardiso' needs Intel oneMKL: pip install 'corota[pardiso]', "
