@@ -29,7 +29,7 @@ def against_wall(
 ) -> ct.Dynamic:
     """Throw a model down on the wall y = -GAP; increments are shortened where contact asks."""
     model.velocity(y=-speed)
-    model.contact(slave, ct.RigidCurve.line((9.0, -GAP), (-9.0, -GAP)), name="wall")
+    model.contact(slave, ct.RigidCurve.line((-9.0, -GAP), (9.0, -GAP)), name="wall")
     longest = period / increments
     return ct.Dynamic(
         period=period, first_increment=longest, largest_increment=longest,

@@ -52,7 +52,7 @@ def beam(nx: int = 40, ny: int = 2, element: str = "Q4I", unit: float = 1.0) -> 
     drilling = element in ("Q4D", "OPT")
     model.fix("left", y=None, rotation=drilling)
     model.fix("right", rotation=drilling)
-    tip = ct.RigidCurve.arc((0.0, top), RADIUS / unit, -135.0, 180.0, reference=probe)
+    tip = ct.RigidCurve.arc((0.0, top), RADIUS / unit, 45.0, -180.0, reference=probe)
     model.contact("top", tip, name="probe")
     model.fix("probe", y=None, rotation=True)
     return model

@@ -43,7 +43,7 @@ def clip(
         E=2300.0 * unit**2, nu=0.38, yield_stress=45.0 * unit**2, isotropic=150.0 * unit**2
     )
     model.section("all", element=element, material=polymer, thickness=4.0 / unit)
-    corners = np.array([(20.5, 2.2), (23.0, 2.2), (23.0, 5.0), (20.5, 5.0)]) / unit
+    corners = np.array([(20.5, 2.2), (20.5, 5.0), (23.0, 5.0), (23.0, 2.2)]) / unit
     catch = ct.RigidCurve.polyline(corners, closed=True, fillet=1.0 / unit)
     upper = np.vstack([body.edge_sets["top"], body.edge_sets["right"]])
     model.contact(upper, catch, friction=friction, name="hook")

@@ -38,9 +38,9 @@ def ring(
     for name in ("start", "end"):
         model.fix(name, y=None)
     wide = 2.0 * high
-    # Each rigid body lies to the left of the direction of its line.
-    floor = ct.RigidCurve.line((wide, -high), (-wide, -high))
-    roof = ct.RigidCurve.line((-wide, high), (wide, high), reference=plate)
+    # The ring lies to the left of the direction of each line.
+    floor = ct.RigidCurve.line((-wide, -high), (wide, -high))
+    roof = ct.RigidCurve.line((wide, high), (-wide, high), reference=plate)
     model.contact("outer", floor, friction=friction, name="floor")
     model.contact("outer", roof, friction=friction, name="roof")
     model.fix("plate", y=None, rotation=True)

@@ -32,11 +32,11 @@ def seal(n: int = 60, ny: int = 4, element: str = "Q4I", unit: float = 1.0) -> c
     )  # fmt: skip
     for name in ("start", "end"):
         model.fix(name, y=None)
-    # The rigid bodies lie to the left: outside the groove, inside the rib.
+    # The tube lies to the left of both: inside the groove, outside the rib.
     groove = ct.RigidCurve.polyline(
-        [(wide, 3.0 * high), (wide, -high), (-high, -high)], fillet=1.0 / unit
+        [(-high, -high), (wide, -high), (wide, 3.0 * high)], fillet=1.0 / unit
     )
-    round_ = ct.RigidCurve.arc((0.0, high + RIB / unit), RIB / unit, -135.0, 180.0, reference=rib)
+    round_ = ct.RigidCurve.arc((0.0, high + RIB / unit), RIB / unit, 45.0, -180.0, reference=rib)
     model.contact("outer", groove, name="groove")
     model.contact("outer", round_, name="rib")
     model.contact("inner", "inner", name="inside")

@@ -31,7 +31,7 @@ def model(friction: float, yields: float, unit: float = 1.0) -> ct.Model:
             E=YOUNG * unit**2, nu=0.3, yield_stress=yields * unit**2, isotropic=100.0 * unit**2
         )
     half.contacts[0].friction = friction
-    line = ct.RigidCurve.line((6.0 / unit, STOP / unit), (-6.0 / unit, STOP / unit))
+    line = ct.RigidCurve.line((-6.0 / unit, STOP / unit), (6.0 / unit, STOP / unit))
     half.contact("bottom", line, friction=friction, name="stop")
     return half
 

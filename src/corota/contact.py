@@ -27,7 +27,10 @@ METHODS = ("mortar", "node_to_segment")
 
 @dataclass
 class RigidCurve:
-    """A rigid curve of straight lines and arcs; the rigid body lies to its left.
+    """A rigid curve of straight lines and arcs; the deformable body lies to its left.
+
+    Its outward normal, from the rigid body towards the deformable one, points to the left of the
+    direction of travel, in Python as in decks.
 
     Parameters
     ----------
@@ -64,7 +67,7 @@ class RigidCurve:
     def line(
         cls, start: Sequence[float], end: Sequence[float], reference: Reference = None
     ) -> RigidCurve:
-        """A straight line; the rigid body lies to the left when going from start to end."""
+        """A straight line; the deformable body is on the left when going from start to end."""
         return cls.polyline([start, end], reference=reference)
 
     @classmethod
@@ -77,7 +80,7 @@ class RigidCurve:
         reference: Reference = None,
     ) -> RigidCurve:
         """A disc, or with `inside` a round hole with the deformable body in it."""
-        return cls.arc(centre, radius, 0.0, -360.0 if inside else 360.0, reference=reference)
+        return cls.arc(centre, radius, 0.0, 360.0 if inside else -360.0, reference=reference)
 
     @classmethod
     def arc(
@@ -90,7 +93,7 @@ class RigidCurve:
     ) -> RigidCurve:
         """An arc from the angle `start` through `sweep`, both in degrees.
 
-        Counter-clockwise (sweep > 0) the rigid body is the disc, clockwise it lies outside.
+        Clockwise (sweep < 0) the rigid body is the disc, counter-clockwise it lies outside.
         """
         if not (radius > 0.0 and math.isfinite(radius)):
             raise InputError(f"the radius of an arc must be > 0, not {radius}")
@@ -116,7 +119,8 @@ class RigidCurve:
         Parameters
         ----------
         points : array_like, shape (n, 2)
-            In the order that has the rigid body on the left: counter-clockwise round a body.
+            In the order that has the deformable body on the left: clockwise round a rigid body,
+            counter-clockwise round a hole; over a floor from left to right.
         closed : bool
             Join the last point with the first.
         fillet : float
@@ -156,6 +160,14 @@ class RigidCurve:
             if j in arcs:
                 rows.append(arcs[j])
         return cls(np.array(rows), reference)
+
+    @property
+    def backward(self) -> Floats:
+        """The segments the other way round, the rigid body on the left, shape (n, 7)."""
+        back: Floats = self.segments[::-1].copy()
+        back[:, :2], back[:, 2:4] = self.segments[::-1, 2:4], self.segments[::-1, :2]
+        back[:, 6] *= -1.0
+        return back
 
 
 @dataclass

@@ -14,7 +14,7 @@ def incline(friction, method="mortar"):
     model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=1.0))
     model.gravity(y=-10.0)
     c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
-    slope = ct.RigidCurve.line((5 * c, 5 * s), (-5 * c, -5 * s))
+    slope = ct.RigidCurve.line((-5 * c, -5 * s), (5 * c, 5 * s))
     model.contact("bottom", slope, friction=friction, method=method, name="slope")
     return model
 

@@ -71,7 +71,7 @@ def test_block_rests_on_a_wall_after_a_static_step():
     model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.0, rho=1.0))
     model.gravity(y=-1.0)
     model.fix("left", y=None)
-    wall = ct.RigidCurve.line((3.0, 0.0), (-1.0, 0.0))
+    wall = ct.RigidCurve.line((-1.0, 0.0), (3.0, 0.0))
     model.contact("bottom", wall, name="wall")
     frames = ct.solve(
         model,

@@ -188,7 +188,7 @@ def test_constraints_that_follow_from_others_are_left_out(method):
     model.fix(corner)
     model.traction("top", y=-2.0)
     for name in ("wall", "again"):
-        wall = ct.RigidCurve.line((2.0, 0.0), (-1.0, 0.0))
+        wall = ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0))
         model.contact("bottom", wall, method=method, name=name)
     results = ct.solve(model, threads=1)
     assert any("follows from others" in note for note in results.notes)

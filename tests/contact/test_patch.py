@@ -84,7 +84,7 @@ def test_patch_on_a_rigid_line(element):
     model.fix([mesh.node_sets["top"][0]], x=0.0, y=None)
     model.fix("top", x=None, y=None, rotation=True)
     model.traction("top", y=-P)
-    model.contact("bottom", ct.RigidCurve.line([2.0, 0.0], [-1.0, 0.0]))
+    model.contact("bottom", ct.RigidCurve.line([-1.0, 0.0], [2.0, 0.0]))
     results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
     assert np.abs(stresses(results, np.eye(2)) - [0.0, -P, 0.0]).max() < 1e-10 * P
     pressure = results.nodal("CPRESS")[mesh.nodes_of("bottom")]

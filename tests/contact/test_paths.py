@@ -112,7 +112,7 @@ def test_a_probe_that_nothing_holds_begins_with_a_gap_or_an_overlap(offset):
     x, y = model.mesh.points[node]
     radius = bistable_beam.RADIUS
     model.contacts[0].master = ct.RigidCurve.arc(
-        (x, y + offset), radius, -135.0, 180.0, curve.reference
+        (x, y + offset), radius, 45.0, -180.0, curve.reference
     )
     found = along(model, down=-4.5 - offset)
     assert found.critical_points[0].factor == pytest.approx(
@@ -149,7 +149,7 @@ STOP = 2.0
 
 def stopped():
     model = beam()
-    model.contact("bottom", ct.RigidCurve.line((6.0, STOP), (-6.0, STOP)), name="stop")
+    model.contact("bottom", ct.RigidCurve.line((-6.0, STOP), (6.0, STOP)), name="stop")
     return model
 
 

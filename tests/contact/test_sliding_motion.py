@@ -29,7 +29,7 @@ def test_sliding_block_stops_where_friction_stops_it(scheme: dict[str, str], met
     model.section("all", element="Q4I", material=ct.Elastic(E=1e6, nu=0.0, rho=1.0))
     model.gravity(y=-g)
     model.velocity(x=v0)
-    wall = ct.RigidCurve.line((9.0, 0.0), (-9.0, 0.0))
+    wall = ct.RigidCurve.line((-9.0, 0.0), (9.0, 0.0))
     model.contact("bottom", wall, name="wall", friction=mu, method=method)
     stop = v0 / (mu * g)
     step = ct.Dynamic(period=1.3 * stop, increments=65, **scheme)

@@ -124,7 +124,7 @@ BODY = "*RIGID BODY, ANALYTICAL SURFACE=Die, REF NODE=30\n"
 def test_the_rigid_body_of_a_profile_lies_to_its_right(tmp_path: Path) -> None:
     """Abaqus: the outward normal is the direction of the profile turned counter-clockwise.
 
-    Rigid curves have the body on the left, so the segments are the other way round.
+    Rigid curves of Python have it there too, so the segments are those of the deck.
     """
     lines = INTERACTION + PROFILE + BODY + PAIR.replace("High", "Die")
     model = read(tmp_path, deck(lines))
@@ -134,7 +134,7 @@ def test_the_rigid_body_of_a_profile_lies_to_its_right(tmp_path: Path) -> None:
     assert curve.name == "Die"
     np.testing.assert_allclose(
         curve.segments,
-        [[1.0, 3.0, 2.0, 4.0, 2.0, 3.0, -0.5 * np.pi], [2.0, 4.0, 3.0, 4.0, 0.0, 0.0, 0.0]],
+        [[3.0, 4.0, 2.0, 4.0, 0.0, 0.0, 0.0], [2.0, 4.0, 1.0, 3.0, 2.0, 3.0, 0.5 * np.pi]],
     )
 
 
@@ -152,7 +152,7 @@ def test_fillets_round_corners(tmp_path: Path) -> None:
     curve = read(tmp_path, deck(lines)).contacts[0].master
     assert isinstance(curve, RigidCurve)
     assert len(curve.segments) == 3
-    assert curve.segments[1, 6] == pytest.approx(-0.5 * np.pi)
+    assert curve.segments[1, 6] == pytest.approx(0.5 * np.pi)
 
 
 def test_requests(tmp_path: Path) -> None:

@@ -247,5 +247,5 @@ def test_full_circles_are_written_in_pieces(tmp_path: Path) -> None:
     write(model, tmp_path / "again.inp")
     curve = ct.read(tmp_path / "again.inp").contacts[0].master
     assert isinstance(curve, RigidCurve)
-    assert curve.segments[:, 6].sum() == pytest.approx(2.0 * np.pi)
+    assert curve.segments[:, 6].sum() == pytest.approx(-2.0 * np.pi)
     assert len(curve.segments) == 3

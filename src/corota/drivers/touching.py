@@ -15,6 +15,7 @@ import numpy as np
 
 from corota.contact import ContactPair, Tie
 from corota.drivers.touching_pair import CLOSED, COVERED, OPEN, Pair, Terms
+from corota.drivers.touching_side import check_side
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -126,6 +127,7 @@ class Touching:
             if isinstance(item, Tie):
                 self._start_tie(pair, x)
                 continue
+            check_side(self.system, pair, x)
             pair.core.search(x)
             raw = pair.core.evaluate(x, x)
             area = raw["total_area"]

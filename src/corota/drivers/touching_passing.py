@@ -43,7 +43,7 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
     if pair.tied:
         return np.zeros(0, np.int64)
     move = new[:, :2] - old[:, :2]
-    first, last, ends = _other_side(pair, old, new)
+    first, last, ends = other_side(pair, old, new)
     if not len(first):
         return np.zeros(0, np.int64)
     drift = (last - first).reshape(-1, 2)
@@ -56,7 +56,7 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
     return np.array(hit, np.int64)
 
 
-def _other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, Ints]:
+def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, Ints]:
     """Straight pieces of the other side at both ends: (m, 2, 2) twice, and their nodes."""
     item = pair.item
     master = getattr(item, "master", None)
@@ -77,9 +77,9 @@ def _other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, I
 
 
 def _chords(curve: RigidCurve) -> Floats:
-    """A curve as straight pieces, shape (m, 2, 2)."""
+    """A curve as straight pieces, the rigid body on their left, shape (m, 2, 2)."""
     out = []
-    for x0, y0, x1, y1, cx, cy, sweep in curve.segments.tolist():
+    for x0, y0, x1, y1, cx, cy, sweep in curve.backward.tolist():
         if sweep == 0.0:
             out.append([[x0, y0], [x1, y1]])
             continue
@@ -119,4 +119,4 @@ def _crosses(first: Floats, last: Floats, ends: Ints, old: Floats, new: Floats, 
     return bool(((along >= 0.0) & (along <= 1.0)).any())
 
 
-__all__ = ["passed"]
+__all__ = ["other_side", "passed"]

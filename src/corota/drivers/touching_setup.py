@@ -193,7 +193,7 @@ def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surfa
             elif reference is not None:
                 node = int(reference)
             core = _core.Contact.rigid(
-                x, slave.nodes, slave.bulge, slave.thickness, item.master.segments, node, point,
+                x, slave.nodes, slave.bulge, slave.thickness, item.master.backward, node, point,
                 **common,
             )  # fmt: skip
         else:

@@ -142,7 +142,7 @@ class _Builder:
         if key(name) in self.curves:
             return self.curves[key(name)]
         view = self.sets.surfaces[key(name)][0]
-        rows = _reversed(surface.profile)
+        rows = surface.profile.copy()
         for columns in (slice(0, 2), slice(2, 4), slice(4, 6)):
             rows[:, columns] = placed(rows[:, columns], view.instance)
         reference: int | None = None
@@ -189,14 +189,6 @@ def _made(rows: Floats, fillet: float, reference: int | None) -> RigidCurve:
     closed = bool(np.array_equal(points[0], points[-1]))
     points = points[:-1] if closed else points
     return RigidCurve.polyline(points, closed=closed, fillet=fillet, reference=reference)
-
-
-def _reversed(rows: Floats) -> Floats:
-    """A profile the other way round: decks have the rigid body on the right, curves here left."""
-    back: Floats = rows[::-1].copy()
-    back[:, :2], back[:, 2:4] = rows[::-1, 2:4], rows[::-1, :2]
-    back[:, 6] *= -1.0
-    return back
 
 
 def _edges_of_nodes(mesh: Mesh, nodes: Ints) -> Ints:

@@ -97,9 +97,9 @@ def _behavior(law: PressureLaw) -> str:
 
 
 def _profile(model: Model, curve: RigidCurve, name: str) -> str:
-    """A rigid curve as profile: the other way round, the outward normal on the left."""
+    """A rigid curve as profile; in both the outward normal is on the left."""
     text, last = "", None
-    for row in curve.segments[::-1]:
+    for row in curve.segments:
         points, centre = _pieces(row)
         if last is None:
             text += f"START, {_point(points[0])}\n"
@@ -120,12 +120,12 @@ def _profile(model: Model, curve: RigidCurve, name: str) -> str:
 
 
 def _pieces(row: Floats) -> tuple[Floats, Floats | None]:
-    """Points along a segment from its end to its start, and the center of an arc."""
+    """Points along a segment from its start to its end, and the center of an arc."""
     start, end, centre, sweep = row[:2], row[2:4], row[4:6], float(row[6])
     if sweep == 0.0:
-        return np.array([end, start]), None
+        return np.array([start, end]), None
     count = math.ceil(abs(sweep) / PIECE)
-    angle = sweep * np.arange(count, -1, -1) / count
+    angle = sweep * np.arange(count + 1) / count
     c, s = np.cos(angle), np.sin(angle)
     x, y = start - centre
     return centre + np.column_stack([c * x - s * y, s * x + c * y]), centre

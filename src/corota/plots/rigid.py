@@ -65,7 +65,7 @@ def draw_rigid(ax: Any, model: Model, frame: Frame | None = None, scale: float =
         bands = []
         for points in lines:
             along = np.gradient(points, axis=0)
-            normal = np.column_stack([-along[:, 1], along[:, 0]])
+            normal = np.column_stack([along[:, 1], -along[:, 0]])
             normal /= np.hypot(*normal.T)[:, None]
             bands.append(np.concatenate([points, (points + width * normal)[::-1]]))
         ax.add_collection(PolyCollection(bands, facecolors=STEEL, alpha=0.35, linewidths=0.0))

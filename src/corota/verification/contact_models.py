@@ -59,8 +59,8 @@ def cylinder(
     material = Elastic(E=YOUNG * unit**2, nu=NU)
     model.section("all", element=element, material=material, plane=plane, thickness=1.0 / unit)
     model.fix("left", y=None, rotation=element in DRILLING)
-    # The rigid body lies to the left of the direction of the line: below it.
-    floor = RigidCurve.line((0.5 * R, -R), (-0.5 * R, -R))
+    # The cylinder lies to the left of the direction of the line: above it.
+    floor = RigidCurve.line((-0.5 * R, -R), (0.5 * R, -R))
     model.contact("bottom", floor)
     model.traction("top", y=-0.5 * FORCE * unit / R)
     return model

@@ -68,7 +68,7 @@ def bar(element: str = "Q4I", cells: int = 200, unit: float = 1.0, **contact: An
     model.section("all", element=element, material=material, thickness=unit**2 / height)
     model.fix("bottom", x=None)
     model.velocity(x=-SPEED * unit)
-    wall = RigidCurve.line((0.0, -unit), (0.0, unit + height))
+    wall = RigidCurve.line((0.0, unit + height), (0.0, -unit))
     model.contact("left", wall, name="wall", **contact)
     return model
 
@@ -191,8 +191,8 @@ def ring(
     )
     centre = (0.0, 1.001 * RADIUS * unit)
     model.velocity(x=sideways * unit, y=-speed * unit, spin=spin, about=centre)
-    # The wall lies to the left of the line, below it.
-    wall = RigidCurve.line((3.0 * unit, 0.0), (-3.0 * unit, 0.0))
+    # The body lies to the left of the line, above it.
+    wall = RigidCurve.line((-3.0 * unit, 0.0), (3.0 * unit, 0.0))
     model.contact("outer" if body == "ring" else "bottom", wall, name="wall", **contact)
     return model
 

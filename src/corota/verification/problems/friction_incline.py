@@ -32,7 +32,7 @@ def incline(friction: float, method: Any = "mortar") -> Model:
     model.section("all", element="Q4I", material=Elastic(E=1e4, nu=0.3, rho=1.0))
     model.gravity(y=-10.0)
     c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
-    slope = RigidCurve.line((5 * c, 5 * s), (-5 * c, -5 * s))
+    slope = RigidCurve.line((-5 * c, -5 * s), (5 * c, 5 * s))
     model.contact("bottom", slope, friction=friction, method=method, name="slope")
     return model
 

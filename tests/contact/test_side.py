@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rigid curves have the deformable body on their left; a body behind one is refused.
+
+Convention: Abaqus and CalculiX profiles, and decision 36 of the design. A block whose curve
+runs the wrong way used to be passed through with force 0 and exit status 0.
+"""
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.errors import ModelError
+
+SLANT = (np.cos(0.4), np.sin(0.4))
+#: Curves above a block of 10 x 1, in the right direction: from right to left the block is below.
+CURVES = {
+    "line": lambda y: ct.RigidCurve.line((20.0, y), (-20.0, y)),
+    "corner": lambda y: ct.RigidCurve.polyline([(20, y + 3), (5, y), (-10, y + 3)]),
+    "fillet": lambda y: ct.RigidCurve.polyline([(9, y + 3), (5, y), (1, y + 3)], fillet=0.5),
+    "box": lambda y: ct.RigidCurve.polyline(
+        [(2, y), (2, y + 4), (8, y + 4), (8, y)], closed=True, fillet=0.3
+    ),
+    "disc": lambda y: ct.RigidCurve.circle((5.0, y + 2.0), 2.0),
+    "arc": lambda y: ct.RigidCurve.arc((5.0, y + 2.0), 2.0, 45.0, -180.0),
+}
+
+
+def block(curve, push=-0.15):
+    mesh = ct.mesh.rectangle(10.0, 1.0, nx=40, ny=4)
+    tool = ct.mesh.add_node(mesh, 5.0, 3.0, "tool")
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1000.0, nu=0.3)
+    model.section("all", element="Q4I", material=material, local_strain="logarithmic")
+    model.fix("bottom")
+    curve.reference = tool
+    model.contact("top", curve, name="tool")
+    model.fix("tool", y=push, rotation=True)
+    return model
+
+
+def reversed_(curve):
+    return ct.RigidCurve(curve.backward)
+
+
+@pytest.mark.parametrize("name", list(CURVES))
+@pytest.mark.parametrize("gap", [0.01, -0.005])
+def test_the_deformable_body_is_on_the_left(name, gap):
+    results = ct.solve(block(CURVES[name](1.0 + gap)))
+    assert results.frames[-1].scalars["tool: force y"] < 0.0
+
+
+@pytest.mark.parametrize("name", list(CURVES))
+def test_a_body_on_the_wrong_side_is_refused(name):
+    with pytest.raises(ModelError, match=r"wrong side.*node \d+ is nearest.*other\s+order"):
+        ct.solve(block(reversed_(CURVES[name](1.05))))
+
+
+def test_a_body_beside_the_end_of_a_curve_is_on_no_side():
+    model = block(ct.RigidCurve.line((12.0, 0.5), (12.0, 5.0)))
+    assert ct.solve(model).frames[-1].scalars["tool: force y"] == 0.0
+
+
+def test_turning_a_curve_round_twice_gives_it_back():
+    curve = CURVES["fillet"](1.0)
+    np.testing.assert_allclose(reversed_(reversed_(curve)).segments, curve.segments, atol=1e-15)
