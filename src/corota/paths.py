@@ -207,13 +207,27 @@ class Modes:
         else frequencies [1/time].
     shapes : ndarray, shape (m, n_nodes, 3)
         Displacements and rotation by node; for buckling the largest displacement is 1, for
-        frequencies the modal mass.
+        frequencies the modal mass. Of complex modes the real part.
+    growth : ndarray, shape (m,)
+        Rates of growth of the modes [1/time]: negative where they decay, positive where the state
+        is unstable (divergence without a frequency, flutter with one).
+    imaginary : ndarray, shape (m, n_nodes, 3), or None
+        Imaginary part of complex modes.
+    about : ndarray, shape (n_dofs,), or None
+        Displacement of the state that vibration modes belong to.
     """
 
     kind: Literal["buckling", "frequency"]
     step: int
     factors: Floats
     shapes: Floats
+    growth: Floats = field(default_factory=lambda: np.zeros(0))
+    imaginary: Floats | None = None
+    about: Floats | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if not len(self.growth):
+            self.growth = np.zeros(len(self.factors))
 
 
 __all__ = ["ArcLength", "CriticalPoint", "DisplacementControl", "Label", "Modes", "dof_index"]

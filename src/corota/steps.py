@@ -260,10 +260,18 @@ class Frequency(Step):
     modes : int
         How many, from the lowest.
     mass : {"consistent", "constant", "lumped"}
+    complex_modes : bool
+        Take damping (of materials and dashpots) and, under a centrifugal load, Coriolis forces in:
+        complex frequencies with rates of growth or decay. Loads that follow the structure without
+        a potential make frequencies complex in any case.
+    rayleigh : tuple of float
+        Damping of complex modes per mass [1/time] and per stiffness [time].
     """
 
     modes: int = 6
     mass: Literal["consistent", "constant", "lumped"] = "consistent"
+    complex_modes: bool = False
+    rayleigh: tuple[float, float] = (0.0, 0.0)
 
     procedure = "frequency"
 

@@ -39,7 +39,7 @@ def as_results(results: Results) -> Results:
     number = 0
     for modes in results.modes:
         named = "buckling factor" if modes.kind == "buckling" else "frequency"
-        for factor, shape in zip(modes.factors, modes.shapes, strict=True):
+        for factor, rate, shape in zip(modes.factors, modes.growth, modes.shapes, strict=True):
             number += 1
             none = np.zeros((len(shape), 3))
             value = float(factor)
@@ -47,10 +47,18 @@ def as_results(results: Results) -> Results:
                 Frame(
                     modes.step, number, float(number), float(number), value,
                     shape[:, :2].copy(), shape[:, 2].copy(), none, none,
-                    scalars={named: value, "mode": float(number)},
+                    scalars=_scalars(named, value, float(rate), number),
                 )
             )  # fmt: skip
     return out
+
+
+def _scalars(named: str, value: float, growth: float, number: int) -> dict[str, float]:
+    """What files tell of a mode."""
+    scalars = {named: value, "mode": float(number)}
+    if growth:
+        scalars["growth rate"] = growth
+    return scalars
 
 
 def write_modes(results: Results, path: Path) -> None:
