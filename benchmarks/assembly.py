@@ -20,9 +20,9 @@ import numpy as np
 
 import corota as ct
 from benchmarks.common import interleaved, report
-from corota import elements
-from corota.drivers.solvers import make_solver
-from corota.drivers.system import System
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import make_solver
+from corota.model import elements
 
 #: Cantilever, ten to one: nodes for each cell of the mesh, to find the size for a count of dofs.
 NODES_PER_CELL = {"tri3": 0.5, "quad4": 1.0, "tri6": 2.0, "quad8": 3.0, "quad9": 4.0}

@@ -32,7 +32,7 @@ def strips(n: int) -> ct.Model:
 
 def measure(n: int) -> dict[str, Any]:
     """Iterations, and processor seconds of each phase."""
-    from corota.drivers import timer
+    from corota.analysis import timer
 
     before, timer.perf_counter = timer.perf_counter, time.process_time
     try:

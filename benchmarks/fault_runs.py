@@ -23,7 +23,7 @@ from benchmarks.fault_readers import SEEDS, grammar, mutate
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from corota.model import Model
+    from corota.model.model import Model
 
 #: Seconds that one run may take: of the processor, and by the clock of a busy machine.
 LIMIT, CLOCK = 10, 120.0
@@ -81,13 +81,13 @@ def warm_up() -> None:
     import h5py
     import scipy.sparse.linalg
 
+    import corota.analysis.procedures.dynamic
+    import corota.analysis.procedures.frequency
+    import corota.analysis.run
     import corota.check
     import corota.cli.run
-    import corota.drivers.analysis
-    import corota.drivers.dynamics
-    import corota.drivers.frequency
     import corota.io.job
-    import corota.io.stored
+    import corota.io.result_reader
 
     assert h5py
     assert scipy
@@ -133,7 +133,7 @@ def judged(code: int, said: str, folder: Path, name: str) -> str:
 
 def sound_results(folder: Path, name: str) -> str:
     """Why results behind exit 0 should not be there, or an empty text."""
-    from corota.io.stored import read_results
+    from corota.io.result_reader import read_results
 
     path = folder / f"{name}.vtkhdf"
     if not path.exists():

@@ -38,8 +38,8 @@ def main() -> int:
         (corpus / f"seed-{number}").write_bytes(raw)
     with atheris.instrument_imports(include=["corota.io", "corota.mesh"]):
         import corota as ct
-        import corota.io.gmsh
-        import corota.io.inp_read
+        import corota.io.deck.read
+        import corota.io.gmsh.reader
     warnings.simplefilter("ignore")
     folder = Path(tempfile.mkdtemp())
 

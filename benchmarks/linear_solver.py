@@ -17,8 +17,8 @@ import scipy.sparse as sp
 
 from benchmarks.common import interleaved, report
 from corota import _core
-from corota.drivers import pardiso
-from corota.drivers.solvers import Faer, Pardiso, SuperLU
+from corota.analysis.linear import pardiso
+from corota.analysis.linear.solvers import Faer, Pardiso, SuperLU
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,8 +17,8 @@ import warnings
 import numpy as np
 
 import corota as ct
-from corota.observer import Silent
-from corota.results import Frame
+from corota.results.observer import Silent
+from corota.results.results import Frame
 
 
 def body(element: str) -> ct.Model:

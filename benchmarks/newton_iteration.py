@@ -19,7 +19,7 @@ import corota as ct
 from benchmarks import cantilever as p1
 from benchmarks.common import report
 from corota.mesh import Cells
-from corota.results import Iteration, Silent
+from corota.results.observer import Iteration, Silent
 
 #: Elements through the height of the cantilever: about 4, 40, 250 and 1000 thousand equations.
 SIZES = {"4k": 14, "40k": 45, "250k": 112, "1m": 223}

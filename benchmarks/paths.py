@@ -16,7 +16,7 @@ import time
 
 import corota as ct
 from benchmarks.common import report
-from corota.drivers.solvers import Faer
+from corota.analysis.linear.solvers import Faer
 
 #: Cells along and across a cantilever of 100 x 10: about 250,000 equations.
 SIZES = {"20k": (320, 31), "250k": (1120, 111)}
@@ -56,7 +56,9 @@ class Timed(Faer):
         return inertia
 
 
-def run(model: ct.Model, step: ct.steps.Step, threads: int) -> tuple[float, float, ct.Results]:
+def run(
+    model: ct.Model, step: ct.model.steps.Step, threads: int
+) -> tuple[float, float, ct.Results]:
     """Time of a run from its first factorisation on, the median one, and the results.
 
     Numbering, loads, the first assembly and ordering are the same for every analysis.

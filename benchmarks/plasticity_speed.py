@@ -15,9 +15,9 @@ import numpy as np
 
 import corota as ct
 from benchmarks.common import interleaved, report
-from corota.drivers.solvers import SOLVERS
-from corota.drivers.system import System
-from corota.steps import Static
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import SOLVERS
+from corota.model.steps import Static
 from corota.verification.plastic_models import CELL, DRILLING
 
 

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Any
 import corota as ct
 from benchmarks.common import report
 from corota import _core
-from corota.results import Frame, Silent
+from corota.results.observer import Silent
+from corota.results.results import Frame
 
 if TYPE_CHECKING:
     from types import FrameType

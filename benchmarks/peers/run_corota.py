@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 
 import corota as ct
-import corota.drivers.analysis  # imported by the first solution otherwise, inside its time
+import corota.analysis.run  # imported by the first solution otherwise, inside its time
 from benchmarks.peers.shared import Clock, arguments
 from benchmarks.problems import Problem
 from corota.mesh import Cells
@@ -18,7 +18,7 @@ def model_of(p: Problem, element: str, strain: str, method: str = "mortar") -> c
     """Corota's model of a problem; those with drilling rotations hold them where clamped."""
     kind = {3: "tri3", 4: "quad4", 8: "quad8"}[p.cells.shape[1]]
     model = ct.Model(ct.Mesh(p.points, [Cells(kind, p.cells, np.arange(1, len(p.cells) + 1))]))
-    material: ct.materials.Material = ct.Elastic(E=p.young, nu=p.poisson, rho=p.density)
+    material: ct.model.materials.Material = ct.Elastic(E=p.young, nu=p.poisson, rho=p.density)
     if p.yield_stress:
         material = ct.Mises(
             E=p.young, nu=p.poisson, yield_stress=p.yield_stress, isotropic=p.slope, rho=p.density

@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 
 import corota as ct
-from corota.model import Fixed
+from corota.model.loads import Fixed
 
 SPAN, HEIGHT, DEPTH, WIDTH, RADIUS, DOWN = 100.0, 4.0, 1.0, 5.0, 5.0, 7.0
 YOUNG = 2000.0

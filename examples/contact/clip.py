@@ -14,7 +14,7 @@ import sys
 import numpy as np
 
 import corota as ct
-from corota.model import Fixed
+from corota.model.loads import Fixed
 
 LENGTH, HEIGHT, WAY = 20.0, 2.0, 10.0
 #: Upper contour: arm, steep retention face, flat top, slope that leads in.

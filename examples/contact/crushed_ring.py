@@ -15,7 +15,7 @@ import sys
 import numpy as np
 
 import corota as ct
-from corota.model import Fixed
+from corota.model.loads import Fixed
 
 INNER, OUTER, DOWN, BACK, YIELD = 9.0, 10.0, 10.0, 0.25, 300.0
 

@@ -14,7 +14,7 @@ import sys
 import numpy as np
 
 import corota as ct
-from corota.model import Fixed
+from corota.model.loads import Fixed
 
 INNER, OUTER, WIDTH, DOWN, RIB = 3.2, 4.0, 4.6, 6.8, 1.5
 

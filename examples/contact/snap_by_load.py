@@ -16,7 +16,7 @@ import numpy as np
 from bistable_beam import YOUNG, beam
 
 import corota as ct
-from corota.model import Fixed
+from corota.model.loads import Fixed
 
 #: Height of the stop, and largest load [force]; the model is half the beam.
 STOP, LOAD = 2.0, 3.0

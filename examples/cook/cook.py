@@ -14,7 +14,7 @@ import sys
 import numpy as np
 
 import corota as ct
-from corota import elements
+from corota.model import elements
 
 #: Converged vertical displacement of the upper right corner's edge middle, linear.
 REFERENCE = 23.966

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from corota import mesh
-    from corota.contact import PressureLaw, RigidCurve
-    from corota.drivers.analysis import solve
+    from corota.analysis.run import solve
     from corota.errors import (
         ConvergenceError,
         CorotaError,
@@ -22,52 +21,54 @@ if TYPE_CHECKING:
     )
     from corota.io.formats import read
     from corota.io.job import JobFiles
-    from corota.io.stored import read_results
-    from corota.materials import Elastic, Expansion, Orthotropic
-    from corota.materials_plastic import Mises, Voce
-    from corota.materials_user import UserMaterial
+    from corota.io.result_reader import read_results
     from corota.mesh import Mesh
-    from corota.model import Amplitude, Model
-    from corota.paths import ArcLength, DisplacementControl
-    from corota.results import Results
-    from corota.steps import Buckle, Dynamic, Frequency, ModalDynamic, Static, SteadyState
+    from corota.model.contact import PressureLaw, RigidCurve
+    from corota.model.loads import Amplitude
+    from corota.model.materials import Elastic, Expansion, Orthotropic
+    from corota.model.model import Model
+    from corota.model.paths import ArcLength, DisplacementControl
+    from corota.model.plasticity import Mises, Voce
+    from corota.model.steps import Buckle, Dynamic, Frequency, ModalDynamic, Static, SteadyState
+    from corota.model.user_material import UserMaterial
+    from corota.results.results import Results
 
 __version__ = "0.1.0"
 
 #: Module of each public name; a module stands for itself.
 _HOMES = {
-    "Amplitude": "model",
-    "ArcLength": "paths",
-    "Buckle": "steps",
+    "Amplitude": "model.loads",
+    "ArcLength": "model.paths",
+    "Buckle": "model.steps",
     "ConvergenceError": "errors",
     "CorotaError": "errors",
     "DeckError": "errors",
-    "DisplacementControl": "paths",
-    "Dynamic": "steps",
-    "Elastic": "materials",
-    "Expansion": "materials",
-    "Frequency": "steps",
+    "DisplacementControl": "model.paths",
+    "Dynamic": "model.steps",
+    "Elastic": "model.materials",
+    "Expansion": "model.materials",
+    "Frequency": "model.steps",
     "InputError": "errors",
     "JobFiles": "io.job",
     "Mesh": "mesh",
-    "Mises": "materials_plastic",
-    "ModalDynamic": "steps",
-    "Model": "model",
+    "Mises": "model.plasticity",
+    "ModalDynamic": "model.steps",
+    "Model": "model.model",
     "ModelError": "errors",
-    "Orthotropic": "materials",
-    "PressureLaw": "contact",
-    "Results": "results",
-    "RigidCurve": "contact",
+    "Orthotropic": "model.materials",
+    "PressureLaw": "model.contact",
+    "Results": "results.results",
+    "RigidCurve": "model.contact",
     "SingularError": "errors",
-    "Static": "steps",
-    "SteadyState": "steps",
+    "Static": "model.steps",
+    "SteadyState": "model.steps",
     "UnsupportedError": "errors",
-    "UserMaterial": "materials_user",
-    "Voce": "materials_plastic",
+    "UserMaterial": "model.user_material",
+    "Voce": "model.plasticity",
     "mesh": "",
     "read": "io.formats",
-    "read_results": "io.stored",
-    "solve": "drivers.analysis",
+    "read_results": "io.result_reader",
+    "solve": "analysis.run",
 }
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.results import Results
+    from corota.results.results import Results
 
 
 @dataclass(frozen=True, slots=True)

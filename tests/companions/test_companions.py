@@ -10,11 +10,11 @@ import pytest
 import scipy.sparse as sp
 
 import corota as ct
-from corota import elements
-from corota.drivers.solvers import SOLVERS
-from corota.drivers.system import System
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import SOLVERS
 from corota.mesh.data import Cells
-from corota.model import Section
+from corota.model import elements
+from corota.model.sections import Section
 from support.lines import chain, lines
 
 MATERIAL = ct.Elastic(E=1000.0, nu=0.25)

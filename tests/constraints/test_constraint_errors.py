@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.constraints import Coupling, Equation
 from corota.errors import Location
+from corota.model.constraints import Coupling, Equation
 from support.tied import beam
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from corota.drivers.system import Evaluation, System
+from corota.analysis.equations import Evaluation, System
 from support.tied import KINDS, constrained, system_of
 
 TRIALS = [(k, e) for k in KINDS for e in ("Q4I", "Q4D")]
@@ -74,7 +74,7 @@ def test_inertia_counts_the_reduced_matrix(kind: str) -> None:
         model.fix([reference], x=None)
     system = system_of(model)
     assert system.ties is not None
-    from corota.steps import Static
+    from corota.model.steps import Static
 
     negative = set()
     for seed in range(6):
@@ -92,7 +92,7 @@ def test_inertia_counts_the_reduced_matrix(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_corrections_satisfy_the_linearised_constraints(kind: str) -> None:
-    from corota.steps import Static
+    from corota.model.steps import Static
 
     model, reference = constrained(kind)
     model.fix("left", rotation=True)

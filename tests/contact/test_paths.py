@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.io.inp_write_model import write_deck
-from corota.model import Fixed, NodalForce
+from corota.io.deck.write.model import write_deck
+from corota.model.loads import Fixed, NodalForce
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "contact"))
 import bistable_beam

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.drivers.solvers import Faer
-from corota.drivers.system import System
-from corota.drivers.touching_pair import CLOSED, OPEN, SLIPPING
-from corota.drivers.touching_system import TouchingSystem
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import Faer
+from corota.analysis.terms.contact.equations import TouchingSystem
+from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 
 STEP = 1e-6
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from corota.drivers import pardiso
-from corota.drivers.solvers import SOLVERS, Faer, LinearSolver, make_solver
+from corota.analysis.linear import pardiso
+from corota.analysis.linear.solvers import SOLVERS, Faer, LinearSolver, make_solver
 from corota.errors import InputError, SingularError, UnsupportedError
 
 if TYPE_CHECKING:

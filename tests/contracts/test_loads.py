@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.model import Amplitude, BodyForce
-from corota.steps import Static
+from corota.model.loads import Amplitude, BodyForce
+from corota.model.steps import Static
 from support.models import DRILLING, ELEMENTS, balance, boundary, cell, linear
 
 ROUNDOFF = 1e-12

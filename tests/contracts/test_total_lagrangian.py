@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.model import EdgeLoad
-from corota.steps import Static
+from corota.model.loads import EdgeLoad
+from corota.model.steps import Static
 from support import continuum
 from support.models import ISOPARAMETRIC, assemble, cell, cook, edge_forces, single
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from corota.drivers.unsymmetric import FullMatrix, MaskedLu
+from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
 from corota.errors import SingularError
 
 

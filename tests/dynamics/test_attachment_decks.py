@@ -11,7 +11,7 @@ import pytest
 
 import corota as ct
 from corota.cli import main
-from corota.io.inp_write_model import write_deck
+from corota.io.deck.write.model import write_deck
 from tests.dynamics.test_attachments import exact
 from tests.dynamics.test_schemes import column
 

@@ -218,7 +218,7 @@ def test_frequencies_of_a_beam_with_a_rigid_end():
 
 
 def test_dense_and_iterative_frequencies_agree_with_constraints():
-    from corota.drivers import frequency
+    from corota.analysis.procedures import frequency
 
     kept = frequency.DENSE
     found = []

@@ -10,7 +10,7 @@ import pytest
 
 import corota as ct
 from corota.errors import CorotaError
-from corota.steps import Dynamic, Frequency, ModalDynamic, SteadyState
+from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 HEAD = """*NODE, NSET=NALL
 1, 0., 0.

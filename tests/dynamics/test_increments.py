@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.steps import Output
+from corota.model.steps import Output
 from tests.dynamics.test_schemes import column, run
 
 #: A pulse of a hundredth of the period of the body, late in the step.

@@ -112,9 +112,9 @@ def block(element):
 @pytest.mark.parametrize("mass", MASSES)
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_rigid_spin_has_the_kinetic_energy_of_the_body(element, mass):
-    from corota.drivers.dynamics import initial_velocity
-    from corota.drivers.solvers import Faer
-    from corota.drivers.system import System
+    from corota.analysis.equations import System
+    from corota.analysis.linear.solvers import Faer
+    from corota.analysis.procedures.dynamic import initial_velocity
 
     model = block(element)
     omega, velocity = 1.7, (0.3, -0.4)
@@ -178,8 +178,8 @@ def polar_moment(model):
 
 @pytest.mark.parametrize("element", DRILLING)
 def test_steady_spin_needs_the_centripetal_force_of_the_body(element):
-    from corota.drivers.solvers import Faer
-    from corota.drivers.system import System
+    from corota.analysis.equations import System
+    from corota.analysis.linear.solvers import Faer
 
     system = System(block(element), Faer())
     omega = 2.0

@@ -9,7 +9,7 @@ import pytest
 import corota as ct
 from corota import plots
 from corota.cli import main
-from corota.io.stored import read_results
+from corota.io.result_reader import read_results
 
 matplotlib = pytest.importorskip("matplotlib")
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.drivers import dynamics
-from corota.drivers.motion import Inertia
-from corota.drivers.solvers import Faer
-from corota.drivers.system import System
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import Faer
+from corota.analysis.procedures import dynamic as dynamics
+from corota.analysis.procedures.motion import Inertia
 
 CELLS = {"OPT": "tri3", "T3": "tri3", "Q8": "quad8", "Q9": "quad9"}
 SIDES = (4.0, 1.0)

@@ -155,9 +155,9 @@ def test_central_differences_name_the_stable_increment():
     kinetic = column(results, "kinetic energy")
     assert np.ptp(column(results, "energy balance")) <= 1e-2 * kinetic.max()
     # The increment is stable but not needlessly small: twice as long blows up.
-    from corota.drivers.explicit import diagonal, stable_increment
-    from corota.drivers.solvers import Faer
-    from corota.drivers.system import System
+    from corota.analysis.equations import System
+    from corota.analysis.linear.solvers import Faer
+    from corota.analysis.procedures.explicit import diagonal, stable_increment
 
     system = System(model, Faer())
     system.begin(ct.Dynamic(), 0.0, np.zeros(system.n_dofs), None)

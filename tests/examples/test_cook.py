@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota import elements
+from corota.model import elements
 from support.newton import solve_quadratically
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ import pytest
 import scipy.sparse as sp
 
 import corota as ct
-from corota.drivers.solvers import SOLVERS
-from corota.drivers.system import System
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import SOLVERS
 from support.lines import chain, lines
 from support.models import ELEMENTS, cell
 from support.newton import solve_quadratically

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.materials import Expansion
+from corota.model.materials import Expansion
 from support.models import ELEMENTS, cell
 from support.newton import solve_quadratically
 

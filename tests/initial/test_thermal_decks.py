@@ -10,7 +10,7 @@ import pytest
 
 import corota as ct
 from corota.io.formats import write
-from corota.materials import Expansion
+from corota.model.materials import Expansion
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ import random
 from mutate import CARDS, NUMBERS, WORDS
 from seeds import BUCKLING, CONSTRAINED, DECK, FULL, HEAD, MOVING, RIGID, SUPPORT
 
-from corota.io.inp_keywords import KEYWORDS
+from corota.io.deck.keywords import KEYWORDS
 
 NAMES = ["nall", "eall", "TIP", "END", "steel", "1", "2", "a", "s", "up"]
 VALUES = ["1", "2", "3", "4", "5", "6", "20", ".5", "1.", "-2.", "1e-3", "0", "210000.", ".3"]

@@ -15,7 +15,7 @@ from decks import DECK, MESH, SECTION, SUPPORT, faults
 from seeds import SEEDS
 
 import corota as ct
-from corota.io.vtkhdf import VtkhdfWriter
+from corota.io.vtk.vtkhdf import VtkhdfWriter
 
 STEP = "*STEP\n*STATIC\n*DLOAD\n{}\n*END STEP\n"
 BUCKLE = "*STEP\n*BUCKLE\n1\n*MODAL DAMPING\n1, 2, .02\n*CLOAD\n3, 1, -5.\n*END STEP\n"

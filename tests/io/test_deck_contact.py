@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from decks import MESH, SECTION, STEP, SUPPORT, faults, read
 
-from corota.contact import RigidCurve
+from corota.model.contact import RigidCurve
 
 #: A second body above the first, a node for rigid curves, and their surfaces.
 ABOVE = """*NODE

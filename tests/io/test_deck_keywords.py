@@ -11,7 +11,7 @@ import pytest
 from decks import DECK, MESH, SECTION, STEP, SUPPORT, read
 
 import corota as ct
-from corota.model import BodyForce, EdgeLoad, NodalForce
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 
 
 def with_step(lines: str) -> str:

@@ -11,7 +11,7 @@ import pytest
 from decks import MESH, SECTION, STEP, SUPPORT, read
 
 import corota as ct
-from corota.constraints import Coupling, Equation, StraightLine
+from corota.model.constraints import Coupling, Equation, StraightLine
 
 LOOSE = "*NODE\n20, 3., 0.5\n21, 3., 0.5\n"
 EDGE = "*SURFACE, NAME=END\n2, S2\n"

@@ -11,9 +11,9 @@ from decks import MESH, SECTION, STEP, SUPPORT, read
 from seeds import WRITABLE
 
 import corota as ct
-from corota.contact import RigidCurve
 from corota.io.formats import write
-from corota.model import BodyForce, EdgeLoad
+from corota.model.contact import RigidCurve
+from corota.model.loads import BodyForce, EdgeLoad
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -148,7 +148,7 @@ def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 2))
     with pytest.raises(ct.UnsupportedError, match="no writer"):
         write(model, tmp_path / "model.bdf")
-    model.steps = [ct.steps.Step()]
+    model.steps = [ct.model.steps.Step()]
     with pytest.raises(ct.UnsupportedError, match="step 1"):
         write(model, tmp_path / "model.inp")
 

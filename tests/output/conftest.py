@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from corota import cli
-from corota.materials import Elastic
 from corota.mesh import Cells, Mesh
-from corota.model import Model
-from corota.results import Frame, Iteration, PointFields, Results
-from corota.steps import Output, Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Output, Static
+from corota.results.observer import Iteration
+from corota.results.results import Frame, PointFields, Results
 
 GAUSS = 1.0 / np.sqrt(3.0)
 POINTS = np.array([[-GAUSS, -GAUSS], [GAUSS, -GAUSS], [-GAUSS, GAUSS], [GAUSS, GAUSS]])

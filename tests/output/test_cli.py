@@ -16,7 +16,7 @@ import pytest
 
 import corota
 from corota import cli
-from corota.io.stored import read_results
+from corota.io.result_reader import read_results
 
 DECK = Path(__file__).parent / "deck.inp"
 CALL = [sys.executable, "-m", "corota"]

@@ -10,7 +10,7 @@ import pytest
 
 import corota as ct
 from corota import cli, plots
-from corota.io.stored import read_results
+from corota.io.result_reader import read_results
 from corota.plots.rigid import moved, rigid_lines
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from corota.errors import InputError
-from corota.io.dat import check_requests, dat_blocks
-from corota.io.dat_numbers import fortran
 from corota.io.job import JobFiles
 from corota.io.requests import due, due_now, in_force, last_of_steps, left_over
-from corota.io.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
-from corota.io.stored import read_results
-from corota.results import Iteration
-from corota.steps import Output, Static
+from corota.io.result_reader import read_results
+from corota.io.tables.dat import check_requests, dat_blocks
+from corota.io.tables.dat_numbers import fortran
+from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
+from corota.model.steps import Output, Static
+from corota.results.observer import Iteration
 
 # Written by CalculiX 2.20 for a two-element cantilever (its numbers, not ours).
 CCX_U = """

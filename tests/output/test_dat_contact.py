@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.io.dat import dat_blocks
-from corota.steps import Output
+from corota.io.tables.dat import dat_blocks
+from corota.model.steps import Output
 
 DECK = """*NODE
 1, 0., 0.

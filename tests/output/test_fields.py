@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from corota import fields as vf
 from corota.errors import InputError
-from corota.materials import Elastic
+from corota.model.materials import Elastic
 from corota.plots.surface import shape_functions
+from corota.results import variables as vf
 
 ROUNDOFF = 1e-12
 
@@ -98,7 +98,7 @@ def test_history_combines_forces_by_sum_and_displacements_by_mean(results):
 
 
 def test_last_only_keeps_one_frame(model, fake):
-    from corota.results import Results
+    from corota.results.results import Results
 
     results = Results(model, keep="last")
     for i in range(3):

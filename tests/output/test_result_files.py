@@ -18,9 +18,9 @@ import numpy as np
 import pytest
 
 from corota.errors import CorotaError, FileError, InputError
+from corota.io.atomic_file import TextFile, TwinFile
 from corota.io.job import JobFiles
-from corota.io.stored import read_results
-from corota.io.twin import TextFile, TwinFile
+from corota.io.result_reader import read_results
 from corota.io.writers import WRITERS
 
 HERE = Path(__file__).parent
@@ -294,9 +294,9 @@ import sys, time
 sys.path.insert(0, {here!r})
 import conftest as c
 from corota.io import job
-from corota.materials import Elastic
+from corota.model.materials import Elastic
 from corota.model import Model
-from corota.steps import Static
+from corota.model.steps import Static
 job.BEAT = 0.02
 model = Model(c.strip(40, 20), "beam")
 model.section("EALL", element="Q4I", material=Elastic(E=1000.0, nu=0.3), thickness=0.1)

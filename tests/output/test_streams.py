@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from corota.io.stored import read_results
+from corota.io.result_reader import read_results
 
 DECK = Path(__file__).parent / "deck.inp"
 CALL = [sys.executable, "-m", "corota"]

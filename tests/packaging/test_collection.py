@@ -28,4 +28,4 @@ def test_doctests_are_collected(pytestconfig: pytest.Config) -> None:
     assert pytestconfig.getoption("doctestmodules")
     assert "src" in pytestconfig.getini("testpaths")
     found = examples_by_module()
-    assert "corota.model" in found, found
+    assert "corota.model.model" in found, found

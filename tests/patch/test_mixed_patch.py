@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.steps import Static
+from corota.model.steps import Static
 from support.models import boundary, cell, prescribe
 
 PAIRS = [("Q4", "T3"), ("Q4I", "T3"), ("Q8", "T6"), ("Q9", "T6"), ("Q8R", "T6"), ("Q4I", "Q4")]

@@ -9,7 +9,7 @@ import pytest
 
 import corota as ct
 from corota.mesh import Cells, Mesh
-from corota.steps import Static
+from corota.model.steps import Static
 from corota.verification.problems import distorted_patches
 from support.models import (
     DRILLING,

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.steps import Static
+from corota.model.steps import Static
 from support.continuum import moduli
 from support.models import boundary, cell, prescribe
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from corota.drivers.corrector import Point
-from corota.drivers.newton import Settings
-from corota.drivers.path import Follower, Plan
+from corota.analysis.newton import Settings
+from corota.analysis.procedures.path.corrector import Point
+from corota.analysis.procedures.path.tracer import Follower, Plan
 
 
 @pytest.fixture

@@ -9,10 +9,10 @@ import scipy.linalg
 import scipy.optimize
 
 import corota as ct
-from corota.drivers.modes import largest
-from corota.drivers.solvers import Faer
-from corota.drivers.system import System
-from corota.model import NodalForce
+from corota.analysis.equations import System
+from corota.analysis.linear.lanczos import largest
+from corota.analysis.linear.solvers import Faer
+from corota.model.loads import NodalForce
 from support.frames import column, euler_load, node_at, williams_toggle
 from support.tied import with_nodes
 
@@ -74,7 +74,7 @@ def test_a_step_after_buckling_starts_where_buckling_found_the_structure():
 def test_factors_are_those_of_the_dense_pencil():
     """A small bent frame: all positive factors, none missed."""
     model, _ = williams_toggle(cells=4)
-    from corota.drivers.buckling import _derivative, _perturbation
+    from corota.analysis.procedures.buckling import _derivative, _perturbation
 
     modes = ct.solve(model, ct.Buckle(modes=4)).modes[0]
     system = System(model, Faer())

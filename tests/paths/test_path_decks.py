@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 import corota as ct
-from corota.paths import ArcLength
-from corota.steps import Buckle
+from corota.model.paths import ArcLength
+from corota.model.steps import Buckle
 from support.frames import euler_load
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 import corota as ct
-from corota.io.stored import read_results
+from corota.io.result_reader import read_results
 from support.frames import williams_toggle
 
 matplotlib = pytest.importorskip("matplotlib")

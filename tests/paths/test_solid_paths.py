@@ -150,7 +150,7 @@ def test_column_leaves_its_axis_along_the_elastica(side):
 
 def test_loads_follow_each_other_with_a_constant_preload():
     """The preload stays while the second step's load makes the path."""
-    from corota.model import NodalForce
+    from corota.model.loads import NodalForce
 
     model, apex = williams_toggle(load=0.0)
     preload = ct.Static(loads=[NodalForce(np.array([apex]), 1, -5.0)])

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from corota.drivers.controls import Row
-from corota.drivers.path import End, PathStalled
+from corota.analysis.procedures.path.controls import Row
+from corota.analysis.procedures.path.tracer import End, PathStalled
 from support.trusses import Truss, exact_load, von_mises
 
 #: Newton's tolerance, with room for the scale of the residual.
@@ -187,9 +187,9 @@ def test_displacement_control_hands_over_to_arc_length_at_a_snap_back(follow):
 
 def test_iterations_converge_quadratically(follow):
     """The last residuals of an increment fall with order two."""
-    from corota.drivers.controls import Arc
-    from corota.drivers.corrector import Point, correct
-    from corota.drivers.newton import Settings
+    from corota.analysis.newton import Settings
+    from corota.analysis.procedures.path.controls import Arc
+    from corota.analysis.procedures.path.corrector import Point, correct
 
     system = soft_column()
     base = follow(system, increments=2)[-1]

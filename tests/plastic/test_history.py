@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.drivers import static
+from corota.analysis.procedures import static
 from corota.verification.plastic_models import cantilever, find, perforated_strip
 from support.newton import ROUNDING, Residuals
 

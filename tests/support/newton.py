@@ -7,10 +7,10 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import corota as ct
-from corota.results import Iteration, Silent
+from corota.results.observer import Iteration, Silent
 
 if TYPE_CHECKING:
-    from corota.steps import Step
+    from corota.model.steps import Step
 
 #: Relative residual below which only rounding is left.
 ROUNDING = 1e-11

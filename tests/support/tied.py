@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import corota as ct
-from corota.drivers.solvers import SOLVERS
-from corota.drivers.system import System
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import SOLVERS
 
 if TYPE_CHECKING:
     from corota.mesh import Mesh

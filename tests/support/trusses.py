@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from corota.drivers.newton import Judgement
+from corota.analysis.newton import Judgement
 from corota.errors import SingularError
 
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.drivers.newton import Judgement
+from corota.analysis.newton import Judgement
 from corota.errors import ConvergenceError
-from corota.steps import Static
+from corota.model.steps import Static
 from support import continuum
 from support.models import DRILLING, ELEMENTS, ISOPARAMETRIC, assemble, boundary, cell, cook, linear
 

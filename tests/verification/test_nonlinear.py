@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from corota.steps import Static
+from corota.model.steps import Static
 from corota.verification.models import last_frames
 from corota.verification.problems import cook_large, elastica, roll_up, thick_cantilever
 from support.models import (

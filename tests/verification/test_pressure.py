@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.steps import Static
+from corota.model.steps import Static
 from support.models import ELEMENTS, Watch, assert_contracts, assert_quadratic, balance, cell
 
 CORNERS = {"tri3": 3, "tri6": 3, "quad4": 4, "quad8": 4, "quad9": 4}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.model import EdgeLoad
-from corota.steps import Static
+from corota.model.loads import EdgeLoad
+from corota.model.steps import Static
 from corota.verification.models import cook, edge_forces
 
 fem = pytest.importorskip("skfem")

@@ -13,7 +13,7 @@ from corota.check.units import check_units
 
 if TYPE_CHECKING:
     from corota.errors import Diagnostic
-    from corota.model import Model
+    from corota.model.model import Model
 
 __all__ = ["check"]
 

@@ -12,7 +12,7 @@ from corota.mesh.quality import STRAIGHT, aspect_ratio, corner_sines, jacobians
 
 if TYPE_CHECKING:
     from corota.mesh.data import Ints, Mesh
-    from corota.model import Model
+    from corota.model.model import Model
 
 #: Corners flatter than 10 degrees, or turned by more than 170.
 FLAT_SINE = 0.17

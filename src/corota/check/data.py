@@ -9,10 +9,11 @@ import numpy as np
 
 from corota.check.parts import cells_of
 from corota.errors import Diagnostic
-from corota.model import BodyForce, EdgeLoad, NodalForce, Temperature
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
 
 if TYPE_CHECKING:
-    from corota.model import Load, Model
+    from corota.model.loads import Load
+    from corota.model.model import Model
 
 
 def check_data(model: Model) -> list[Diagnostic]:

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import elements
 from corota.check.parts import cells_of, part_of_cells, stiff_part_of_cells
 from corota.errors import Diagnostic
+from corota.model import elements
 
 if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints, Mesh
-    from corota.model import Fixed, Model
-    from corota.steps import Step
+    from corota.model.loads import Fixed
+    from corota.model.model import Model
+    from corota.model.steps import Step
 
 #: Share of the largest eigenvalue of the constraints below which a mode is free.
 FREE = 1e-13

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import elements
 from corota.check.parts import cells_of, part_of_cells
 from corota.errors import Diagnostic, InputError
-from corota.materials import Elastic
+from corota.model import elements
+from corota.model.materials import Elastic
 
 if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints, Mesh
-    from corota.model import Model, Section
+    from corota.model.model import Model
+    from corota.model.sections import Section
 
 #: Squared outline over area above which a part counts as slender (a strip 4 times its width).
 SLENDER = 25.0

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic
-from corota.materials import Elastic
+from corota.model.materials import Elastic
 
 if TYPE_CHECKING:
-    from corota.model import Model
+    from corota.model.model import Model
 
 #: Young's modulus that can only be in pascal, and a size that is hardly in metres.
 PASCAL, LARGE = 1e9, 50.0

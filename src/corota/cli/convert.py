@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def run(args: Any, terminal: Terminal) -> int:
     """Convert a file."""
     if is_result(args.source):
-        from corota.io.stored import read_results
+        from corota.io.result_reader import read_results
 
         with read_results(args.source) as results:
             path = results.write(args.target)

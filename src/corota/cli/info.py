@@ -9,8 +9,8 @@ from corota.cli.reading import is_result, read_input
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.io.stored import StoredResults
-    from corota.model import Model
+    from corota.io.result_reader import StoredResults
+    from corota.model.model import Model
 
 
 def run(args: Any, terminal: Terminal) -> int:
@@ -24,7 +24,7 @@ def run(args: Any, terminal: Terminal) -> int:
         terminal.record(model_record(model))
         return 0
     from corota.cli.run import profile_lines
-    from corota.io.stored import read_results
+    from corota.io.result_reader import read_results
 
     with read_results(args.file) as results:
         for text in model_lines(results.model):

@@ -11,8 +11,8 @@ from corota.errors import InputError
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.histories import History
-    from corota.results import Results
+    from corota.results.history import History
+    from corota.results.results import Results
 
 
 def run(args: Any, terminal: Terminal) -> int:
@@ -31,7 +31,7 @@ def run(args: Any, terminal: Terminal) -> int:
         path = Path(args.output or f"{source.stem}_model.png")
         plots.model(subject, edges=args.edges, path=path, dpi=args.dpi)
         return _tell(path, terminal)
-    from corota.io.stored import read_results
+    from corota.io.result_reader import read_results
 
     with read_results(source) as results:
         if args.model:
@@ -68,7 +68,7 @@ def run(args: Any, terminal: Terminal) -> int:
 def _of_motion(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
     """Modes, response or energies; modes lie in a file of their own."""
     from corota import plots
-    from corota.io.stored import read_results
+    from corota.io.result_reader import read_results
 
     kind = next(k for k in ("modes", "response", "energies") if getattr(args, k))
     path = Path(args.output or f"{source.stem}_{kind}.png")

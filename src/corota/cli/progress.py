@@ -7,13 +7,14 @@ import shutil
 import time
 from typing import TYPE_CHECKING
 
-from corota.results import Silent
+from corota.results.observer import Silent
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.model import Model
-    from corota.results import Frame, Iteration, Results
-    from corota.steps import Step
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.observer import Iteration
+    from corota.results.results import Frame, Results
 
 HEAD = " step    inc  att  iter          time   load factor   residual"
 

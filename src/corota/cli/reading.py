@@ -8,7 +8,7 @@ from typing import Any
 
 from corota import mesh as meshes
 from corota.errors import FileError
-from corota.model import Model
+from corota.model.model import Model
 
 #: Endings of result files that the commands can open again.
 RESULTS = (".vtkhdf", ".hdf")

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
 from corota.errors import CorotaError, ModelError
-from corota.results import Silent
+from corota.results.observer import Silent
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,7 +53,7 @@ class Stop(Silent):
 def run(args: Any, terminal: Terminal) -> int:
     """Run a deck; return the exit code."""
     from corota import __version__
-    from corota.drivers.analysis import solve
+    from corota.analysis.run import solve
     from corota.io.events import Events
     from corota.io.job import JobFiles
 

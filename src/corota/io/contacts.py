@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.contact import ContactPair, RigidCurve
+from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
-    from corota.model import Model
+    from corota.model.model import Model
 
 
 def store_contacts(group: Any, model: Model) -> None:

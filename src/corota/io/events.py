@@ -8,14 +8,15 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from corota.results import Silent
+from corota.results.observer import Silent
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.model import Model
-    from corota.results import Frame, Iteration, Results
-    from corota.steps import Step
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.observer import Iteration
+    from corota.results.results import Frame, Results
 
 
 def json_line(record: dict[str, Any]) -> str:

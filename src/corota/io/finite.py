@@ -10,7 +10,7 @@ import numpy as np
 from corota.errors import CorotaError
 
 if TYPE_CHECKING:
-    from corota.results import Frame
+    from corota.results.results import Frame
 
 
 def check_frame(frame: Frame) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from corota.errors import UnsupportedError
-from corota.io.gmsh import read_gmsh
-from corota.io.inp_read import read_deck
-from corota.io.inp_write_model import write_deck
+from corota.io.deck.read import read_deck
+from corota.io.deck.write.model import write_deck
+from corota.io.gmsh.reader import read_gmsh
 from corota.io.meshio_bridge import read_meshio
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from corota.mesh.data import Mesh
-    from corota.model import Model
+    from corota.model.model import Model
 
 
 def _deck_mesh(path: str | os.PathLike[str]) -> Mesh:

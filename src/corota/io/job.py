@@ -9,26 +9,27 @@ from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from corota.io.dat import check_requests, dat_blocks
-from corota.io.dat_modes import buckling_table
+from corota.io.atomic_file import TextFile, full
 from corota.io.events import Events, json_line
 from corota.io.finite import check_frame
-from corota.io.history import CsvWriter, Histories
 from corota.io.requests import due_now, left_over, wants_file
-from corota.io.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
-from corota.io.twin import TextFile, full
-from corota.results import Silent
+from corota.io.tables.csv_history import CsvWriter, Histories
+from corota.io.tables.dat import check_requests, dat_blocks
+from corota.io.tables.dat_modes import buckling_table
+from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
+from corota.results.observer import Silent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from os import PathLike
     from types import TracebackType
 
-    from corota.io.vtkhdf import VtkhdfWriter
-    from corota.io.vtu import PvdWriter
-    from corota.model import Model
-    from corota.results import Frame, Iteration, Results
-    from corota.steps import Output, Step
+    from corota.io.vtk.vtkhdf import VtkhdfWriter
+    from corota.io.vtk.vtu import PvdWriter
+    from corota.model.model import Model
+    from corota.model.steps import Output, Step
+    from corota.results.observer import Iteration
+    from corota.results.results import Frame, Results
 
 #: Files are brought up to date at most so often; a killed run loses no more than this [s].
 BEAT = 0.25
@@ -149,11 +150,11 @@ class JobFiles(Silent):
         """Make the writers of the result files."""
         for ending, path in big:
             if ending == "pvd":
-                from corota.io.vtu import PvdWriter
+                from corota.io.vtk.vtu import PvdWriter
 
                 self._big.append(PvdWriter(path, self.model))
             else:
-                from corota.io.vtkhdf import VtkhdfWriter
+                from corota.io.vtk.vtkhdf import VtkhdfWriter
 
                 self._big.append(VtkhdfWriter(path, self.model, self._points))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
-from corota.results import Frame, Results
+from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -63,7 +63,7 @@ def _scalars(named: str, value: float, growth: float, number: int) -> dict[str, 
 
 def write_modes(results: Results, path: Path) -> None:
     """Write the modes as a temporal VTKHDF file, a time step a mode."""
-    from corota.io.vtkhdf import VtkhdfWriter
+    from corota.io.vtk.vtkhdf import VtkhdfWriter
 
     found = as_results(results)
     writer = VtkhdfWriter(path, found.model, points=False)

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.io.atomic_file import full
 from corota.io.finite import check_frame
-from corota.io.twin import full
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from corota.results import Results
+    from corota.results.results import Results
 
 
 def write_npz(results: Results, path: Path) -> None:

@@ -10,9 +10,9 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.model import Model
-    from corota.results import Frame
-    from corota.steps import Output, Step
+    from corota.model.model import Model
+    from corota.model.steps import Output, Step
+    from corota.results.results import Frame
 
 #: Two times closer than this share of the step's period are the same.
 SAME_TIME = 1e-9

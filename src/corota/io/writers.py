@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from corota.mesh import Mesh
-    from corota.results import Results
+    from corota.results.results import Results
 
 
 def _vtkhdf(results: Results, path: Path) -> None:
-    from corota.io.vtkhdf import VtkhdfWriter
+    from corota.io.vtk.vtkhdf import VtkhdfWriter
 
     writer = VtkhdfWriter(path, results.model)
     for frame in results.frames:
@@ -26,13 +26,13 @@ def _vtkhdf(results: Results, path: Path) -> None:
 
 
 def _vtu(results: Results, path: Path) -> None:
-    from corota.io.vtu import write_vtu
+    from corota.io.vtk.vtu import write_vtu
 
     write_vtu(results, path)
 
 
 def _pvd(results: Results, path: Path) -> None:
-    from corota.io.vtu import write_pvd
+    from corota.io.vtk.vtu import write_pvd
 
     write_pvd(results, path)
 
@@ -44,17 +44,17 @@ def _npz(results: Results, path: Path) -> None:
 
 
 def _csv(results: Results, path: Path) -> None:
-    from corota.io.history import Histories, csv_text
-    from corota.io.twin import replace_text
+    from corota.io.atomic_file import replace_text
+    from corota.io.tables.csv_history import Histories, csv_text
 
     histories = Histories(results.model, results.model.steps)
     replace_text(path, csv_text([histories.row(f) for f in results.frames]))
 
 
 def _dat(results: Results, path: Path) -> None:
-    from corota.io.dat import check_requests, dat_blocks
+    from corota.io.atomic_file import replace_text
     from corota.io.requests import due_now, last_of_steps, left_over
-    from corota.io.twin import replace_text
+    from corota.io.tables.dat import check_requests, dat_blocks
 
     model = results.model
     check_requests(model.steps)
@@ -67,8 +67,8 @@ def _dat(results: Results, path: Path) -> None:
 
 
 def _sta(results: Results, path: Path) -> None:
-    from corota.io.sta import STA_HEAD, sta_line
-    from corota.io.twin import replace_text
+    from corota.io.atomic_file import replace_text
+    from corota.io.tables.sta import STA_HEAD, sta_line
 
     lines, before = [STA_HEAD], (0, 0.0)
     for frame in results.frames:
@@ -93,7 +93,7 @@ WRITERS: dict[str, Callable[[Results, Path], None]] = {
 
 
 def _deck(mesh: Mesh, path: Path) -> None:
-    from corota.io.inp_write import write_deck_mesh
+    from corota.io.deck.write.mesh import write_deck_mesh
 
     write_deck_mesh(mesh, path)
 

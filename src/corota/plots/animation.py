@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import fields as vf
 from corota.errors import InputError
-from corota.io.twin import full
+from corota.io.atomic_file import full
 from corota.plots.contour import Drawing, frame_title, label_bar, paint
 from corota.plots.figure import extent_size, look, new_figure, picture_path
+from corota.results import variables as vf
 
 if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
-    from corota.results import Results
+    from corota.results.results import Results
 
 #: More frames than this are thinned evenly.
 MOST_FRAMES = 120

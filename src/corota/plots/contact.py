@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.contact import ContactPair
-    from corota.results import Results
+    from corota.model.contact import ContactPair
+    from corota.results.results import Results
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import fields as vf
 from corota.errors import InputError
 from corota.plots.figure import INK, PALE, extent_size, look, new_figure, save
 from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
+from corota.results import variables as vf
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.mesh import Mesh
-    from corota.results import Results
+    from corota.results.results import Results
 
     Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class Drawing:
     ----------
     results : Results
     name : str
-        Variable as :mod:`corota.fields` spells it.
+        Variable as :mod:`corota.results.variables` spells it.
     per_cell : bool
         One color a cell, from its average.
     """

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.fields import MEANING
 from corota.plots.figure import INK, PALE, look, new_figure, save
 from corota.plots.path import draw_path, has_stability
+from corota.results.variables import MEANING
 
 if TYPE_CHECKING:
     from os import PathLike
 
-    from corota.histories import History
+    from corota.results.history import History
 
 #: Quantities that belong on the upright axis whatever is asked first.
 _UPRIGHT = ("load factor", "RF", "F1", "F2", "M3", "RM3")

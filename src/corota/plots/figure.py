@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError, ResourceError
-from corota.io.twin import full
+from corota.io.atomic_file import full
 
 if TYPE_CHECKING:
     from os import PathLike

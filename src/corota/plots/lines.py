@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.constraints import Coupling
+from corota.model.constraints import Coupling
 from corota.plots.figure import INK
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.model import Model
-    from corota.section import Section
+    from corota.model.model import Model
+    from corota.model.sections import Section
 
     Floats = NDArray[np.float64]
 

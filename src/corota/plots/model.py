@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.fields import section_of_cells
 from corota.mesh import EDGES
-from corota.model import BodyForce, EdgeLoad, NodalForce
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 from corota.plots.figure import COLORS, INK, extent_size, look, new_figure, save
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import edge_lines, outline, surface
+from corota.results.variables import section_of_cells
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from numpy.typing import NDArray
 
-    from corota.model import Model
+    from corota.model.model import Model
 
     Floats = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from corota.plots.figure import COLORS, INK, PALE, look, new_figure, save
 if TYPE_CHECKING:
     from os import PathLike
 
-    from corota.results import Frame, Results
+    from corota.results.results import Frame, Results
 
 #: Modes of one picture, and modes beside each other.
 MOST, ACROSS = 9, 3

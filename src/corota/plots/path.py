@@ -13,7 +13,7 @@ from corota.plots.figure import COLORS, INK
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.results import Results
+    from corota.results.results import Results
 
     Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.results import Results
+    from corota.results.results import Results
 
     Ints = NDArray[np.int64]
 

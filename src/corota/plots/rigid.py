@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.contact import RigidCurve
+from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.model import Model
-    from corota.results import Frame
+    from corota.model.model import Model
+    from corota.results.results import Frame
 
     Floats = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from corota.materials import Elastic
 from corota.mesh.data import Cells, Mesh
-from corota.model import Model
+from corota.model.materials import Elastic
+from corota.model.model import Model
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from corota.model import Model
-    from corota.results import Results
+    from corota.model.model import Model
+    from corota.results.results import Results
 
 #: Groups of problems in the order in which they are listed.
 GROUPS = (

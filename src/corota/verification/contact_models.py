@@ -10,12 +10,13 @@ from typing import Literal
 import numpy as np
 
 from corota import mesh as meshes
-from corota.contact import RigidCurve
-from corota.materials import Elastic
 from corota.mesh import Mesh
-from corota.model import Fixed, Model
-from corota.results import Results
-from corota.steps import Static
+from corota.model.contact import RigidCurve
+from corota.model.loads import Fixed
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.models import DRILLING, cell
 
 #: Hertz's cylinder: radius, modulus, Poisson's ratio, force a unit of thickness.

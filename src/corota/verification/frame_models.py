@@ -6,9 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
 from corota.mesh import Mesh
-from corota.model import Model
+from corota.model.materials import Elastic
+from corota.model.model import Model
 from corota.verification.models import cell, nearest
 
 

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.contact import RigidCurve
-from corota.drivers.analysis import solve
-from corota.materials import Elastic, Material
-from corota.materials_plastic import Mises
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Dynamic
+from corota.analysis.run import solve
+from corota.model.contact import RigidCurve
+from corota.model.materials import Elastic, Material
+from corota.model.model import Model
+from corota.model.plasticity import Mises
+from corota.model.steps import Dynamic
+from corota.results.results import Results
 from corota.verification.models import cell
 
 #: The elastic bar: length, modulus, density, speed, and the speed of its waves.

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from corota import elements
 from corota import mesh as meshes
-from corota.drivers.analysis import solve
-from corota.drivers.solvers import Faer
-from corota.drivers.system import System
-from corota.materials import Elastic
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import Faer
+from corota.analysis.run import solve
 from corota.mesh import Cells, Mesh
-from corota.model import Fixed, Model, NodalForce
-from corota.observer import Silent
-from corota.steps import Static
+from corota.model import elements
+from corota.model.loads import Fixed, NodalForce
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
+from corota.results.observer import Silent
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,9 +26,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.mesh.generate import Diagonal, Kind
-    from corota.observer import Iteration
-    from corota.results import Frame, Results
-    from corota.steps import Step
+    from corota.model.steps import Step
+    from corota.results.observer import Iteration
+    from corota.results.results import Frame, Results
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.drivers.analysis import solve
-from corota.materials import Elastic
-from corota.model import Amplitude, Model
-from corota.steps import Dynamic
+from corota.analysis.run import solve
+from corota.model.loads import Amplitude
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Dynamic
 from corota.verification.models import cell
 
 if TYPE_CHECKING:
     from corota.mesh import Mesh
-    from corota.results import Results
+    from corota.results.results import Results
 
 #: The cantilever under a sine load: sides [m], material, tip force [N] and its angular frequency.
 LENGTH, WIDTH, DEPTH = 10.0, 0.5, 0.25

@@ -156,7 +156,7 @@ def order(study: Study, sizes: Sequence[float], errors: Sequence[float]) -> floa
 
 def _picture(picture: Picture, target: Path, name: str) -> Path:
     from corota import plots
-    from corota.results import Results
+    from corota.results.results import Results
 
     path = target / "figures" / f"{name}.png"
     if isinstance(picture.subject, Results):

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials_plastic import Mises
-from corota.model import Model
+from corota.model.model import Model
+from corota.model.plasticity import Mises
 from corota.verification.models import DRILLING, ELEMENTS, cell
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.materials import Material
     from corota.mesh import Mesh
+    from corota.model.materials import Material
 
 #: Cell kind that each element needs.
 CELL: dict[str, Any] = {name: cell(name) for name in ELEMENTS}

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Amplitude, Model, NodalForce
-from corota.steps import Dynamic, Frequency, ModalDynamic
+from corota.model.loads import Amplitude, NodalForce
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Dynamic, Frequency, ModalDynamic
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import nearest, run

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
+from corota.model.materials import Elastic
+from corota.model.model import Model
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import DRILLING, assemble, cell
 

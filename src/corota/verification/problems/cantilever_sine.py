@@ -15,10 +15,11 @@ from functools import cache
 
 import numpy as np
 
-from corota.materials import Elastic
-from corota.model import Amplitude, Model
-from corota.results import Results
-from corota.steps import Dynamic
+from corota.model.loads import Amplitude
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Dynamic
+from corota.results.results import Results
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import run

@@ -14,11 +14,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
 from corota.mesh import Cells, Mesh
-from corota.model import EdgeLoad, Model
-from corota.results import Results
-from corota.steps import Static
+from corota.model.loads import EdgeLoad
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import DRILLING, ELEMENTS, boundary, cell, prescribe, run
 

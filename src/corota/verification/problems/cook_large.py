@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from corota.model import EdgeLoad
-from corota.results import Results
-from corota.steps import Static
+from corota.model.loads import EdgeLoad
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import Watch, cook, last_frames, nearest, run
 

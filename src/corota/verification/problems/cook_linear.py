@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from corota.steps import Static
+from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cook, linear, run
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
-from corota.steps import Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cell, linear, run
 

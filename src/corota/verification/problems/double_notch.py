@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from corota.results import Results
-from corota.steps import Static
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import run
 from corota.verification.plastic_models import find, notched

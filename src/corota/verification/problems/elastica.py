@@ -12,9 +12,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.model import EdgeLoad
-from corota.results import Results
-from corota.steps import Static
+from corota.model.loads import EdgeLoad
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import Watch, cantilever, last_frames, run
 

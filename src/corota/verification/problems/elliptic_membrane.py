@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, nearest, run
 

@@ -16,9 +16,9 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from corota.paths import ArcLength
-from corota.results import Results
-from corota.steps import Buckle, Static
+from corota.model.paths import ArcLength
+from corota.model.steps import Buckle, Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.frame_models import column, euler_load
 from corota.verification.models import nearest, run

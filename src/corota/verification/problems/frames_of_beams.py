@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache
 
-from corota.model import Model
-from corota.paths import ArcLength
-from corota.results import Results
-from corota.steps import Static
+from corota.model.model import Model
+from corota.model.paths import ArcLength
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.beam_models import (
     deep_arch,
     lee_frame,

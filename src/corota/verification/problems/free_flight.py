@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from corota.results import Results
-from corota.steps import Dynamic
+from corota.model.steps import Dynamic
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import ELEMENTS, run
 from corota.verification.motion_models import column, flyer

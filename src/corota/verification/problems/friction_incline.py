@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.contact import RigidCurve
 from corota.errors import ConvergenceError
-from corota.materials import Elastic
-from corota.model import Amplitude, Model
-from corota.results import Results
-from corota.steps import Dynamic, Static
+from corota.model.contact import RigidCurve
+from corota.model.loads import Amplitude
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Dynamic, Static
+from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import run
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from corota.results import Results
-from corota.steps import Static
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.contact_models import (
     FORCE,

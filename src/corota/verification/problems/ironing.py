@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.results import Results
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.contact_models import ACROSS, ironing, steps
 from corota.verification.models import run

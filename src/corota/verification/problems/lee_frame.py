@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from corota.paths import ArcLength
-from corota.results import Results
-from corota.steps import Static
+from corota.model.paths import ArcLength
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.frame_models import lee_frame
 from corota.verification.models import run

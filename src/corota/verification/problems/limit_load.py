@@ -18,10 +18,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from corota import mesh as meshes
-from corota.materials_plastic import Mises
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Static
+from corota.model.model import Model
+from corota.model.plasticity import Mises
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import DRILLING, cell, run
 from corota.verification.plastic_models import cantilever

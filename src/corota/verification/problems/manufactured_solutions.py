@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
 from corota.mesh import Mesh
-from corota.model import Model, NodalForce
+from corota.model.loads import NodalForce
+from corota.model.materials import Elastic
+from corota.model.model import Model
 from corota.verification.catalogue import Problem, Study, Value
 from corota.verification.models import (
     DRILLING,

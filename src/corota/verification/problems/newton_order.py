@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
-from corota.steps import Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import ELEMENTS, Watch, cell, cook, run
 

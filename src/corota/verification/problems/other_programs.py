@@ -16,10 +16,10 @@ from functools import cache
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Dynamic, Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Dynamic, Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import nearest, run
 

@@ -16,10 +16,10 @@ import numpy as np
 from scipy.special import ellipk
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Dynamic
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Dynamic
+from corota.results.results import Results
 from corota.verification.beam_models import polyline
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import cell, run

@@ -15,9 +15,9 @@ from functools import cache
 
 import numpy as np
 
-from corota.materials_plastic import Mises
-from corota.results import Results
-from corota.steps import Static
+from corota.model.plasticity import Mises
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import run
 from corota.verification.plastic_models import find, perforated_strip

@@ -17,10 +17,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials_plastic import Mises
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Static
+from corota.model.model import Model
+from corota.model.plasticity import Mises
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Problem, Value
 from corota.verification.models import boundary, cell, last_frames, prescribe, run
 

@@ -13,10 +13,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.materials import Elastic
-from corota.model import Model
-from corota.results import Results
-from corota.steps import Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cell, edge_forces, nearest, run
 from corota.verification.plastic_models import find, strip_mesh

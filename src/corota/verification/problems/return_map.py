@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from corota.materials_plastic import Mises
+from corota.model.plasticity import Mises
 from corota.verification.catalogue import Problem, Value
 
 CORNERS = np.array([(0, 0, 0), (0.002, 0, 0), (0.002, 0, 0.004), (-0.001, 0.001, 0.004), (0, 0, 0)])

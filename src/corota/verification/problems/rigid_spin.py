@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.drivers.dynamics import initial_velocity
-from corota.drivers.solvers import Faer
-from corota.drivers.system import System
-from corota.materials import Elastic
-from corota.model import Model
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import Faer
+from corota.analysis.procedures.dynamic import initial_velocity
+from corota.model.materials import Elastic
+from corota.model.model import Model
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import ELEMENTS, cell
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from corota.results import Results
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.problems.thick_cylinder_plastic import (
     INNER,

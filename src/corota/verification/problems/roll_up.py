@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from corota.model import NodalForce
-from corota.results import Results
-from corota.steps import Static
+from corota.model.loads import NodalForce
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
 from corota.verification.models import Watch, cantilever, last_frames, run
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from corota.steps import Static
+from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cantilever, edge_forces, linear, run
 

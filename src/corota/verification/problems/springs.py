@@ -14,10 +14,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from corota.materials import Elastic
 from corota.mesh import Cells, Mesh
-from corota.model import Model
-from corota.steps import Buckle, Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Buckle, Static
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import run
 

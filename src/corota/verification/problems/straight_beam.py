@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from corota import mesh as meshes
-from corota.materials import Elastic
-from corota.model import Model
-from corota.steps import Static
+from corota.model.materials import Elastic
+from corota.model.model import Model
+from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Value
 from corota.verification.models import ELEMENTS, cell, linear, nearest, run
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from corota.results import Results
-from corota.steps import Static
+from corota.model.steps import Static
+from corota.results.results import Results
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import Watch, cantilever, edge_forces, last_frames, nearest, run
 

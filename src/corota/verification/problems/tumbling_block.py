@@ -14,7 +14,7 @@ from functools import cache
 
 import numpy as np
 
-from corota.results import Results
+from corota.results.results import Results
 from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.motion_models import PULSE, block, drift, fly, rod
 

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
-from corota.materials_plastic import Mises
-from corota.model import Model
-from corota.steps import Static
+from corota.model.model import Model
+from corota.model.plasticity import Mises
+from corota.model.steps import Static
 from corota.verification.catalogue import Curve, Problem, Value
 from corota.verification.models import last_frames, prescribe, run
 

@@ -1,0 +1,134 @@
+"""The cells of a model grouped into blocks of the core, and what is wrong with them."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import ModelError
+from corota.model import elements
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.model.model import Model
+    from corota.model.sections import Section
+
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class BlockOfCells:
+    """Cells of one section and one kind: a block of the core."""
+
+    section: Section
+    cells: Ints  # global cell indices
+    nodes: Ints  # (n, k)
+
+
+def blocks_of(model: Model) -> list[BlockOfCells]:
+    """Group the cells by section and kind.
+
+    Raises
+    ------
+    ModelError
+        If a cell has no section or two, or an element does not fit its cell.
+    """
+    mesh = model.mesh
+    owner = np.full(mesh.n_cells, -1, np.int64)
+    labels = mesh.cell_labels
+    planar = np.concatenate(
+        [np.zeros(0, bool)]
+        + [np.full(len(c), not c.kind.startswith(("line", "point"))) for c in mesh.cells]
+    )
+    for s, section in enumerate(model.sections):
+        cells = section.cells
+        if isinstance(cells, str):
+            if cells == "all" and "all" not in mesh.cell_sets:
+                cells = np.flatnonzero(planar)
+            elif cells in mesh.cell_sets:
+                cells = mesh.cell_sets[cells]
+            else:
+                names = ", ".join(mesh.cell_sets) or "none"
+                raise ModelError(
+                    f"no element set named {cells!r}; there are: {names}", section.where
+                )
+        taken = cells[(owner[cells] >= 0) & (owner[cells] != s)]
+        if len(taken):
+            raise ModelError(
+                f"element {labels[taken[0]]} already has a section; give each element one",
+                section.where,
+            )
+        owner[cells] = s
+    bare = np.flatnonzero(planar & (owner < 0))
+    if len(bare):
+        raise ModelError(
+            f"{len(bare)} elements have no section, the first is {labels[bare[0]]}: "
+            "add a section (*SOLID SECTION) for them"
+        )
+    blocks = []
+    for offset, cells_of_kind in zip(mesh.offsets, mesh.cells, strict=False):
+        owners = owner[offset : offset + len(cells_of_kind)]
+        for s in np.unique(owners[owners >= 0]):
+            section = model.sections[s]
+            element = elements.find(section.element)
+            rows = np.flatnonzero(owners == s)
+            if element.cell != cells_of_kind.kind:
+                raise ModelError(
+                    f"{element.name} needs {element.cell} cells; element "
+                    f"{labels[offset + rows[0]]} is a {cells_of_kind.kind}",
+                    section.where,
+                )
+            blocks.append(BlockOfCells(section, rows + offset, cells_of_kind.nodes[rows]))
+    if not blocks:
+        raise ModelError("the model has no elements; add cells and a section for them")
+    return blocks
+
+
+def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:
+    """Refuse lines without length and laws that line elements do not take."""
+    labels, section = model.mesh.cell_labels, block.section
+    if section.material.law != "elastic":
+        raise ModelError(
+            f"element {labels[block.cells[0]]}: {section.element} takes isotropic elastic "
+            f"material, not {section.material.law!r}",
+            section.where,
+        )
+    ends = model.mesh.points[block.nodes]
+    short = np.flatnonzero(np.ptp(ends, axis=1).max(axis=1) == 0.0)
+    if turns and len(short):
+        raise ModelError(
+            f"element {labels[block.cells[short[0]]]} has no length; give its nodes different "
+            "places, or join fixed directions (dofs) of them",
+            section.where,
+        )
+
+
+def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
+    """Refuse elements of zero, negative or folded area, by their labels."""
+    points, labels = model.mesh.points, model.mesh.cell_labels
+    for block in blocks:
+        facts = elements.find(block.section.element)
+        if facts.line:
+            _check_line(model, block, facts.turns)
+            continue
+        corners = points[block.nodes[:, : 3 if "tri" in _cell(block) else 4]]
+        before, after = np.roll(corners, 1, axis=1), np.roll(corners, -1, axis=1)
+        one, two = after - corners, before - corners
+        turn = one[..., 0] * two[..., 1] - one[..., 1] * two[..., 0]
+        size = np.ptp(corners, axis=1).max(axis=1) ** 2
+        bad = np.flatnonzero((turn <= 1e-12 * size[:, None]).any(axis=1))
+        if len(bad):
+            raise ModelError(
+                f"element {labels[block.cells[bad[0]]]} is folded, has no area or goes "
+                f"clockwise ({len(bad)} such elements); its corners must go "
+                "counter-clockwise with every angle below 180 degrees",
+                block.section.where,
+            )
+
+
+def _cell(block: BlockOfCells) -> str:
+    return elements.find(block.section.element).cell

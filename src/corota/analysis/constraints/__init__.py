@@ -1,0 +1,3 @@
+"""Linear and nonlinear constraints, eliminated from the equations."""
+
+# SPDX-License-Identifier: BSD-3-Clause

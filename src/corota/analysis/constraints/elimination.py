@@ -1,0 +1,346 @@
+"""Constraints by elimination: dependent dofs as functions of the others.
+
+With the state ``u = g(v)`` of the independent dofs v, G = dg/dv and Q the turn from the nodes'
+own axes to the global ones, equilibrium is ``G^T r = 0`` and Newton's matrix is
+``(Q G)^T K (Q G) + sum_s r_s d2 g_s / dv dv``. Only entries in rows and columns of constrained
+dofs change, so a map of places is made once and numbers are put through it.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.constraints.pattern import Places, Rows
+from corota.analysis.constraints.setup import Builder, extra_dofs
+from corota.errors import ModelError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.constraints.relations import Relation
+    from corota.errors import Location
+    from corota.model.model import Model
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+def local_axes(model: Model) -> dict[int, Floats]:
+    """Axes (columns) of the nodes that have their own, the last given counts."""
+    axes: dict[int, Floats] = {}
+    for item in model.axes:
+        nodes = (
+            model.mesh.nodes_of(item.nodes)
+            if isinstance(item.nodes, str)
+            else np.asarray(item.nodes, np.int64)
+        )
+        for node in nodes.tolist():
+            angle = item.angle
+            if item.centre is not None:
+                arm = model.mesh.points[node] - np.asarray(item.centre)
+                if not np.any(arm):
+                    label = model.mesh.node_labels[node]
+                    raise ModelError(
+                        f"node {label} lies on the centre of its axes: it has no radial "
+                        "direction; leave it out",
+                        item.where,
+                    )
+                angle += float(np.arctan2(arm[1], arm[0]))
+            c, s = np.cos(angle), np.sin(angle)
+            axes[node] = np.array([[c, -s], [s, c]])
+    return axes
+
+
+@dataclass
+class Link:
+    """The constraints linearised at a state.
+
+    Parameters
+    ----------
+    ties : Ties
+    u : ndarray, shape (n_dofs,)
+    g : sparse array, shape (n_dependent, n_dofs)
+        Dependent dofs by independent ones.
+    direct : sparse array, shape (n_dependent, n_dofs)
+        Dependent dofs by their masters, before substitution.
+    curvature : float
+        Weight of the second derivatives in the reduced matrix: 0 where it is no tangent.
+    """
+
+    ties: Ties
+    u: Floats
+    g: Any
+    direct: Any
+    curvature: float = 1.0
+
+    def gather(self, force: Floats) -> Floats:
+        """``G^T`` of forces, in all dofs; zero at dependent ones. Shape as `force`."""
+        out: Floats = force.copy()
+        out[self.ties.gone] = 0.0
+        out += self.g.T @ force[self.ties.dependent]
+        return out
+
+    def gather_sizes(self, size: Floats) -> Floats:
+        """``|G|^T`` of sizes of forces, zero at dependent dofs."""
+        out: Floats = size.copy()
+        out[self.ties.gone] = 0.0
+        out += abs(self.g).T @ size[self.ties.dependent]
+        return out
+
+    def move(self, dv: Floats) -> Floats:
+        """``G`` of changes of the independent dofs, given in all dofs."""
+        out: Floats = dv.copy()
+        out[self.ties.gone] = 0.0
+        out[self.ties.dependent] = self.g @ out
+        return out
+
+    def bend(self, residual: Floats) -> Floats:
+        """Entries of ``sum_s r_s d2 g_s`` where the relations bend, in the map's order."""
+        ties = self.ties
+        force = self.curvature * residual[ties.dependent]
+        own = force
+        for _ in range(ties.depth):
+            own = force + self.direct[:, ties.dependent].T @ own
+        total = np.zeros(ties.n)
+        total[ties.dependent] = own
+        parts = [
+            r.bend(self.u, total[r.dependent])[np.triu_indices(len(r.masters))]
+            for r in ties.bending
+        ]
+        return np.concatenate(parts) if parts else np.zeros(0)
+
+    def reduce(self, values: Floats, residual: Floats) -> Floats:
+        """Values of the reduced matrix, upper triangle."""
+        ties = self.ties
+        return ties.places.reduce(values, ties.rows_of(self.g), self.g, self.bend(residual))
+
+    def reduce_full(self, matrix: Any, residual: Floats) -> Any:
+        """The reduced matrix of an unsymmetric one, scipy CSC."""
+        return self.ties.places.reduce_full(
+            matrix, self.ties.rows_of(self.g), self.g, self.bend(residual)
+        )
+
+
+class Ties:
+    """All constraints and local axes of a model.
+
+    Parameters
+    ----------
+    model : Model
+    start : ndarray of int, shape (n_nodes + 1,)
+    carried : ndarray of int, shape (n_nodes,)
+        Dofs of each node that elements carry.
+    indptr, indices : ndarray
+        Pattern of the full matrix, upper triangle by columns.
+
+    Attributes
+    ----------
+    dependent : ndarray of int
+        Dependent dofs, sorted.
+    gone : ndarray of int
+        Dofs without an equation: dependent, or with no stiffness and no constraint.
+    free : ndarray of int
+        The others: the unknowns.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        start: Ints,
+        carried: Ints,
+        indptr: NDArray[Any],
+        indices: NDArray[Any],
+    ) -> None:
+        self.n = int(start[-1])
+        self.start = start
+        self.axes = local_axes(model)
+        self.builder = Builder(model, start, self.axes)
+        self.relations = self.builder.build()
+        self.owner: dict[int, Relation] = {}
+        for relation in self.relations:
+            self.owner.update(dict.fromkeys(relation.dependent.tolist(), relation))
+        self.dependent = np.array(sorted(self.owner), np.int64)
+        self.place = np.full(self.n, -1, np.int64)
+        self.place[self.dependent] = np.arange(len(self.dependent))
+        used = np.zeros(self.n, bool)
+        used[self.dependent] = True
+        for relation in self.relations:
+            used[relation.masters] = True
+        node = np.repeat(np.arange(len(start) - 1), np.diff(start))
+        used |= np.arange(self.n) - start[node] < carried[node]
+        self.inert = ~used
+        gone = self.inert.copy()
+        gone[self.dependent] = True
+        self.gone = np.flatnonzero(gone)
+        self.free = np.flatnonzero(~gone)
+        self.bending = [r for r in self.relations if not r.linear]
+        self.depth = self._depth()
+        self._turns()
+        pattern = self._substituted(lambda r: np.ones((len(r.dependent), len(r.masters))))[0]
+        pairs = [
+            (r.masters[i], r.masters[j])
+            for r in self.bending
+            for i, j in [np.triu_indices(len(r.masters))]
+        ]
+        self.places = Places(
+            self.n, self.free, indptr, indices,
+            self.rows_of(pattern), Rows(self.dependent, pattern), pairs,
+        )  # fmt: skip
+
+    def _depth(self) -> int:
+        """Longest chain of relations that depend on each other."""
+        level: dict[int, int] = {}
+        for r in self.relations:
+            owners = {id(self.owner[m]) for m in r.masters.tolist() if m in self.owner}
+            level[id(r)] = 1 + max((level[o] for o in owners), default=-1)
+        return max(level.values(), default=0)
+
+    def _turns(self) -> None:
+        """The turn from the axes of nodes to the global ones."""
+        import scipy.sparse as sp
+
+        nodes = np.array([n for n in sorted(self.axes) if self.start[n + 1] > self.start[n]], int)
+        self.turned = np.concatenate([self.start[nodes], self.start[nodes] + 1]).astype(np.int64)
+        r = np.array([self.axes[int(n)] for n in nodes]).reshape(-1, 2, 2)
+        self._q = r
+        self._first = self.start[nodes]
+        special = np.union1d(self.dependent, self.turned)
+        where = {int(d): k for k, d in enumerate(special)}
+        rows, columns, values = [], [], []
+        turned = set(self.turned.tolist())
+        for k, dof in enumerate(special.tolist()):
+            if dof not in turned:
+                rows.append(k)
+                columns.append(k)
+                values.append(1.0)
+        for block, dof in zip(r, self._first.tolist(), strict=True):
+            for i in range(2):
+                for j in range(2):
+                    rows.append(where[dof + i])
+                    columns.append(where[dof + j])
+                    values.append(block[i, j])
+        m = len(special)
+        self.special = special
+        self._turn = sp.csr_array((values, (rows, columns)), shape=(m, m))
+
+    # -- axes --------------------------------------------------------------------------
+
+    def to_global(self, u: Floats) -> Floats:
+        """A vector along the nodes' axes in global axes, shape (n_dofs,)."""
+        return self._turned(u, "nij,nj->ni")
+
+    def to_axes(self, u: Floats) -> Floats:
+        """Inverse of :meth:`to_global`."""
+        return self._turned(u, "nji,nj->ni")
+
+    def _turned(self, u: Floats, rule: str) -> Floats:
+        if not len(self._first):
+            return u
+        out: Floats = u.copy()
+        pair = np.stack([u[self._first], u[self._first + 1]], axis=1)
+        pair = np.einsum(rule, self._q, pair)
+        out[self._first], out[self._first + 1] = pair[:, 0], pair[:, 1]
+        return out
+
+    # -- state -------------------------------------------------------------------------
+
+    def set_turning(self, turning: bool) -> None:
+        """Let rotations be finite, or infinitesimal."""
+        for relation in self.relations:
+            relation.turning = turning
+
+    def complete(self, u: Floats) -> None:
+        """Set the dependent dofs of `u` to what the others make them, in place."""
+        for relation in self.relations:
+            u[relation.dependent] = relation.values(u)
+
+    def complete_rates(self, u: Floats, v: Floats, a: Floats | None = None) -> None:
+        """Set velocities and accelerations of the dependent dofs at `u`, in place."""
+        v[self.inert] = 0.0
+        for relation in self.relations:
+            j = relation.jacobian(u)
+            v[relation.dependent] = j @ v[relation.masters]
+            if a is not None:
+                a[relation.dependent] = j @ a[relation.masters] + relation.curve(u, v)
+
+    def link(self, u: Floats) -> Link:
+        """Linearise at `u`."""
+        g, direct = self._substituted(lambda r: r.jacobian(u))
+        return Link(self, u, g, direct)
+
+    def secant(self, begin: Floats, end: Floats) -> Link:
+        """The exact discrete derivatives between two states, for the energy-momentum scheme."""
+        g, direct = self._substituted(lambda r: r.secant(begin, end))
+        # Forces at the middle: half of what a change at the end bends.
+        return Link(self, end, g, direct, 0.5)
+
+    def _substituted(self, jacobian: Any) -> tuple[Any, Any]:
+        import scipy.sparse as sp
+
+        rows, columns, values = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
+        for r in self.relations:
+            d, m = len(r.dependent), len(r.masters)
+            rows.append(np.repeat(self.place[r.dependent], m))
+            columns.append(np.tile(r.masters, d))
+            values.append(jacobian(r).ravel())
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        direct = sp.csr_array(entries, shape=(len(self.dependent), self.n))
+        g = direct
+        if self.depth:
+            keep = np.ones(self.n)
+            keep[self.dependent] = 0.0
+            outside = direct @ sp.diags_array(keep)
+            inside = direct[:, self.dependent]
+            g = outside
+            for _ in range(self.depth):
+                g = outside + inside @ g
+        return g.tocsr(), direct
+
+    def rows_of(self, g: Any) -> Rows:
+        """Rows of ``Q G`` that are not those of the identity."""
+        import scipy.sparse as sp
+
+        m = len(self.special)
+        chosen = self.place[self.special]
+        own = np.flatnonzero(chosen < 0)
+        identity = sp.csr_array((np.ones(len(own)), (own, self.special[own])), shape=(m, self.n))
+        put = np.flatnonzero(chosen >= 0)
+        spread = sp.csr_array(
+            (np.ones(len(put)), (put, chosen[put])), shape=(m, len(self.dependent))
+        )
+        return Rows(self.special, (self._turn @ (identity + spread @ g)).tocsr())
+
+    # -- questions ---------------------------------------------------------------------
+
+    def refuse_held(self, dofs: Ints, where: Location | None) -> None:
+        """Refuse supports at dependent dofs.
+
+        Raises
+        ------
+        ModelError
+            Naming the dof, the support and the constraint.
+        """
+        for dof in dofs[self.place[dofs] >= 0].tolist():
+            relation = self.owner[dof]
+            place = f" ({relation.where})" if relation.where is not None else ""
+            raise ModelError(
+                f"{self.builder.name(dof)} is held, but {relation.what}{place} determines it "
+                "already; hold the reference node or another term instead",
+                where,
+            )
+
+    def refuse_loaded(self, dofs: Ints, where: Location | None) -> None:
+        """Refuse forces at dofs that nothing carries."""
+        for dof in dofs[self.inert[dofs]].tolist():
+            raise ModelError(
+                f"{self.builder.name(dof)} belongs to no element and to no constraint and "
+                "cannot carry a force",
+                where,
+            )
+
+
+__all__ = ["Link", "Ties", "extra_dofs", "local_axes"]

@@ -1,0 +1,130 @@
+"""Nodes on the straight line through two others, as a relation between degrees of freedom."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from corota.analysis.constraints.relations import Relation
+from corota.analysis.newton import ElementFailure
+
+Floats = NDArray[np.float64]
+
+#: The axis of the dependent displacement may come this close to the line (sine of the angle).
+CLOSEST = 1e-3
+#: ``S v`` turns v by a right angle; ``e . S t = t . M e`` with M its transpose.
+S = np.array([[0.0, -1.0], [1.0, 0.0]])
+M = S.T
+
+
+@dataclass
+class OnLine(Relation):
+    """One node on the line through two others: ``(p - a) . S (b - a) = 0``.
+
+    With p = X + e u_e + d u_d, in the axes e and d of the node, that is ``N + D u_d = 0``, where
+    ``N = w . S t``, ``D = d . S t``, ``w = X + e u_e - a``, ``t = b - a``: a quotient of a
+    quadratic and a linear form of the masters u_e, a and b.
+
+    Parameters
+    ----------
+    points : ndarray, shape (3, 2)
+        Reference positions of the node and of the ends [length].
+    free, bound : ndarray, shape (2,)
+        Axes of the node's master displacement and of its dependent one.
+    axes : ndarray, shape (2, 2, 2)
+        Columns: axes of the two ends.
+    turning : bool
+        Whether the line moves with its ends; else it is linearised about the reference.
+    """
+
+    points: Floats
+    free: Floats
+    bound: Floats
+    axes: Floats
+    turning: bool = True
+
+    linear = False
+
+    def _places(self, u: Floats) -> tuple[Floats, Floats]:
+        """Node without its dependent displacement from the first end, and the line."""
+        q = u[self.masters]
+        node, first, last = self.points
+        a, b = first + self.axes[0] @ q[1:3], last + self.axes[1] @ q[3:5]
+        w: Floats = node + q[0] * self.free - a
+        t: Floats = b - a
+        return w, t
+
+    def _forms(self, w: Floats, t: Floats) -> tuple[Floats, Floats, float]:
+        """Gradients of N and D by the masters, and D."""
+        across = S @ t
+        d_w, d_d = M @ w, M @ self.bound
+        n = np.concatenate(
+            [[self.free @ across], self.axes[0].T @ (-across - d_w), self.axes[1].T @ d_w]
+        )
+        d = np.concatenate([[0.0], self.axes[0].T @ -d_d, self.axes[1].T @ d_d])
+        size = float(self.bound @ across)
+        if not abs(size) > CLOSEST * float(np.hypot(*t)):
+            raise ElementFailure(
+                f"{self.what} has turned so far that the displacement it determines is along it"
+            )
+        return n, d, size
+
+    def _start(self) -> tuple[Floats, Floats]:
+        node, first, last = self.points
+        return node - first, last - first
+
+    def values(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not self.turning:
+            return self.jacobian(u) @ u[self.masters]
+        w, t = self._places(u)
+        _, _, size = self._forms(w, t)
+        return np.array([-(w @ (S @ t)) / size])
+
+    def jacobian(self, u: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not self.turning:
+            n, _, size = self._forms(*self._start())
+            return -n[None, :] / size
+        w, t = self._places(u)
+        n, d, size = self._forms(w, t)
+        ratio = float(w @ (S @ t)) / size
+        out: Floats = -(n - ratio * d)[None, :] / size
+        return out
+
+    def _hessian(self, u: Floats) -> Floats:
+        """Second derivative of the dependent by the masters, shape (5, 5)."""
+        w, t = self._places(u)
+        _, d, size = self._forms(w, t)
+        slope = -self.jacobian(u)[0]
+        second = np.zeros((5, 5))
+        second[0, 1:3] = -self.axes[0].T @ (M @ self.free)
+        second[0, 3:5] = self.axes[1].T @ (M @ self.free)
+        second[1:3, 3:5] = self.axes[0].T @ M @ self.axes[1]
+        second += second.T
+        out: Floats = -(second - np.outer(slope, d) - np.outer(d, slope)) / size
+        return out
+
+    def bend(self, u: Floats, force: Floats) -> Floats:
+        """See :class:`Relation`."""
+        return force[0] * self._hessian(u) if self.turning else np.zeros((5, 5))
+
+    def curve(self, u: Floats, v: Floats) -> Floats:
+        """See :class:`Relation`."""
+        if not self.turning:
+            return np.zeros(1)
+        rate = v[self.masters]
+        return np.array([rate @ self._hessian(u) @ rate])
+
+    def secant(self, begin: Floats, end: Floats) -> Floats:
+        """See :class:`Relation`; N is quadratic and D linear, so that mid-points are exact."""
+        if not self.turning:
+            return self.jacobian(end)
+        before, after = self._places(begin), self._places(end)
+        n, d, size = self._forms(0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]))
+        ratio = -0.5 * float(self.values(begin)[0] + self.values(end)[0])
+        out: Floats = -(n - ratio * d)[None, :] / size
+        return out

@@ -1,0 +1,598 @@
+"""A model numbered for analysis: what the drivers see.
+
+A system gives the residual and the tangent at a displacement and a time; it knows dofs,
+elements, loads and supports, and nothing of increments or iterations.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota import _core
+from corota.analysis.blocks import blocks_of, check_shapes
+from corota.analysis.constraints.elimination import Link, Ties, extra_dofs
+from corota.analysis.constraints.setup import carry_curves
+from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
+from corota.analysis.memory import require_model
+from corota.analysis.newton import ElementFailure, Judgement, larger
+from corota.analysis.terms.conditions import Conditions
+from corota.analysis.terms.thermal import FreeStrains
+from corota.analysis.terms.user_material import UserBlocks
+from corota.analysis.timer import Timer
+from corota.errors import ModelError, SingularError
+from corota.model import elements
+from corota.results.results import PointFields
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.terms.contact.contact import Touching
+    from corota.model.model import Model
+    from corota.model.steps import Step
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Forces below this many rounding errors of the coordinates are none.
+NOTHING = 1e3
+#: Rounding counts as such up to this share of the forces (and moments over the length), and up to
+#: forces of none this many times over, for bodies that have moved far.
+LARGEST_NOISE, FARTHEST = 1e-5, 1e3
+EPS = float(np.finfo(float).eps)
+#: Tangents whose memory is kept for the next ones.
+SPARE = 2
+#: Values of a tangent that was given back.
+NOWHERE = np.empty(0)
+#: Names of the dofs in messages.
+DOF_NAMES = ("x", "y", "rotation")
+
+
+@dataclass
+class Evaluation:
+    """Residual and tangent at a state.
+
+    Parameters
+    ----------
+    internal, external : ndarray, shape (n_dofs,)
+        Force and moment.
+    scale : ndarray, shape (n_dofs,)
+        Sum of absolute element forces.
+    values : ndarray, shape (nnz,)
+        Tangent of the internal force, upper triangle, columns.
+    load_stiffness : tuple of ndarray or None
+        Triplets (row, column, value) of the derivative of the external force.
+    link : Link or None
+        The constraints linearised at the state.
+    """
+
+    internal: Floats
+    external: Floats
+    scale: Floats
+    values: Floats
+    load_stiffness: tuple[Ints, Ints, Floats] | None = None
+    link: Link | None = None
+
+    @property
+    def residual(self) -> Floats:
+        """Internal minus external force, shape (n_dofs,)."""
+        return self.internal - self.external
+
+
+class System:
+    """The discrete system of a model.
+
+    Parameters
+    ----------
+    model : Model
+    solver : LinearSolver
+    threads : int
+
+    Attributes
+    ----------
+    n_dofs : int
+    start : ndarray of int, shape (n_nodes + 1,)
+        First dof of each node and the total.
+    is_rotation : ndarray of bool, shape (n_dofs,)
+    """
+
+    def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
+        self.model = model
+        self.blocks = blocks_of(model)
+        self.solver = solver
+        mesh = model.mesh
+        inputs = [
+            {
+                "element": b.section.element,
+                "law": b.section.material.law,
+                "parameters": b.section.material.parameters(b.section.orientation),
+                "plane": b.section.plane,
+                "local_strain": b.section.local_strain,
+                "thickness": float(b.section.thickness),
+                "profile": [float(v) for v in b.section.profile],
+                "table": [[float(v) for v in pair] for pair in b.section.table],
+                "rho": float(b.section.material.rho),
+                "mean_dilatation": b.section.mean_dilatation,
+                "beta0": b.section.beta0,
+                "nodes": np.ascontiguousarray(b.nodes, dtype=np.uint32).ravel(),
+            }
+            for b in self.blocks
+        ]
+        check_shapes(model, self.blocks)
+        require_model(self.blocks, mesh.n_nodes)
+        carried = np.zeros(mesh.n_nodes, np.int64)
+        for b in self.blocks:
+            own = elements.find(b.section.element).dofs_per_node
+            np.maximum.at(carried, b.nodes.ravel(), own)
+        extra = extra_dofs(model, carried > 0)
+        if model.contacts:
+            extra = carry_curves(model, carried, extra)
+        try:
+            self.core = _core.Problem(mesh.points, inputs, extra)
+        except ValueError as error:
+            raise ModelError(str(error)) from None
+        self.core.set_threads(threads)
+        self.user = UserBlocks(self.core, self.blocks)
+        self.free = FreeStrains(self.core, model, self.blocks)
+        self.n_dofs: int = self.core.n_dofs
+        self.start = self.core.dof_start.astype(np.int64)
+        self.per_node = np.diff(self.start)
+        self.node_of_dof = self.core.node_of_dof.astype(np.int64)
+        self.component = np.arange(self.n_dofs) - self.start[self.node_of_dof]
+        self.is_rotation = self.component == 2
+        self.indptr, self.indices = self.core.indptr, self.core.indices
+        self.turning = True
+        self.ties: Ties | None = None
+        if model.constraints or model.axes:
+            self.ties = Ties(model, self.start, carried, self.indptr, self.indices)
+        self._link: Link | None = None
+        self.conditions = Conditions(self)
+        self.touching: Touching | None = None
+        self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
+        self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
+        self._timers: defaultdict[str, Timer] = defaultdict(Timer)
+        self._analyzed = False
+        self._last: LinearSolver | MaskedLu = solver
+        self._stiffest = 0.0
+        #: Largest force and moment of the state judged last, and of the committed one.
+        self._sizes = self._committed_sizes = [0.0, 0.0]
+        self._lu = MaskedLu()
+        self._spare: list[Floats] = []
+        if model.contacts or model.ties:
+            from corota.analysis.terms.contact.contact import Touching
+
+            self.touching = Touching(self)
+
+    # -- numbering ---------------------------------------------------------------------
+
+    def dofs(self, nodes: Ints, dof: int) -> Ints:
+        """Dof numbers of nodes, -1 where a node has no such dof."""
+        nodes = np.asarray(nodes, np.int64)
+        return np.where(self.per_node[nodes] > dof, self.start[nodes] + dof, -1)
+
+    def by_node(self, vector: Floats) -> Floats:
+        """Values by node and global component, shape (n_nodes, 3), 0 where there is no dof."""
+        out: Floats = self.core.by_node(np.ascontiguousarray(self.in_space(vector)))
+        return out
+
+    def in_space(self, vector: Floats) -> Floats:
+        """A vector along the axes of its nodes in global axes, shape (n_dofs,)."""
+        return vector if self.ties is None else self.ties.to_global(vector)
+
+    def at_nodes(self, vector: Floats) -> Floats:
+        """A vector in global axes along the axes of its nodes, shape (n_dofs,)."""
+        return vector if self.ties is None else self.ties.to_axes(vector)
+
+    def from_nodes(self, values: Floats) -> Floats:
+        """Inverse of `by_node`."""
+        out: Floats = values.reshape(-1, 3)[self.node_of_dof, self.component]
+        return self.at_nodes(out)
+
+    def describe(self, dof: int) -> str:
+        """Name a dof by the user's node label."""
+        node = self.node_of_dof[dof]
+        return f"node {self.model.mesh.node_labels[node]} {DOF_NAMES[self.component[dof]]}"
+
+    # -- evaluation --------------------------------------------------------------------
+
+    def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
+        """Make a step's loads and supports the current ones."""
+        self.turning = step.nlgeom
+        if self.ties is not None:
+            self.ties.set_turning(step.nlgeom)
+            self.ties.complete(u)
+        self.conditions.begin(step, time, u, reaction)
+        if self.touching is not None:
+            self.touching.begin(step)
+
+    def room(self) -> Floats:
+        """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
+        return self._spare.pop() if self._spare else np.empty(len(self.indices))
+
+    def release(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back that nobody looks at any more."""
+        if len(self._spare) < SPARE:
+            self._spare.append(at.values)
+        at.values = NOWHERE
+
+    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
+        """Residual and tangent at a trial state; dependent dofs of `u` are set, in place.
+
+        Raises
+        ------
+        ElementFailure
+            If an element turned inside out or its material did not converge.
+        """
+        internal, scale, values = np.empty(self.n_dofs), np.empty(self.n_dofs), self.room()
+        if self.ties is not None:
+            self.ties.complete(u)
+        self.heat(step_time)
+        try:
+            with self.timed("assemble"):
+                here = self.in_space(u)
+                if self.user.blocks:
+                    self.user.assemble(
+                        here,
+                        self.turning,
+                        lambda: self.core.assemble(here, self.turning, internal, scale, values),
+                    )
+                else:
+                    self.core.assemble(here, self.turning, internal, scale, values)
+        except RuntimeError as error:
+            raise failure(self._labels(error.args[1])) from None
+        external, stiffness = self.conditions.external(step_time, u)
+        link = None if self.ties is None else self.ties.link(u)
+        return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
+
+    def reaction(self, at: Evaluation) -> Floats:
+        """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
+        return at.residual if at.link is None else at.link.gather(at.residual)
+
+    def product(self, values: Floats, x: Floats) -> Floats:
+        """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
+        return self.at_nodes(self.core.multiply(values, self.in_space(x)))
+
+    def heat(self, step_time: float) -> None:
+        """Give the elements the thermal strain of a time of the step."""
+        if self.free.expands:
+            self.free.apply(self.conditions.temperatures(step_time))
+
+    def thermal_rate(self, u: Floats, heating: Floats) -> Floats:
+        """Change of the internal force at `u` while the nodes heat up, shape (n_dofs,).
+
+        A central difference about the temperatures that the elements have; exact for constant
+        coefficients of expansion and a linear law.
+        """
+        now, here = self.free.now, self.in_space(u)
+        forces = []
+        for share in (0.5, -0.5):
+            force, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
+            self.free.apply(now + share * heating)
+            self.core.assemble(here, self.turning, force, scale, np.empty(0))
+            forces.append(force)
+        self.free.apply(now)
+        return self.at_nodes(forces[0] - forces[1])
+
+    def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
+        """Change of forces and of held dofs per unit of load factor, shapes (n_dofs,)."""
+        return self.conditions.rate(u)
+
+    @property
+    def counted(self) -> NDArray[np.bool_]:
+        """Dofs that measure the length of a path: displacements, not rotations."""
+        counted: NDArray[np.bool_] = ~self.is_rotation
+        return counted
+
+    def timed(self, phase: str) -> Timer:
+        """Add the time of a block to the profile."""
+        return self._timers[phase]
+
+    @property
+    def profile(self) -> dict[str, float]:
+        """Seconds by phase."""
+        return {phase: timer.seconds for phase, timer in self._timers.items()}
+
+    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+        """Size of the residual against its scale, forces and moments apart.
+
+        The scale is the largest of external forces and sums of absolute element forces, here
+        and in the committed state: a body that is unloaded altogether has no forces of its own
+        to compare with. A moment is also small against the forces times a millionth of the
+        model's size, and a force against the moments so, since either may vanish altogether.
+        """
+        scale, internal, external = at.scale, at.internal, at.external
+        if at.link is not None:
+            internal = self.reaction(at)
+            scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
+        size, residual, worst, displacement = self.core.sizes(
+            internal, scale, external, u, self.conditions.held, at.link is None
+        )
+        self._sizes = size
+        force = larger(size[0], self._committed_sizes[0])
+        moment = larger(size[1], self._committed_sizes[1])
+        moment, force = (
+            max(moment, 1e-6 * force * self.length),
+            max(force, 1e-6 * moment / self.length),
+        )
+        if not self._stiffest:
+            self._stiffest = float(np.abs(at.values[self.indptr[1:] - 1]).max(initial=0.0))
+        # Forces that rounding of the coordinates alone would give, where nothing is loaded; a
+        # load as small as that still bends what is slender enough.
+        if max(force, moment / self.length) <= self.nothing and not at.external.any():
+            return Judgement(0.0, 0.0, 0.0, 0)
+        relative = (residual[0] / force, residual[1] / moment)
+        # Rotations round like the displacements they give an element.
+        moved = max(displacement[0], self.cell_size * displacement[1])
+        noise = EPS * self._stiffest * moved
+        # Displacements that run away, as of a mechanism, round so badly that any residual passed.
+        whole = max(force, moment / self.length)
+        noise = min(noise, max(LARGEST_NOISE * whole, FARTHEST * self.nothing))
+        return Judgement(
+            *relative,
+            noise / force,
+            worst[0] if relative[0] >= relative[1] else worst[1],
+            noise * self.cell_size / moment,
+        )
+
+    @property
+    def nothing(self) -> float:
+        """Force that rounding of the coordinates alone would give."""
+        return NOTHING * EPS * self._stiffest * self.length
+
+    @property
+    def force_scale(self) -> float:
+        """Largest force of the state judged last or of the committed one."""
+        return max(self._sizes[0], self._committed_sizes[0])
+
+    def plastic_increment(self) -> float:
+        """Largest growth of the equivalent plastic strain since the last commit."""
+        return max(float(self.core.plastic_increment()), self.user.plastic_increment())
+
+    def commit(self) -> None:
+        """Accept the last evaluated state."""
+        self.core.commit()
+        self.user.commit()
+        self._committed_sizes = self._sizes
+
+    def _labels(self, failed: list[tuple[int, int]]) -> list[int]:
+        labels = self.model.mesh.cell_labels
+        return [int(labels[self.blocks[b].cells[e]]) for b, e in failed]
+
+    # -- linear algebra ----------------------------------------------------------------
+
+    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+        """Newton correction: free dofs solve the linearised equilibrium, held ones move.
+
+        Parameters
+        ----------
+        at : Evaluation
+            Overwritten: the tangent's held rows become diagonal.
+        du_held : ndarray, shape (n_dofs,)
+            Prescribed increments at held dofs, 0 elsewhere. They act through the tangent.
+
+        Returns
+        -------
+        du : ndarray, shape (n_dofs,)
+        negative : int
+            Negative pivots: unstable directions of the free system; -1 if not symmetric.
+
+        Raises
+        ------
+        SingularError
+            Naming the node and dof that nothing holds.
+        """
+        return self._correct(at, at.external - at.internal, du_held)
+
+    def again(self, at: Evaluation) -> Floats:
+        """Newton correction with the last factorisation; held dofs stay."""
+        return self.solve_again(-at.residual)
+
+    def correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
+        """Factorise the tangent at a state and solve for one or several right-hand sides.
+
+        Parameters
+        ----------
+        at : Evaluation
+            Overwritten: the tangent's held rows become diagonal.
+        rhs : ndarray, shape (n_dofs,) or (n_dofs, k)
+            Forces; those at held dofs do not matter.
+        du_held : ndarray, of the same shape
+            Prescribed increments at held dofs, 0 elsewhere. They act through the tangent.
+
+        Returns
+        -------
+        du : ndarray, of the shape of `rhs`
+        negative : int
+            Negative pivots; -1 if not symmetric.
+
+        Raises
+        ------
+        SingularError
+            Naming the node and dof that nothing holds.
+        """
+        return self._correct(at, np.array(rhs, order="F"), np.asfortranarray(du_held))
+
+    def _correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
+        """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
+        held = self.conditions.held
+        unsymmetric = None
+        if at.load_stiffness is not None:
+            _, unsymmetric = self._add_load_stiffness(at)
+        if at.link is not None:
+            return self._correct_tied(at, at.link, rhs, du_held, unsymmetric)
+        if unsymmetric is not None:
+            du = self._solve_unsymmetric(unsymmetric, rhs, du_held, held, self.node_of_dof)
+            return du, -1
+        self.core.reduce(at.values, rhs, du_held, held)
+        if not self._analyzed:
+            with self.timed("order"):
+                self.solver.analyze(self.indptr, self.indices, self.node_of_dof)
+            self._analyzed = True
+        try:
+            with self.timed("factor"):
+                inertia = self.solver.factorize(at.values)
+            self._last = self.solver
+            with self.timed("solve"):
+                du = self.solver.solve(rhs)
+        except SingularError as error:
+            raise self.singular(error) from None
+        fixed = self.conditions.fixed
+        du[fixed] = du_held[fixed]
+        return du, (inertia[1] if inertia is not None else -1)
+
+    def solve_again(self, rhs: Floats) -> Floats:
+        """Solve with the last factorisation, held dofs at rest; shape as in `correct`."""
+        held = self.conditions.held
+        if self._link is not None and self.ties is not None:
+            free = self.ties.free
+            rhs = self._link.gather(rhs)[free]
+            held = held[free]
+        else:
+            rhs = rhs.copy(order="K")
+        rhs[held] = 0.0
+        with self.timed("solve"):
+            x = self._last.solve(rhs)
+        x[held] = 0.0
+        return x if self._link is None else self.expand(self._link, x)
+
+    def expand(self, link: Link, x: Floats) -> Floats:
+        """Changes of all dofs from those of the unknowns that constraints leave."""
+        out = np.zeros((self.n_dofs, *x.shape[1:]), order="F")
+        out[link.ties.free] = x
+        return link.move(out)
+
+    def _correct_tied(
+        self, at: Evaluation, link: Link, rhs: Floats, du_held: Floats, unsymmetric: Any
+    ) -> tuple[Floats, int]:
+        """Solve for the unknowns that constraints leave; see :meth:`correct`."""
+        ties, places, self._link = link.ties, link.ties.places, link
+        free = ties.free
+        held = self.conditions.held[free]
+        force, moved = np.asfortranarray(link.gather(rhs)[free]), du_held[free]
+        node = self.node_of_dof[free]
+        if unsymmetric is not None:
+            matrix = link.reduce_full(unsymmetric, at.residual)
+            x = self._solve_unsymmetric(matrix, force, moved, held, node)
+            return self.expand(link, x), -1
+        with self.timed("constraints"):
+            values = link.reduce(at.values, at.residual)
+            for column, move in zip(_columns(force), _columns(moved), strict=True):
+                if np.any(move):
+                    column -= places.multiply(values, move)
+            places.mask(values, held)
+        force[held] = 0.0
+        if not self._analyzed:
+            with self.timed("order"):
+                self.solver.analyze(places.indptr, places.indices, node)
+            self._analyzed = True
+        try:
+            with self.timed("factor"):
+                inertia = self.solver.factorize(values)
+            self._last = self.solver
+            with self.timed("solve"):
+                x = self.solver.solve(force)
+        except SingularError as error:
+            raise self.singular(error) from None
+        x[held] = moved[held]
+        return self.expand(link, x), (inertia[1] if inertia is not None else -1)
+
+    def singular(self, error: SingularError) -> SingularError:
+        """The same error in terms of nodes."""
+        equation, mode = error.equation, error.mode
+        if self.ties is not None and 0 <= equation < len(self.ties.free):
+            equation = int(self.ties.free[equation])
+            if mode is not None and self._link is not None:
+                mode = self.expand(self._link, np.asarray(mode))
+        if not 0 <= equation < self.n_dofs:
+            return SingularError(str(error), equation, mode)
+        where = self.describe(equation)
+        return SingularError(
+            f"the structure can move freely: {where} is held by nothing; add a support, or "
+            "remove the mechanism that contains it",
+            equation,
+            mode,
+        )
+
+    def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Any]:
+        import scipy.sparse as sp
+
+        assert at.load_stiffness is not None
+        rows, columns, values = at.load_stiffness
+        n = self.n_dofs
+        extra = sp.coo_array((-values, (rows, columns)), shape=(n, n)).tocsr()
+        held = self.conditions.held
+        inside = (~held).astype(float)
+        skew = (extra - extra.T).multiply(inside[:, None]).multiply(inside[None, :])
+        size = abs(extra).max() if extra.nnz else 0.0
+        if skew.nnz and abs(skew).max() > 1e-9 * size:
+            return False, self._full.build(at.values, rows, columns, -values)
+        upper_extra = sp.triu(0.5 * (extra + extra.T)).tocoo()
+        places, known = self._full.places(upper_extra.row, upper_extra.col)
+        if not known.all():
+            # Nodes that share no element: the pattern has no place for them.
+            return False, self._full.build(at.values, rows, columns, -values)
+        at.values[places] += upper_extra.data
+        return True, None
+
+    @cached_property
+    def _full(self) -> FullMatrix:
+        return FullMatrix(self.indptr, self.indices)
+
+    def _solve_unsymmetric(
+        self, matrix: Any, rhs: Floats, du_held: Floats, held: NDArray[np.bool_], node: Ints
+    ) -> Floats:
+        rhs = rhs - matrix @ du_held
+        rhs[held] = 0.0
+        self._last = self._lu
+        try:
+            with self.timed("factor"):
+                self._lu.factorize(matrix, held, node)
+            with self.timed("solve"):
+                du = self._lu.solve(rhs)
+        except SingularError as error:
+            raise self.singular(error) from None
+        du[held] = du_held[held]
+        return du
+
+    # -- output ------------------------------------------------------------------------
+
+    def recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
+        """Fields at the quadrature points, and sums over them."""
+        fields, energy, strain = [], 0.0, 0.0
+        raw = self.core.recover(self.in_space(u), self.turning)
+        for block, own in zip(self.blocks, raw, strict=True):
+            energy += own["total_energy"]
+            if self.turning and block.section.local_strain == "simplified":
+                strain = max(strain, own["largest_strain"])
+            fields.append(
+                PointFields(
+                    block.section.element,
+                    block.cells,
+                    own["points"],
+                    own["shape"],
+                    own["rotation"],
+                    own["volume"],
+                    own["values"],
+                )
+            )
+        return fields, {"strain energy": energy, "largest simplified strain": strain}
+
+
+def failure(labels: list[int]) -> ElementFailure:
+    """Name the elements that failed."""
+    shown = ", ".join(str(n) for n in labels[:5]) + (", ..." if len(labels) > 5 else "")
+    return ElementFailure(f"turned inside out or not converged: element {shown}")
+
+
+def _columns(x: Floats) -> list[Floats]:
+    """Views of the columns of a vector or matrix."""
+    return [x] if x.ndim == 1 else list(x.T)
+
+
+__all__ = ["DOF_NAMES", "Evaluation", "System", "blocks_of"]

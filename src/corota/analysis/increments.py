@@ -1,0 +1,83 @@
+"""How large the next increment is: growth after easy ones, cut-back after failures."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from corota.model.steps import Step
+
+#: An increment that took at most so many iterations was easy ...
+EASY = 5
+#: ... and after two easy ones in a row the next is longer by this factor.
+GROWTH = 1.5
+#: After a failed attempt the increment is cut to this share.
+CUT = 0.25
+#: Attempts at one increment before the step is given up.
+MAX_ATTEMPTS = 12
+#: Relative slack under which two times are the same.
+SAME = 1e-10
+
+
+@dataclass
+class Increments:
+    """Increment control of one step.
+
+    Parameters
+    ----------
+    step : Step
+    stops : sequence of float
+        Step times that must be hit exactly.
+    """
+
+    step: Step
+    stops: Sequence[float] = ()
+    time: float = 0.0
+    number: int = 0
+    attempt: int = 1
+    easy: int = field(default=0, repr=False)
+    size: float = field(default=0.0, repr=False)
+
+    def __post_init__(self) -> None:
+        self.size = self.step.first_increment
+        period = self.step.period
+        inner = sorted({s for s in self.stops if SAME * period < s < period * (1.0 - SAME)})
+        self.stops = [*inner, period]
+
+    @property
+    def finished(self) -> bool:
+        return self.time >= self.step.period * (1.0 - SAME)
+
+    def target(self) -> float:
+        """Step time that the next attempt aims at [time]."""
+        stop = next(s for s in self.stops if s > self.time + SAME * self.step.period)
+        left = stop - self.time
+        # A crumb at the end would cost an increment of its own.
+        return stop if self.size >= left * (1.0 - 1e-6) else self.time + self.size
+
+    def accept(self, time: float, iterations: int) -> None:
+        """Move on after a converged attempt."""
+        self.time = time
+        self.number += 1
+        self.easy = self.easy + 1 if iterations <= EASY and self.attempt == 1 else 0
+        self.attempt = 1
+        if self.easy >= 2 and not self.step.fixed_increments:
+            self.size = min(GROWTH * self.size, self.step.largest_increment)
+            self.easy = 0
+
+    def cut(self, tried: float) -> str:
+        """Shorten after a failed attempt at a time; returns why that is impossible, or ''."""
+        self.easy = 0
+        if self.step.fixed_increments:
+            return "the increments are fixed (DIRECT), so none may be cut"
+        self.attempt += 1
+        self.size = CUT * (tried - self.time)
+        if self.attempt > MAX_ATTEMPTS:
+            return f"{MAX_ATTEMPTS} attempts failed"
+        if self.size < self.step.smallest_increment:
+            return f"the smallest increment, {self.step.smallest_increment:g}, is reached"
+        return ""

@@ -1,0 +1,3 @@
+"""Sparse matrices, linear solvers and eigenvalue solvers."""
+
+# SPDX-License-Identifier: BSD-3-Clause

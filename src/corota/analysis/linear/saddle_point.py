@@ -1,0 +1,532 @@
+"""Linear systems with multipliers: the tangent bordered by the constraints of contact.
+
+Unknowns are the free dofs and then the multipliers. The pattern holds every coupling that was
+seen so far and those next to them, so that it, the ordering and the symbolic factorisation stay
+while contact moves about. What slipping friction and follower loads make unsymmetric is kept
+apart: the symmetric part is factorised, and a few steps of GMRES, preconditioned with it, take
+the rest in; where they do not converge, a factorisation LU of the whole does.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.constraints.pattern import _union
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.constraints.elimination import Link
+    from corota.analysis.equations import Evaluation, System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: GMRES: relative residual that is enough, and steps after which LU takes over.
+ENOUGH, STEPS = 1e-9, 60
+#: Share of a constraint that does not follow from others, below which it is dropped, and most
+#: constraints among which that is looked for.
+DEPENDENT, MOST_DENSE = 1e-9, 2000
+#: Relative size of a product that is nothing but rounding.
+NULL = 1e-10
+
+
+@dataclass
+class Triplets:
+    """Entries of a sparse matrix, those at one place to be added."""
+
+    rows: Ints
+    columns: Ints
+    values: Floats
+
+    @classmethod
+    def join(cls, parts: list[Triplets]) -> Triplets:
+        """All entries of several."""
+        if not parts:
+            return cls(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
+        return cls(
+            np.concatenate([p.rows for p in parts]),
+            np.concatenate([p.columns for p in parts]),
+            np.concatenate([p.values for p in parts]),
+        )
+
+    def keep(self, chosen: NDArray[np.bool_]) -> Triplets:
+        """Some of the entries."""
+        return Triplets(self.rows[chosen], self.columns[chosen], self.values[chosen])
+
+
+@dataclass
+class Coupling:
+    """What contact adds to the linearised equations, in dofs and multipliers.
+
+    Parameters
+    ----------
+    bend : Triplets
+        Symmetric part at dofs, both triangles.
+    rows : Triplets
+        Dofs by multipliers: derivatives of the forces by the tractions, and transposed those
+        of the constraints.
+    follow : Triplets
+        Dofs by multipliers without the transposed part.
+    diagonal : ndarray, shape (n_multipliers,)
+    force : ndarray, shape (n_dofs,)
+        Added to the right-hand side of equilibrium, in global axes.
+    near : tuple of ndarray of int
+        Dofs and multipliers (-1 none) of pairs that may soon couple, for the pattern.
+    """
+
+    bend: Triplets
+    rows: Triplets
+    follow: Triplets
+    diagonal: Floats
+    force: Floats
+    near: tuple[Ints, Ints]
+
+
+class Bordered:
+    """Solves the bordered systems of a model.
+
+    Parameters
+    ----------
+    system : System
+    n : int
+        Multipliers.
+    """
+
+    def __init__(self, system: System, n: int) -> None:
+        self.system, self.n = system, n
+        ties = system.ties
+        self.free = np.arange(system.n_dofs) if ties is None else ties.free
+        base = (
+            (system.indptr, system.indices) if ties is None
+            else (ties.places.indptr, ties.places.indices)
+        )  # fmt: skip
+        self.nf = len(self.free)
+        self.size = self.nf + n
+        start = base[0].astype(np.int64)
+        column = np.repeat(np.arange(self.nf, dtype=np.int64), np.diff(start))
+        self._base = column * self.size + base[1].astype(np.int64)
+        self.node = np.concatenate(
+            [system.node_of_dof[self.free], len(system.per_node) + np.arange(n)]
+        )
+        self.after = self.nf + np.arange(n)
+        self.keys = np.zeros(0, np.int64)
+        self._held: NDArray[np.bool_] | None = None
+        self._analyzed = False
+        #: The last system solved: its held unknowns, constraints, and what solves it again.
+        self._at_rest = np.zeros(self.size, bool)
+        self._link: Link | None = None
+        self._resolve: Callable[[Floats], Floats] = system.solver.solve
+        #: Steps of GMRES so far and fall-backs to LU, for reports.
+        self.steps = self.whole = 0
+        #: Multipliers of constraints that followed from others.
+        self.dropped: set[int] = set()
+
+    # -- pattern -----------------------------------------------------------------------
+
+    def _place(self, rows: Ints, columns: Ints, spare: Callable[[], Ints]) -> Ints:
+        """Places of entries of the upper triangle; the pattern grows where it lacks them."""
+        wanted = columns * self.size + rows
+        if len(self.keys):
+            at = np.minimum(np.searchsorted(self.keys, wanted), len(self.keys) - 1)
+            if np.array_equal(self.keys[at], wanted):
+                return at
+        self._grow(np.concatenate([wanted, spare()]))
+        return np.searchsorted(self.keys, wanted)
+
+    def _grow(self, more: Ints) -> None:
+        if not len(self.keys):
+            every = np.arange(self.nf, self.size)
+            more = np.concatenate([every * self.size + every, more])
+            self.keys = _union(self._base, more)
+        else:
+            self.keys = _union(self.keys, more)
+        self._target = np.searchsorted(self.keys, self._base)
+        self.rows = self.keys % self.size
+        self.columns = self.keys // self.size
+        counts = np.bincount(self.columns, minlength=self.size)
+        self.indptr = np.concatenate([[0], np.cumsum(counts)])
+        self.diagonal = self.indptr[1:] - 1
+        self._held, self._analyzed = None, False
+
+    def _mask(self, held: NDArray[np.bool_]) -> Ints:
+        """Places of the entries of held unknowns beside the diagonal."""
+        if self._held is None or not np.array_equal(held, self._held):
+            self._held = held.copy()
+            off = (held[self.rows] | held[self.columns]) & (self.rows != self.columns)
+            self._masked = np.flatnonzero(off)
+        return self._masked
+
+    # -- solution ----------------------------------------------------------------------
+
+    def solve(
+        self, at: Evaluation, coupling: Coupling, force: Floats, rhs: Floats, du_held: Floats
+    ) -> tuple[Floats, Floats, int]:
+        """Corrections of displacements and multipliers.
+
+        Parameters
+        ----------
+        at : Evaluation
+        coupling : Coupling
+        force : ndarray, shape (n_dofs, k)
+            Right-hand sides of equilibrium.
+        rhs : ndarray, shape (n, k)
+            And of the constraints.
+        du_held : ndarray, shape (n_dofs, k)
+            Prescribed changes at held dofs, 0 elsewhere.
+
+        Returns
+        -------
+        du : ndarray, shape (n_dofs, k)
+        dp : ndarray, shape (n, k)
+        negative : int
+            Negative pivots, -1 if unknown.
+        """
+        system, link = self.system, at.link
+        held = np.zeros(self.size, bool)
+        held[: self.nf] = system.conditions.held[self.free]
+        with system.timed("border"):
+            load = self._load(at)
+            if link is None:
+                values = at.values
+                upper, rest = self._direct(coupling, load)
+                b = np.concatenate([force, rhs])
+            else:
+                values = link.reduce(at.values, at.residual)
+                upper, rest = self._reduced(coupling, load, link)
+                b = np.concatenate([link.gather(force)[self.free], rhs])
+            places = self._place(
+                upper.rows, upper.columns, lambda: self._spare(coupling, link is None)
+            )
+            data = np.zeros(len(self.keys))
+            data[self._target] = values
+            np.add.at(data, places, upper.values)
+            moved = np.zeros_like(b)
+            moved[: self.nf] = du_held[self.free]
+            for column, move in zip(b.T, moved.T, strict=True):
+                if move.any():
+                    column -= self._multiply(data, move)
+                    np.subtract.at(column, rest.rows, rest.values * move[rest.columns])
+            data[self._mask(held)] = 0.0
+            on = self.diagonal[held]
+            data[on] = np.where(data[on] == 0.0, 1.0, np.abs(data[on]))
+            b[held] = 0.0
+            rest = rest.keep(~held[rest.rows] & ~held[rest.columns])
+        try:
+            x, negative = self._solve(data, rest, b)
+        except SingularError as error:
+            dropped = self._drop_dependent(data, b)
+            if not dropped:
+                raise self._named(error) from None
+            try:
+                x, negative = self._solve(data, rest, b)
+            except SingularError as again:
+                raise self._named(again) from None
+            self.dropped.update(dropped)
+            if negative >= 0:
+                negative += len(dropped)  # each would have given one
+        x[held] = moved[held]
+        self._at_rest, self._link = held, link
+        return self._spread(x), x[self.nf :], negative
+
+    def again(self, force: Floats) -> tuple[Floats, Floats]:
+        """The same for one more force, shape (n_dofs,), with the last factorisation.
+
+        Held dofs are at rest and so are the constraints.
+        """
+        b = np.zeros((self.size, 1))
+        b[: self.nf, 0] = (force if self._link is None else self._link.gather(force))[self.free]
+        b[self._at_rest] = 0.0
+        x = self._resolve(b)
+        x[self._at_rest] = 0.0
+        return self._spread(x)[:, 0], x[self.nf :, 0]
+
+    def _spread(self, x: Floats) -> Floats:
+        """Displacements of all dofs of a solution."""
+        return x[: self.nf] if self._link is None else self.system.expand(self._link, x[: self.nf])
+
+    def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
+        """Take constraints out that follow from others, in place; returns their multipliers."""
+        import scipy.linalg
+
+        own = self.columns >= self.nf
+        inner = np.flatnonzero(own & (self.rows < self.nf) & (data != 0.0))
+        bare = data[self.diagonal[self.nf :]] == 0.0
+        chosen = np.flatnonzero(bare)
+        if not len(chosen) or len(chosen) > MOST_DENSE:
+            return []
+        place = np.full(self.n, -1, np.int64)
+        place[chosen] = np.arange(len(chosen))
+        column = place[self.columns[inner] - self.nf]
+        inner, column = inner[column >= 0], column[column >= 0]
+        used, row = np.unique(self.rows[inner], return_inverse=True)
+        table = np.zeros((max(len(used), 1), len(chosen)))
+        table[row, column] = data[inner]
+        length = np.sqrt((table**2).sum(axis=0))
+        table /= np.where(length > 0.0, length, 1.0)
+        _, r, order = scipy.linalg.qr(table, mode="economic", pivoting=True)
+        size = np.zeros(len(chosen))
+        size[: min(r.shape)] = np.abs(np.diag(r))
+        gone = chosen[order[size <= DEPENDENT]]
+        if len(gone):
+            mine = np.isin(self.columns, gone + self.nf)
+            data[mine] = 0.0
+            data[self.diagonal[gone + self.nf]] = 1.0
+            b[gone + self.nf] = 0.0
+        return [int(k) for k in gone]
+
+    def _named(self, error: SingularError) -> SingularError:
+        """The same error in terms of nodes."""
+        equation, mode = error.equation, error.mode
+        if not 0 <= equation < self.nf and mode is not None:
+            # The dof that moves most stands for a multiplier.
+            moved = np.abs(np.asarray(mode).reshape(self.size, -1)[: self.nf, 0])
+            equation = int(np.argmax(moved)) if moved.any() else equation
+        if not 0 <= equation < self.nf:
+            return SingularError("the constraints of contact depend on each other")
+        own = None if mode is None else np.asarray(mode).reshape(self.size, -1)[: self.nf]
+        return self.system.singular(SingularError(str(error), equation, own))
+
+    def _load(self, at: Evaluation) -> Triplets:
+        """Minus the derivative of the external force."""
+        if at.load_stiffness is None:
+            return Triplets.join([])
+        rows, columns, values = at.load_stiffness
+        return Triplets(np.asarray(rows, np.int64), np.asarray(columns, np.int64), -values)
+
+    def _direct(self, c: Coupling, load: Triplets) -> tuple[Triplets, Triplets]:
+        upper = [c.bend.keep(c.bend.rows <= c.bend.columns)]
+        rest = []
+        if len(load.values):
+            import scipy.sparse as sp
+
+            n = self.system.n_dofs
+            whole = sp.coo_array((load.values, (load.rows, load.columns)), shape=(n, n)).tocsr()
+            upper_of, odd = _halves(whole)
+            upper.append(upper_of)
+            rest.append(odd)
+        upper += self._borders(c, c.rows)
+        return Triplets.join(upper), Triplets.join([*rest, self._loose(c.follow)])
+
+    def _loose(self, follow: Triplets) -> Triplets:
+        return Triplets(follow.rows, follow.columns + self.nf, follow.values)
+
+    def _borders(self, c: Coupling, rows: Triplets) -> list[Triplets]:
+        own = np.arange(self.n) + self.nf
+        return [
+            Triplets(rows.rows, rows.columns + self.nf, rows.values),
+            Triplets(own, own, c.diagonal),
+        ]
+
+    def _reduced(self, c: Coupling, load: Triplets, link: Any) -> tuple[Triplets, Triplets]:
+        """The same after elimination of dependent dofs."""
+        import scipy.sparse as sp
+
+        n = self.system.n_dofs
+        t = link.ties.places.whole(link.ties.rows_of(link.g))
+
+        def square(x: Triplets) -> Any:
+            full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, n)).tocsr()
+            return t.T @ full @ t
+
+        def side(x: Triplets) -> Triplets:
+            full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, self.n)).tocsr()
+            found = (t.T @ full).tocoo()
+            return Triplets(found.row.astype(np.int64), found.col.astype(np.int64), found.data)
+
+        upper, odd = _halves(square(load) if len(load.values) else None)
+        bend = square(c.bend)
+        bend, _ = _halves(0.5 * (bend + bend.T))
+        rows = self._borders(c, side(c.rows))
+        rest = [odd, self._loose(side(c.follow))]
+        return Triplets.join([upper, bend, *rows]), Triplets.join(rest)
+
+    def _spare(self, c: Coupling, direct: bool) -> Ints:
+        """Keys of couplings that may soon be wanted, some of them more than once."""
+        dofs, own = c.near
+        if not direct or not len(dofs):
+            return np.zeros(0, np.int64)
+        every = np.concatenate([dofs, np.where(own >= 0, own + self.nf, -1)], axis=1)
+        i, j = np.triu_indices(every.shape[1])
+        a, b = every[:, i].ravel(), every[:, j].ravel()
+        good = (a >= 0) & (b >= 0)
+        # Multipliers of one pair do not couple with each other.
+        good &= (np.minimum(a, b) < self.nf) | (a == b)
+        a, b = a[good], b[good]
+        keys: Ints = np.maximum(a, b) * self.size + np.minimum(a, b)
+        return keys
+
+    def _multiply(self, data: Floats, x: Floats) -> Floats:
+        """Product of the symmetric matrix with a vector that is mostly zero."""
+        hit = np.flatnonzero((x[self.columns] != 0.0) | (x[self.rows] != 0.0))
+        r, c, v = self.rows[hit], self.columns[hit], data[hit]
+        out = np.zeros(self.size)
+        np.add.at(out, r, v * x[c])
+        off = r != c
+        np.add.at(out, c[off], v[off] * x[r[off]])
+        return out
+
+    def _solve(self, data: Floats, rest: Triplets, b: Floats) -> tuple[Floats, int]:
+        system = self.system
+        solver = system.solver
+        try:
+            if not self._analyzed or system._analyzed:
+                with system.timed("order"):
+                    solver.analyze(self.indptr, self.rows, self.node, self.after)
+                self._analyzed, system._analyzed = True, False
+            with system.timed("factor"):
+                inertia = solver.factorize(data)
+            system._last = solver
+            with system.timed("solve"):
+                if not len(rest.values):
+                    self._resolve = solver.solve
+                    return solver.solve(b), -1 if inertia is None else inertia[1]
+                x = self._gmres_all(rest, b)
+            if x is not None:
+                self._resolve = lambda more: self._resolved(data, rest, more)
+                return x, -1
+        except SingularError as error:
+            # The test for motions without stiffness goes by energy, which multipliers make
+            # vanish for what is no such motion.
+            if not len(rest.values) and self._is_null(data, error.mode):
+                raise
+        with system.timed("factor"):
+            return self._by_lu(data, rest, b), -1
+
+    def _is_null(self, data: Floats, mode: Any) -> bool:
+        """Whether the matrix takes a vector to nothing but rounding."""
+        if mode is None:
+            return True
+        v = np.asarray(mode, float).reshape(self.size, -1)[:, 0]
+        size = np.zeros(self.size)
+        r, c = self.rows, self.columns
+        np.add.at(size, r, np.abs(data * v[c]))
+        np.add.at(size, c, np.abs(data * v[r]))
+        left = np.abs(self._multiply(data, v))
+        return bool((left <= NULL * size.max()).all())
+
+    def _resolved(self, data: Floats, rest: Triplets, b: Floats) -> Floats:
+        x = self._gmres_all(rest, b)
+        return self._by_lu(data, rest, b) if x is None else x
+
+    def _gmres_all(self, rest: Triplets, b: Floats) -> Floats | None:
+        """:meth:`_gmres` for all columns."""
+        out = np.empty_like(b)
+        for k in range(b.shape[1]):
+            x = self._gmres(self.system.solver.solve, rest, b[:, k])
+            if x is None:
+                return None
+            out[:, k] = x
+        return out
+
+    def _gmres(self, solve: Callable[[Floats], Floats], rest: Triplets, b: Floats) -> Floats | None:
+        """Solution of (M + N) x = b with M factorised and N few entries; None if it stalls."""
+
+        def apply(v: Floats) -> Floats:
+            product = np.zeros(self.size)
+            np.add.at(product, rest.rows, rest.values * v[rest.columns])
+            return v + solve(product)
+
+        r = solve(b)
+        # Multipliers and displacements have sizes of their own.
+        scale = np.ones(self.size)
+        for part in (slice(0, self.nf), slice(self.nf, self.size)):
+            top = float(np.abs(r[part]).max(initial=0.0))
+            scale[part] = top if top > 0.0 else 1.0
+        r = r / scale
+        beta = _length(r)
+        if beta == 0.0:
+            return r
+        basis, h = [r / beta], np.zeros((STEPS + 1, STEPS))
+        for k in range(STEPS):
+            w = apply(basis[k] * scale) / scale
+            for _ in range(2):
+                for i, v in enumerate(basis):
+                    part_of = _product(v, w)
+                    h[i, k] += part_of
+                    w = w - part_of * v
+            h[k + 1, k] = _length(w)
+            small = np.zeros(k + 2)
+            small[0] = beta
+            y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
+            left = _length(small - (h[: k + 2, : k + 1] * y).sum(axis=1))
+            self.steps += 1
+            if left <= ENOUGH * beta or h[k + 1, k] <= 1e-15 * beta:
+                return np.asarray(
+                    scale * np.sum([c * v for c, v in zip(y, basis, strict=False)], axis=0)
+                )
+            if k > 20 and left > 0.5 * beta:
+                return None
+            basis.append(w / h[k + 1, k])
+        return None
+
+    def _by_lu(self, data: Floats, rest: Triplets, b: Floats) -> Floats:
+        import scipy.sparse as sp
+
+        from corota.analysis.linear.solvers import Faer
+
+        self.whole += 1
+        shape = (self.size, self.size)
+        upper = sp.csc_array((data, self.rows, self.indptr), shape=shape)
+        extra = sp.coo_array((rest.values, (rest.rows, rest.columns)), shape=shape)
+        # Without this the choice of pivots would depend on the unit of length.
+        scale = self._scale(data)
+        by = sp.diags_array(scale)
+        matrix = (by @ (upper + sp.triu(upper, 1).T + extra) @ by).tocsc()
+        matrix.sort_indices()
+        lu = Faer(symmetric=False)
+        lu.analyze(matrix.indptr, matrix.indices, self.node)
+        lu.factorize(matrix.data)
+        self.system._last = lu
+
+        def solve(more: Floats) -> Floats:
+            return np.asarray(scale[:, None] * lu.solve(scale[:, None] * more))
+
+        self._resolve = solve
+        return solve(b)
+
+    def _scale(self, data: Floats) -> Floats:
+        """A power of two for all multipliers that makes their rows as large as the tangent."""
+        scale = np.ones(self.size)
+        inner = self.columns < self.nf
+        tangent = float(np.abs(data[inner]).max(initial=0.0))
+        border = float(np.abs(data[~inner & (self.rows < self.nf)]).max(initial=0.0))
+        if min(tangent, border) > 0.0:
+            scale[self.nf :] = 2.0 ** round(math.log2(tangent / border))
+        return scale
+
+
+def _product(a: Floats, b: Floats) -> float:
+    """Scalar product without the threads of BLAS, which cost more than they save here."""
+    return float(np.einsum("i,i->", a, b))
+
+
+def _length(a: Floats) -> float:
+    return float(np.sqrt(_product(a, a)))
+
+
+def _halves(matrix: Any) -> tuple[Triplets, Triplets]:
+    """Upper triangle of the symmetric part of a matrix, and the skew part if there is one."""
+    import scipy.sparse as sp
+
+    if matrix is None:
+        return Triplets.join([]), Triplets.join([])
+    size = float(abs(matrix).max()) if matrix.nnz else 0.0
+    even = sp.triu(0.5 * (matrix + matrix.T)).tocoo()
+    odd = (0.5 * (matrix - matrix.T)).tocoo()
+    parts = [
+        Triplets(x.row.astype(np.int64), x.col.astype(np.int64), np.asarray(x.data))
+        for x in (even, odd)
+    ]
+    return parts[0], parts[1].keep(np.abs(parts[1].values) > 1e-9 * size)
+
+
+__all__ = ["Bordered", "Coupling", "Triplets"]

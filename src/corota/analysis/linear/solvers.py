@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Linear solvers behind one interface of three methods, and the list of them.
+
+Any object with ``analyze``, ``factorize`` and ``solve`` as in `LinearSolver` can
+be handed to the drivers; those of `SOLVERS` can also be asked for by name.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from corota import _core
+from corota.analysis.linear.pardiso import Pardiso
+from corota.errors import InputError, SingularError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Inertia = tuple[int, int, int]
+    Floats = NDArray[np.float64]
+
+
+@runtime_checkable
+class LinearSolver(Protocol):
+    """What the drivers ask of a direct solver.
+
+    Matrices come in compressed columns with rising rows. A symmetric matrix is
+    given by its upper triangle (row <= column), an unsymmetric one in full; a
+    solver is made for one of the two kinds.
+    """
+
+    def analyze(
+        self,
+        indptr: NDArray[Any],
+        indices: NDArray[Any],
+        node_of_dof: NDArray[Any],
+        after: NDArray[Any] | None = None,
+    ) -> None:
+        """Order and prepare for a pattern.
+
+        Parameters
+        ----------
+        indptr : ndarray of int, shape (n + 1,)
+            Start of each column.
+        indices : ndarray of int, shape (nnz,)
+            Row of each entry.
+        node_of_dof : ndarray of int, shape (n,)
+            Node of each equation; equations of one node stand together.
+        after : ndarray of int, optional
+            Equations of multipliers, to be eliminated after what they connect.
+        """
+        ...
+
+    def factorize(self, data: Floats) -> Inertia | None:
+        """Factorise values of shape (nnz,).
+
+        Returns
+        -------
+        tuple of int or None
+            Numbers of positive, negative and zero pivots where known.
+
+        Raises
+        ------
+        SingularError
+            The matrix is singular to working precision.
+        """
+        ...
+
+    def solve(self, rhs: Floats) -> Floats:
+        """Solution for right-hand sides of shape (n,) or (n, k); `rhs` is kept."""
+        ...
+
+
+def _index(values: NDArray[Any] | None, kind: type[np.generic]) -> NDArray[Any] | None:
+    return None if values is None else np.ascontiguousarray(values, dtype=kind)
+
+
+class Faer:
+    """The built-in solver: LDLᵀ with inertia, or LU if not symmetric.
+
+    Parameters
+    ----------
+    symmetric : bool
+        Whether the matrix comes as an upper triangle.
+    """
+
+    def __init__(self, symmetric: bool = True) -> None:
+        self._core: Any = _core.Ldlt() if symmetric else _core.Lu()
+
+    @property
+    def threads(self) -> int:
+        """Threads to use, 0 for all the machine has; results do not depend on it."""
+        threads: int = self._core.threads
+        return threads
+
+    @threads.setter
+    def threads(self, count: int) -> None:
+        self._core.threads = count
+
+    def analyze(
+        self,
+        indptr: NDArray[Any],
+        indices: NDArray[Any],
+        node_of_dof: NDArray[Any],
+        after: NDArray[Any] | None = None,
+    ) -> None:
+        """Order and prepare for a pattern (see `LinearSolver`)."""
+        self._core.analyze(
+            _index(indptr, np.uintp),
+            _index(indices, np.uint32),
+            _index(node_of_dof, np.uint32),
+            _index(after, np.uint32),
+        )
+
+    def factorize(self, data: Floats) -> Inertia | None:
+        """Factorise values of shape (nnz,); returns the inertia if symmetric."""
+        inertia: Inertia | None = self._core.factorize(np.ascontiguousarray(data, dtype=float))
+        return inertia
+
+    def solve(self, rhs: Floats) -> Floats:
+        """Solution for right-hand sides of shape (n,) or (n, k)."""
+        x = np.array(rhs, dtype=float, order="F")
+        self._core.solve_in_place(x)
+        return x
+
+
+class SuperLU:
+    """SciPy's SuperLU: slow, always there, the reference of the tests.
+
+    Parameters
+    ----------
+    symmetric : bool
+        Whether the matrix comes as an upper triangle.
+    """
+
+    def __init__(self, symmetric: bool = True) -> None:
+        self._symmetric = symmetric
+        self._indptr = np.zeros(1, dtype=np.int32)
+        self._indices = np.zeros(0, dtype=np.int32)
+        self._lu: Any = None
+
+    def analyze(
+        self,
+        indptr: NDArray[Any],
+        indices: NDArray[Any],
+        node_of_dof: NDArray[Any],
+        after: NDArray[Any] | None = None,
+    ) -> None:
+        """Keep the pattern; SuperLU orders anew with each factorisation."""
+        self._indptr = np.asarray(indptr, dtype=np.int32)
+        self._indices = np.asarray(indices, dtype=np.int32)
+
+    def factorize(self, data: Floats) -> Inertia | None:
+        """Factorise values of shape (nnz,); the inertia is not known."""
+        import scipy.sparse as sp  # takes longer to import than a small job to solve
+        import scipy.sparse.linalg as spla
+
+        n = len(self._indptr) - 1
+        matrix = sp.csc_array((data, self._indices, self._indptr), shape=(n, n))
+        if self._symmetric:
+            matrix = (matrix + sp.triu(matrix, 1).T).tocsc()
+        try:
+            self._lu = spla.splu(matrix)
+        except RuntimeError as error:
+            raise SingularError(f"matrix is singular: {error}") from error
+        return None
+
+    def solve(self, rhs: Floats) -> Floats:
+        """Solution for right-hand sides of shape (n,) or (n, k)."""
+        x: Floats = self._lu.solve(np.asarray(rhs, dtype=float))
+        if not np.all(np.isfinite(x)):
+            raise SingularError("matrix is singular: the solution is not finite")
+        return x
+
+
+SOLVERS: dict[str, Callable[..., LinearSolver]] = {
+    "faer": Faer,
+    "superlu": SuperLU,
+    "pardiso": Pardiso,
+}
+
+
+def make_solver(name: str = "faer", symmetric: bool = True) -> LinearSolver:
+    """New solver by name.
+
+    Raises
+    ------
+    InputError
+        The name is not in `SOLVERS`.
+    """
+    try:
+        return SOLVERS[name](symmetric)
+    except KeyError:
+        known = ", ".join(sorted(SOLVERS))
+        raise InputError(f"no linear solver '{name}'; there are: {known}") from None

@@ -1,0 +1,136 @@
+"""Unsymmetric tangents: one pattern as long as loads stay, so that their LU is prepared once."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.linear.solvers import Faer
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+class FullMatrix:
+    """Full matrices of a symmetric tangent and further, unsymmetric entries.
+
+    Parameters
+    ----------
+    indptr, indices : ndarray of int
+        Pattern of the upper triangle by columns.
+    """
+
+    def __init__(self, indptr: NDArray[Any], indices: NDArray[Any]) -> None:
+        start = indptr.astype(np.int64)
+        self.n = n = len(start) - 1
+        columns = np.repeat(np.arange(n, dtype=np.int64), np.diff(start))
+        rows = indices.astype(np.int64)
+        self._off = np.flatnonzero(rows != columns)
+        # Entries are known by the number that sorts them by columns.
+        self._upper = columns * n + rows
+        self._lower = rows[self._off] * n + columns[self._off]
+        self._more = self._entries = np.zeros(0, np.int64)
+
+    def places(self, rows: Ints, columns: Ints) -> tuple[Ints, NDArray[np.bool_]]:
+        """Places of entries (row <= column) in the upper triangle, and whether they have one."""
+        wanted = np.asarray(columns, np.int64) * self.n + np.asarray(rows, np.int64)
+        found = np.searchsorted(self._upper, wanted)
+        return found, np.take(self._upper, found, mode="clip") == wanted
+
+    def _lay_out(self) -> None:
+        n = self.n
+        self._entries = np.unique(np.concatenate([self._upper, self._lower, self._more]))
+        self._places = [np.searchsorted(self._entries, k) for k in (self._upper, self._lower)]
+        self.indptr = np.searchsorted(self._entries, n * np.arange(n + 1, dtype=np.int64))
+        self.indices = self._entries % n
+
+    def build(self, values: Floats, rows: Ints, columns: Ints, more: Floats) -> Any:
+        """Add up entries `more` at (row, column) and a symmetric matrix; scipy CSC, sorted.
+
+        Parameters
+        ----------
+        values : ndarray, shape (nnz,)
+            Upper triangle.
+        rows, columns : ndarray of int, shape (m,)
+        more : ndarray, shape (m,)
+        """
+        import scipy.sparse as sp
+
+        wanted = np.asarray(columns, np.int64) * self.n + np.asarray(rows, np.int64)
+        found = np.searchsorted(self._entries, wanted)
+        if not len(self._entries) or not np.array_equal(
+            np.take(self._entries, found, mode="clip"), wanted
+        ):
+            # What was met once stays: an entry may vanish in one state and come back.
+            self._more = np.union1d(self._more, wanted)
+            self._lay_out()
+            found = np.searchsorted(self._entries, wanted)
+        upper, lower = self._places
+        data = np.zeros(len(self._entries))
+        data[upper] = values
+        data[lower] = values[self._off]
+        np.add.at(data, found, more)
+        return sp.csc_array((data, self.indices, self.indptr), shape=(self.n, self.n))
+
+
+class MaskedLu:
+    """LU of unsymmetric matrices with held dofs; ordered once for a pattern."""
+
+    def __init__(self) -> None:
+        self._solver = Faer(symmetric=False)
+        self._indptr = self._indices = np.zeros(0, np.int64)
+
+    def factorize(self, matrix: Any, held: NDArray[np.bool_], node: Ints) -> None:
+        """Factorise a scipy CSC matrix with the rows and columns of held dofs made diagonal.
+
+        Raises
+        ------
+        SingularError
+            The matrix is singular to working precision.
+        """
+        import scipy.sparse as sp
+
+        matrix.sort_indices()
+        if not (diagonal_of(matrix) | ~held).all():
+            matrix = (matrix + sp.diags_array(held.astype(float))).tocsc()
+            matrix.sort_indices()
+        rows, columns = entries_of(matrix)
+        data = np.where(held[rows] | held[columns], 0.0, matrix.data)
+        own = np.flatnonzero((rows == columns) & held[columns])
+        size = np.abs(matrix.data[own])
+        data[own] = np.where(size > 0.0, size, 1.0)
+        if not self._same(matrix):
+            self._solver.analyze(matrix.indptr, matrix.indices, node)
+            self._indptr, self._indices = matrix.indptr, matrix.indices
+        self._solver.factorize(data)
+
+    def _same(self, matrix: Any) -> bool:
+        return np.array_equal(matrix.indptr, self._indptr) and np.array_equal(
+            matrix.indices, self._indices
+        )
+
+    def solve(self, rhs: Floats) -> Floats:
+        """Solution for right-hand sides of shape (n,) or (n, k)."""
+        return self._solver.solve(rhs)
+
+
+def entries_of(matrix: Any) -> tuple[Ints, Ints]:
+    """Rows and columns of the entries of a scipy CSC matrix."""
+    counts = np.diff(matrix.indptr)
+    return matrix.indices, np.repeat(np.arange(len(counts)), counts)
+
+
+def diagonal_of(matrix: Any) -> NDArray[np.bool_]:
+    """Which diagonal entries a scipy CSC matrix has a place for."""
+    rows, columns = entries_of(matrix)
+    has = np.zeros(matrix.shape[0], bool)
+    has[rows[rows == columns]] = True
+    return has
+
+
+__all__ = ["FullMatrix", "MaskedLu"]

@@ -1,0 +1,405 @@
+"""The equations of motion linearized about a state: ``M z'' + C z' + K z = f``.
+
+The unknowns z are the independent dofs and the multipliers of ties and closed contact. Surfaces
+that are closed stay closed and stick, if they have friction; open ones stay open. All linear
+procedures (frequencies, modal and harmonic response) see only these matrices.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from corota.analysis.linear.solvers import Faer
+from corota.analysis.procedures.motion import Inertia
+from corota.analysis.terms.attachments import Attachments
+from corota.analysis.terms.contact.equations import TouchingSystem
+from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
+from corota.analysis.terms.damping import damping_matrix
+from corota.errors import SingularError, UnsupportedError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.constraints.elimination import Link
+    from corota.analysis.equations import Evaluation, System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Skew part of a stiffness, relative to its largest entry, that is rounding.
+SKEW = 1e-9
+#: Compliance of closed constraints relative to that of their nodes: constraints that follow from
+#: others then leave the matrix regular.
+COMPLIANCE = 1e-10
+#: Relative size of a product that is nothing but rounding.
+NULL = 1e-9
+
+
+class Factor:
+    """A factorized matrix of the active unknowns.
+
+    Parameters
+    ----------
+    matrix : scipy CSC array, shape (n, n)
+    symmetric : bool
+    node : ndarray of int, shape (n,)
+        Node of each unknown; unknowns of one node stand together.
+    multiplier : ndarray of bool, shape (n,)
+    threads : int
+
+    Attributes
+    ----------
+    negative : int
+        Negative pivots beyond one for each multiplier; -1 where unknown.
+
+    Raises
+    ------
+    SingularError
+        If the matrix is singular.
+    """
+
+    def __init__(
+        self, matrix: Any, symmetric: bool, node: Ints, multiplier: NDArray[np.bool_], threads: int
+    ) -> None:
+        self.negative = -1
+        if symmetric:
+            try:
+                self._symmetric(matrix, node, multiplier, threads)
+                return
+            except SingularError as error:
+                # The test for motions without stiffness goes by energy, which multipliers make
+                # vanish for what is no such motion.
+                if not multiplier.any() or _is_null(matrix, error.mode):
+                    raise
+        solver = Faer(symmetric=False)
+        solver.threads = threads
+        matrix = matrix.tocsc()
+        matrix.sort_indices()
+        solver.analyze(matrix.indptr, matrix.indices, node)
+        solver.factorize(matrix.data)
+        self._solver = solver
+
+    def _symmetric(
+        self, matrix: Any, node: Ints, multiplier: NDArray[np.bool_], threads: int
+    ) -> None:
+        upper = sp.triu(matrix).tocsc()
+        upper.sort_indices()
+        solver = Faer()
+        solver.threads = threads
+        after = np.flatnonzero(multiplier) if multiplier.any() else None
+        solver.analyze(upper.indptr, upper.indices, node, after)
+        inertia = solver.factorize(upper.data)
+        if inertia is not None:
+            self.negative = inertia[1] - int((matrix.diagonal()[multiplier] < 0.0).sum())
+        self._solver = solver
+
+    def solve(self, rhs: Floats) -> Floats:
+        """Solution for right-hand sides of shape (n,) or (n, k)."""
+        return self._solver.solve(rhs)
+
+
+def _is_null(matrix: Any, mode: Any) -> bool:
+    """Whether a symmetric matrix takes a vector to nothing but rounding."""
+    if mode is None:
+        return True
+    v = np.asarray(mode, float).reshape(matrix.shape[0], -1)[:, 0]
+    left, size = np.abs(matrix @ v), abs(matrix) @ np.abs(v)
+    return bool(left.max() <= NULL * size.max())
+
+
+class Linearized:
+    """The matrices at a committed state.
+
+    Parameters
+    ----------
+    system : System
+    u : ndarray, shape (n_dofs,)
+        The committed displacement.
+
+    Attributes
+    ----------
+    stiffness : scipy CSC array, shape (n, n)
+        Tangent with that of loads, constraints and contact, of all unknowns, held ones included.
+    active : ndarray of int
+        Unknowns that no support holds.
+    symmetric : bool
+        Whether the stiffness of the active unknowns is.
+    """
+
+    def __init__(self, system: System, u: Floats) -> None:
+        self.system = system
+        self.u = u.copy()
+        self.at, coupling = self._evaluate(u)
+        self.link: Link | None = self.at.link
+        self.free = np.arange(system.n_dofs) if system.ties is None else system.ties.free
+        self.nf = len(self.free)
+        self.n_multipliers = 0 if coupling is None else len(coupling.diagonal)
+        self.n = self.nf + self.n_multipliers
+        held = np.zeros(self.n, bool)
+        held[: self.nf] = system.conditions.held[self.free]
+        self.held, self.active = held, np.flatnonzero(~held)
+        new = len(system.per_node) + np.arange(self.n_multipliers)
+        self.node = np.concatenate([system.node_of_dof[self.free], new])
+        self.multiplier = np.arange(self.n) >= self.nf
+        self.stiffness = self._stiffness(coupling)
+        k = self.sub(self.stiffness)
+        size = abs(k).max() if k.nnz else 0.0
+        self.symmetric = not k.nnz or abs(k - k.T).max() <= SKEW * size
+
+    def _evaluate(self, u: Floats) -> tuple[Evaluation, Any]:
+        """Evaluation of the bodies with the forces of contact, and the rows of contact."""
+        system, touching = self.system, self.system.touching
+        if touching is None:
+            return system.evaluate(u.copy(), 0.0), None
+        contact = TouchingSystem(system, system)
+        found = contact.evaluate(contact.start(u.copy()), 0.0)
+        if touching.at is not None and touching.at.states:
+            states = touching.at.states
+        else:
+            states = [
+                pair.states(terms, p, q) for pair, terms, (p, q) in contact._pairs(found.touch)
+            ]
+        states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
+        contact.senses = {p.first: np.ones(p.n) for p in touching.pairs}
+        coupling = contact._coupling(found.touch, states)[0]
+        own = np.zeros(touching.n)
+        for pair in touching.pairs:
+            part = pair.full / pair.stiffness
+            own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
+        bare = coupling.diagonal == 0.0
+        coupling.diagonal[bare] = -COMPLIANCE * own[bare]
+        touching.restore()
+        return found.at, coupling
+
+    def _stiffness(self, coupling: Any) -> Any:
+        at = self.at
+        triplets: Any = None
+        if at.load_stiffness is not None:
+            rows, columns, values = at.load_stiffness
+            triplets = (rows, columns, -values)
+        if coupling is not None and len(coupling.bend.values):
+            bend = coupling.bend
+            more = (bend.rows, bend.columns, bend.values)
+            triplets = more if triplets is None else tuple(
+                np.concatenate(pair) for pair in zip(triplets, more, strict=True)
+            )  # fmt: skip
+        k = self.reduce(at.values, triplets, at.residual)
+        if coupling is None:
+            return k
+        shape = (self.system.n_dofs, self.n_multipliers)
+        rows = coupling.rows
+        side = sp.coo_array((rows.values, (rows.rows, rows.columns)), shape=shape).tocsc()
+        if self.link is not None:
+            side = self._whole().T @ side
+        return sp.block_array(
+            [[k, side], [side.T, sp.diags_array(coupling.diagonal)]], format="csc"
+        )
+
+    def _whole(self) -> Any:
+        """All dofs in global axes by the independent ones."""
+        assert self.link is not None
+        ties = self.link.ties
+        return ties.places.whole(ties.rows_of(self.link.g))
+
+    # -- between dofs and unknowns -----------------------------------------------------
+
+    def reduce(
+        self,
+        values: Floats | None = None,
+        triplets: Any = None,
+        residual: Floats | None = None,
+    ) -> Any:
+        """A matrix of the independent dofs.
+
+        Parameters
+        ----------
+        values : ndarray, shape (nnz,), optional
+            Upper triangle in the pattern of the tangent, in global axes.
+        triplets : tuple of ndarray, optional
+            Rows, columns and values of further entries.
+        residual : ndarray, shape (n_dofs,), optional
+            Forces under which constraints bend: for a tangent.
+        """
+        system = self.system
+        n = system.n_dofs
+        matrix = sp.csc_array((n, n))
+        if values is not None:
+            upper = sp.csc_array(
+                (values, system.indices.astype(np.int32), system.indptr.astype(np.int32)),
+                shape=(n, n),
+            )
+            matrix = upper + sp.triu(upper, 1).T
+        if triplets is not None:
+            rows, columns, entries = triplets
+            matrix = matrix + sp.coo_array((entries, (rows, columns)), shape=(n, n))
+        if self.link is not None:
+            force = np.zeros(n) if residual is None else residual
+            matrix = self.link.reduce_full(matrix.tocsr(), force)
+        return matrix.tocsc()
+
+    def padded(self, matrix: Any) -> Any:
+        """A matrix of the independent dofs with empty rows and columns of the multipliers."""
+        if not self.n_multipliers:
+            return matrix
+        empty = sp.csc_array((self.n_multipliers, self.n_multipliers))
+        return sp.block_array([[matrix, None], [None, empty]], format="csc")
+
+    def sub(self, matrix: Any) -> Any:
+        """The part of the active unknowns."""
+        return matrix[self.active][:, self.active].tocsc()
+
+    def coupled(self, matrix: Any, moves: Floats) -> Floats:
+        """Rows of the active unknowns times moves of the held ones, shape (n_active, k)."""
+        out: Floats = (matrix @ moves)[self.active]
+        return out
+
+    def gather(self, force: Floats) -> Floats:
+        """Forces at dofs along the axes of their nodes as those on the active unknowns."""
+        found = force if self.link is None else self.link.gather(force)
+        padded = np.concatenate(
+            [found[self.free], np.zeros((self.n_multipliers, *force.shape[1:]))]
+        )
+        out: Floats = padded[self.active]
+        return out
+
+    def restrict(self, u: Floats) -> Floats:
+        """Changes of all dofs as those of all unknowns; multipliers stay."""
+        return np.concatenate([u[self.free], np.zeros((self.n_multipliers, *u.shape[1:]))])
+
+    def expand(self, z: Any) -> Any:
+        """Changes of all dofs from those of all unknowns; complex ones too."""
+        if np.iscomplexobj(z):
+            return self.expand(z.real) + 1j * self.expand(z.imag)
+        dofs = z[: self.nf]
+        return np.array(dofs) if self.link is None else self.system.expand(self.link, dofs)
+
+    def from_active(self, x: Any) -> Any:
+        """All unknowns from the active ones, the others zero."""
+        z = np.zeros((self.n, *x.shape[1:]), x.dtype)
+        z[self.active] = x
+        return z
+
+    def factor(self, matrix: Any, symmetric: bool) -> Factor:
+        """Factorize a matrix of the active unknowns.
+
+        Raises
+        ------
+        SingularError
+            In terms of nodes.
+        """
+        a = self.active
+        threads = getattr(self.system.solver, "threads", 1)
+        try:
+            return Factor(matrix, symmetric, self.node[a], self.multiplier[a], threads)
+        except SingularError as error:
+            equation, mode = error.equation, error.mode
+            if not 0 <= equation < len(a) or a[equation] >= self.nf:
+                raise
+            shown = None
+            if mode is not None:
+                shown = self.from_active(np.asarray(mode, float).reshape(len(a), -1)[:, 0])[
+                    : self.nf
+                ]
+            self.system._link = self.link
+            raise self.system.singular(SingularError(str(error), int(a[equation]), shown)) from None
+
+
+class LinearMotion(Linearized):
+    """The matrices with inertia and damping.
+
+    Parameters
+    ----------
+    system : System
+    u : ndarray, shape (n_dofs,)
+    kind : {"consistent", "constant", "lumped"}
+        Of the mass.
+    rayleigh : tuple of float
+        Damping per mass [1/time] and per stiffness [time] of the whole model.
+
+    Attributes
+    ----------
+    mass, damping : scipy CSC array, shape (n, n)
+        `damping` holds dashpots, the damping of materials and `rayleigh`.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        u: Floats,
+        kind: str = "consistent",
+        rayleigh: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        super().__init__(system, u)
+        self.kind, self.rayleigh = kind, rayleigh
+        self.inertia = Inertia(system, kind)
+        self.mass_values = self.inertia.tangent(u)
+        self.mass = self.padded(self.reduce(self.mass_values))
+        self.stiffness = self.stiffness - spin_softening(system) * self.mass
+        self._damping: Any = None
+
+    @property
+    def damping(self) -> Any:
+        """Of dashpots, materials and the whole model, made when asked for."""
+        if self._damping is None:
+            system = self.system
+            per_mass, per_stiffness = self.rayleigh
+            values = damping_matrix(system, self.u, per_stiffness, self.kind)
+            values = np.zeros(len(system.indices)) if values is None else values.copy()
+            values += per_mass * self.mass_values
+            _, triplets = Attachments(system).damp(self.u, np.zeros(system.n_dofs), values, 1.0)
+            self._damping = self.padded(self.reduce(values, triplets))
+        return self._damping
+
+    def coriolis(self) -> Any:
+        """Coriolis matrix, skew, of a model that turns as its centrifugal load says.
+
+        Exact for displacements; drilling rotations and beams take the mean of the masses along
+        both axes, which converges with the mesh.
+        """
+        rate = np.sqrt(spin_softening(self.system))
+        system = self.system
+        n = system.n_dofs
+        x = np.flatnonzero(system.component == 0)
+        y = x + 1
+        turn = sp.coo_array(
+            (
+                np.concatenate([-np.ones(len(x)), np.ones(len(x))]),
+                (np.concatenate([x, y]), np.concatenate([y, x])),
+            ),
+            shape=(n, n),
+        ).tocsr()
+        upper = sp.csc_array(
+            (self.mass_values, system.indices.astype(np.int32), system.indptr.astype(np.int32)),
+            shape=(n, n),
+        )
+        mass = upper + sp.triu(upper, 1).T
+        whole = (rate * (mass @ turn + turn @ mass)).tocoo()
+        return self.padded(self.reduce(None, (whole.row, whole.col, whole.data)))
+
+
+def spin_softening(system: System) -> float:
+    """Square of the angular velocity of the centrifugal load that acts, or 0 [1/time^2].
+
+    Raises
+    ------
+    UnsupportedError
+        If bodies turn at several speeds.
+    """
+    rates = {
+        round(scale * item.value[0], 12)
+        for item, scale in system.conditions.body_forces()
+        if item.kind == "centrifugal"
+    }
+    if len(rates) > 1:
+        raise UnsupportedError(
+            "bodies that turn at several speeds have no common frame of reference: give one "
+            "centrifugal load to the whole model"
+        )
+    return float(sum(rates))
+
+
+__all__ = ["COMPLIANCE", "Factor", "LinearMotion", "Linearized", "spin_softening"]

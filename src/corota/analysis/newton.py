@@ -1,0 +1,303 @@
+"""Newton's method for one increment, with line search and full rollback.
+
+Prescribed displacements enter through the tangent: their increment is part of the first
+linear solve, so that the elements at the moved edge do not take all of it.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+#: A residual this many times the rounding error of the internal force is as good as zero.
+FLOOR = 10.0
+#: Growth of the residual over its start that is given up as divergence.
+DIVERGED = 1e6
+#: Share of the tolerance that an iteration with the old tangent is expected to reach.
+CHORD = 0.01
+#: Shortest line search step.
+SHORTEST = 1.0 / 64.0
+#: Share of the smallest residual so far that a new one must be below to count as progress.
+PROGRESS = 0.9
+
+
+def larger(a: float, b: float) -> float:
+    """The larger of two; unlike ``max`` this passes on what is not a number."""
+    return a if a > b or a != a else b
+
+
+class ElementFailure(Exception):
+    """Elements could not be evaluated at a trial state; a smaller step may help."""
+
+
+class GiveUp(Exception):
+    """No correction of this increment can be of use; a smaller one may."""
+
+
+class EvaluationLike(Protocol):
+    """What the method reads of an evaluation."""
+
+    @property
+    def residual(self) -> Floats: ...
+    @property
+    def external(self) -> Floats: ...
+    @property
+    def internal(self) -> Floats: ...
+    @property
+    def scale(self) -> Floats: ...
+
+
+E = TypeVar("E", bound=EvaluationLike)
+
+
+class SystemLike(Protocol[E]):
+    """A system of equations: see :class:`corota.analysis.equations.System`."""
+
+    def evaluate(self, u: Floats, step_time: float) -> E: ...
+    def predict(self, at: E, du_held: Floats) -> tuple[Floats, int]: ...
+    def judge(self, at: E, u: Floats) -> Judgement: ...
+    def release(self, at: E) -> None: ...
+
+
+@dataclass
+class Judgement:
+    """Size of a residual against its scale, forces and moments apart."""
+
+    force: float  # largest free residual force / force scale
+    moment: float
+    floor: float  # relative size of rounding errors of forces
+    worst: int  # dof with the largest relative residual
+    moment_floor: float = 0.0  # and of moments, whose scale may be much smaller
+
+    @property
+    def size(self) -> float:
+        return larger(self.force, self.moment)
+
+    def rounding(self, tolerance: float) -> bool:
+        """Whether what is left, of forces and of moments, is small or rounding."""
+        forces = self.force <= max(tolerance, FLOOR * self.floor)
+        return forces and self.moment <= max(tolerance, FLOOR * self.moment_floor)
+
+
+@dataclass
+class Settings:
+    """When an increment is converged, and when it is given up."""
+
+    tolerance: float = 1e-9
+    max_iterations: int = 16
+    #: Corrects with the last factorisation, for an iteration that converges with it all the same.
+    reuse: Callable[[Any], Floats] | None = None
+    #: Iterations without a residual clearly below all before, after which it is hopeless; 0: never.
+    patience: int = 0
+
+
+@dataclass
+class Outcome(Generic[E]):
+    """What became of an increment.
+
+    Parameters
+    ----------
+    converged : bool
+    u : ndarray, shape (n_dofs,)
+        Last trial, equilibrium if converged.
+    at : EvaluationLike
+        Evaluation at `u`.
+    iterations : int
+    sizes : list of float
+        Residual before the first iteration and after each.
+    negative : int
+        Negative pivots of the last factorisation, -1 if unknown.
+    reason : str
+        Why it did not converge.
+    note : str
+        How it converged, where that is not by the tolerance.
+    """
+
+    converged: bool
+    u: Floats
+    at: E | None
+    iterations: int = 0
+    sizes: list[float] = field(default_factory=list)
+    negative: int = -1
+    reason: str = ""
+    note: str = ""
+
+
+def newton(
+    system: SystemLike[E],
+    u: Floats,
+    prescribed: Floats,
+    step_time: float,
+    settings: Settings,
+    start: E | None = None,
+    report: Callable[[int, Judgement, float, str], None] | None = None,
+) -> Outcome[E]:
+    """Find equilibrium at a time, starting from a displacement.
+
+    Parameters
+    ----------
+    system : SystemLike
+    u : ndarray, shape (n_dofs,)
+        Converged displacement of the increment before; not changed.
+    prescribed : ndarray, shape (n_dofs,)
+        Target of the held dofs, `u` elsewhere.
+    step_time : float
+        Time at which loads are taken.
+    settings : Settings
+    start : EvaluationLike, optional
+        Evaluation at `u` and `step_time`, if it is known.
+    report : callable, optional
+        Told iteration number, judgement, largest correction and a note.
+
+    Returns
+    -------
+    Outcome
+
+    Raises
+    ------
+    SingularError
+        If the structure is not held.
+    """
+    try:
+        at = start if start is not None else system.evaluate(u, step_time)
+    except ElementFailure as error:
+        return Outcome(False, u, None, reason=str(error))
+    outcome = Outcome(False, u, at)
+    du_held = prescribed - u
+    moved = bool(np.any(du_held))
+    judged = system.judge(at, u)
+    size = judged.size
+    outcome.sizes.append(size)
+    # With moving supports the first residual says nothing about the one to be reached.
+    if not moved and size <= settings.tolerance:
+        outcome.converged = True
+        return outcome
+    best, least, waited = size, math.inf, 0
+    for iteration in range(1, settings.max_iterations + 1):
+        try:
+            again = settings.reuse
+            if again and not moved and _old_will_do(outcome.sizes, settings.tolerance):
+                du = again(at)
+            else:
+                du, outcome.negative = system.predict(at, du_held)
+        except SingularError as error:
+            if iteration == 1:
+                raise
+            # A trial state may be a mechanism, as in plastic collapse, where the start is not.
+            outcome.reason = f"a trial state has a singular tangent ({error})"
+            return outcome
+        except GiveUp as error:
+            outcome.reason = str(error)
+            return outcome
+        if not math.isfinite(du.sum()):
+            outcome.reason = "the linear solution is not finite"
+            return outcome
+        before = size
+        trial = _search(system, u, du, at, step_time, before, iteration)
+        if isinstance(trial, str):
+            outcome.reason = trial
+            return outcome
+        system.release(at)
+        u, at, length = trial
+        if moved:
+            du_held = (1.0 - length) * du_held
+            moved = bool(np.any(du_held))
+        judged = system.judge(at, u)
+        size = judged.size
+        outcome.u, outcome.at, outcome.iterations = u, at, iteration
+        outcome.sizes.append(size)
+        if report is not None:
+            # Unknowns beyond the dofs are multipliers, of another unit.
+            largest = float(np.abs(du[: len(at.internal)]).max())
+            note = f"step {length:.3g}" if length != 1.0 else ""
+            report(iteration, judged, length * largest, note)
+        if not math.isfinite(size):
+            outcome.reason = "the residual is not finite"
+            return outcome
+        if not moved and size <= settings.tolerance:
+            outcome.converged = True
+            return outcome
+        if not moved and judged.rounding(settings.tolerance) and size >= 0.1 * before:
+            outcome.converged = True
+            outcome.note = f"residual {size:.1e} is at the rounding floor"
+            return outcome
+        if iteration > 1 and size > DIVERGED * max(best, 1e-6):
+            outcome.reason = f"diverges: the residual grew to {size:.1e}"
+            return outcome
+        waited = 0 if size < PROGRESS * least else waited + 1
+        least = min(least, size)
+        if waited == settings.patience > 0:
+            outcome.reason = f"no progress in {waited} iterations (residual {size:.1e})"
+            return outcome
+        best = min(best, size)
+    outcome.reason = (
+        f"no convergence in {settings.max_iterations} iterations (residual {outcome.sizes[-1]:.1e})"
+    )
+    return outcome
+
+
+def _old_will_do(sizes: list[float], tolerance: float) -> bool:
+    """Whether the tangent of the iteration before takes the residual below the tolerance.
+
+    It is wrong by about the last correction, so it reduces the residual by about the same
+    factor once more, where a new tangent would square it.
+    """
+    if len(sizes) < 3:
+        return False
+    before, now = sizes[-2:]
+    return now * now <= CHORD * tolerance * before
+
+
+def _search(
+    system: SystemLike[E],
+    u: Floats,
+    du: Floats,
+    start: E,
+    step_time: float,
+    before: float,
+    iteration: int,
+) -> tuple[Floats, E, float] | str:
+    """Take the step; shorten it where elements fail or the method has begun to lose ground.
+
+    Early growth of the residual is left alone: in slender structures it is stretching that
+    the next iteration removes.
+    """
+    length = 1.0
+    problem = ""
+    while length >= SHORTEST:
+        trial = u + (du if length == 1.0 else length * du)
+        try:
+            at = system.evaluate(trial, step_time)
+        except ElementFailure as error:
+            problem = str(error)
+            length *= 0.5
+            continue
+        if iteration <= 4 or length < 1.0:
+            return trial, at, length
+        after = system.judge(at, trial).size
+        if after <= 2.0 * before:
+            return trial, at, length
+        # Zero of the work of the residual along the step, by one regula falsi.
+        first, last = float(du @ start.residual), float(du @ at.residual)
+        if first < 0.0 < last:
+            length = min(max(first / (first - last), 0.1), 0.9)
+            system.release(at)
+            continue
+        return trial, at, length
+    return problem
+
+
+__all__ = ["ElementFailure", "GiveUp", "Judgement", "Outcome", "Settings", "larger", "newton"]

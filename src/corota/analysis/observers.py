@@ -1,0 +1,60 @@
+"""The observers of a run as one; a failing observer stops the run with its own error."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.observer import Iteration, Observer
+    from corota.results.results import Frame, Results
+
+
+class Observers:
+    """Passes every event on to each observer.
+
+    An observer that sets an attribute ``stop`` to True asks for an end after the current
+    increment.
+    """
+
+    def __init__(self, each: Iterable[Observer]) -> None:
+        self.each = list(each)
+
+    @property
+    def stop_requested(self) -> bool:
+        """Whether any observer asks to stop."""
+        return any(getattr(o, "stop", False) for o in self.each)
+
+    def start(self, model: Model, steps: list[Step]) -> None:
+        """Begin an analysis."""
+        for o in self.each:
+            o.start(model, steps)
+
+    def step(self, number: int, step: Step) -> None:
+        """Begin a step."""
+        for o in self.each:
+            o.step(number, step)
+
+    def iteration(self, info: Iteration) -> None:
+        """Finish a Newton iteration."""
+        for o in self.each:
+            o.iteration(info)
+
+    def increment(self, frame: Frame) -> None:
+        """Accept an increment."""
+        for o in self.each:
+            o.increment(frame)
+
+    def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None:
+        """Give up an attempt."""
+        for o in self.each:
+            o.cut_back(step, increment, attempt, reason, dt)
+
+    def end(self, results: Results, error: Exception | None) -> None:
+        """Finish."""
+        for o in self.each:
+            o.end(results, error)

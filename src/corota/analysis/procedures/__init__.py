@@ -1,0 +1,3 @@
+"""One module for each procedure, and their table."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,252 @@
+"""Linear buckling about an equilibrium state.
+
+With the tangent K0 at the state and its derivative K1 along the linear response to the
+perturbing load, the factors solve ``(K0 + factor K1) mode = 0``. The derivative is taken of
+the whole co-rotational tangent by a central difference: it holds the geometric stiffness of
+the added stresses and the change of shape before buckling. Where nothing turns before it
+buckles, as in a straight column, this is classical linear buckling; where something does,
+it is the path's own first-order prediction.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.equations import Evaluation
+from corota.analysis.linear.lanczos import BLOCK, largest
+from corota.analysis.terms.conditions import Conditions
+from corota.errors import ConvergenceError, ModelError, UnsupportedError
+from corota.model.paths import Modes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.observers import Observers
+    from corota.analysis.state import State
+    from corota.model.steps import Buckle
+
+    Floats = NDArray[np.float64]
+
+#: Largest displacement of the difference, as a share of the model's size.
+DIFFERENCE = 1e-5
+#: Second over first difference of the tangent that shows a jump.
+CORNER = 0.1
+#: Residual of the modes: the factors' own error is of its square.
+RESIDUAL = 1e-4
+#: Where the modes are counted: this far behind the last one that was found.
+BEHIND = 1e-3
+
+
+def buckle_step(
+    system: System,
+    step: Buckle,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Callable[[State, int, float, dict[str, float]], None],
+    stops: list[float],
+) -> None:
+    """Find the buckling factors and modes about the committed state.
+
+    Raises
+    ------
+    ModelError
+        If nothing perturbs the state, or the state is unstable by itself.
+    UnsupportedError
+        If loads without a potential or a tangent that jumps leave no eigenvalue problem.
+    """
+    turning = system.turning
+    system.turning = True
+    try:
+        factors, shapes = _solve(system, step, number, state)
+    finally:
+        # A perturbation leaves nothing behind.
+        system.conditions.end_time = 0.0
+        system.turning = turning
+        state.at = system.evaluate(state.u, 0.0)
+    by_node = np.array([system.by_node(shape) for shape in shapes.T])
+    state.modes.append(Modes("buckling", number, factors, by_node.reshape(len(factors), -1, 3)))
+    scalars = {f"buckling factor {k}": float(f) for k, f in enumerate(factors, start=1)}
+    listed = ", ".join(f"{f:.6g}" for f in factors)
+    state.notes.append(f"buckling factors of step {number}: {listed}")
+    save(state, 1, 0.0, scalars)
+
+
+def _solve(system: System, step: Buckle, number: int, state: State) -> tuple[Floats, Floats]:
+    force, move, loads = _perturbation(system, step, number, state.u)
+    base = _symmetric(system, system.evaluate(state.u, 0.0))
+    values = _unknowns(system, base, base.residual)
+    response, negative = system.correct(replace(base, values=base.values.copy()), force, move)
+    if negative > 0:
+        raise ModelError(
+            f"the state before buckling step {number} is unstable ({negative} negative pivots): "
+            "linear buckling needs a stable one; follow its path instead (path=ArcLength(...))",
+            step.where,
+        )
+    change = _derivative(system, state.u, values, response, loads)
+    largest_move = _moved(system, response, loads)
+    held, free = system.conditions.held, _free(system)
+    product = system.core.multiply if system.ties is None else system.ties.places.multiply
+
+    def apply(x: Floats) -> Floats:
+        out = np.zeros(x.shape, order="F")
+        for k in range(x.shape[1]):
+            out[free, k] = -product(change, np.ascontiguousarray(x[free, k]))
+        out[held] = 0.0
+        return out
+
+    def count(bound: float) -> int:
+        """Negative pivots of the tangent at a factor: the modes in front of it."""
+        at = values + bound * change
+        if system.ties is None:
+            system.core.mask(at, held)
+        else:
+            system.ties.places.mask(at, held[free])
+        inertia = system.solver.factorize(at)
+        return -1 if inertia is None else inertia[1]
+
+    start = np.random.default_rng(11).standard_normal((system.n_dofs, BLOCK))
+    start[held] = 0.0
+    wanted = step.modes
+    for _ in range(3):
+        theta, shapes = largest(apply, system.solve_again, apply(start), wanted, RESIDUAL)
+        # A load that would stretch the structure by its own size is no buckling load.
+        theta = theta[theta * system.length > largest_move]
+        if not len(theta):
+            raise ModelError(
+                f"the load of buckling step {number} makes nothing buckle: no positive factor; "
+                "is it a tension?",
+                step.where,
+            )
+        factors = 1.0 / theta
+        if len(theta) < wanted or wanted > step.modes:
+            break
+        bound = float(factors[-1]) * (1.0 + BEHIND)
+        passed = int((factors < bound).sum())
+        missed = count(bound) - passed
+        if missed <= 0:
+            break
+        wanted = step.modes + missed
+        system.correct(replace(base, values=base.values.copy()), force, move)
+    factors, shapes = factors[: step.modes], shapes[:, : min(step.modes, len(factors))]
+    counted = system.counted
+    for k in range(len(factors)):
+        moved = np.where(counted, shapes[:, k], 0.0)
+        shapes[:, k] /= moved[np.abs(moved).argmax()]
+    return factors, shapes
+
+
+def _free(system: System) -> slice | NDArray[np.int64]:
+    """Unknowns among the dofs: all, or those that constraints leave."""
+    return slice(None) if system.ties is None else system.ties.free
+
+
+def _unknowns(system: System, at: Evaluation, residual: Floats) -> Floats:
+    """Values of the tangent of the unknowns, upper triangle; a copy."""
+    return at.values.copy() if at.link is None else at.link.reduce(at.values, residual)
+
+
+def _perturbation(
+    system: System, step: Buckle, number: int, u: Floats
+) -> tuple[Floats, Floats, Conditions]:
+    """Force, moves of held dofs and loads that perturb the state."""
+    model = system.model
+    own = bool(step.loads) or any(s.value != 0.0 for s in step.supports)
+    loads = Conditions(system)
+    # Temperatures are absolute: what heats is the difference from the state.
+    heat = loads.temperature
+    heat.begin[:] = heat.end[:] = system.conditions.temperatures(0.0)
+    with_model = number == 1 or not own
+    loads.add(
+        [*(model.loads if with_model else []), *step.loads],
+        [*(model.supports if with_model else []), *step.supports],
+    )
+    loads.check_proportional()
+    force, move = loads.rate(u)
+    held = system.conditions.held
+    move = np.where(held, move, 0.0)
+    if not (np.any(force[~held]) or np.any(move) or system.free.largest(loads.heating)):
+        raise ModelError(
+            f"buckling step {number} has no load: give the step or the model one", step.where
+        )
+    return force, move, loads
+
+
+def _moved(system: System, response: Floats, loads: Conditions) -> float:
+    """Largest displacement of the response, or what thermal strain would move if it could."""
+    moved = float(np.abs(response[system.counted]).max(initial=0.0))
+    return max(moved, system.free.largest(loads.heating) * system.length)
+
+
+def _derivative(
+    system: System,
+    u: Floats,
+    values: Floats,
+    response: Floats,
+    loads: Conditions,
+) -> Floats:
+    """Derivative of the tangent `values` along the response, by entries of the pattern.
+
+    Where constraints turn (rigid bodies), the forces in them count too: the residual at the
+    neighbours is that under the perturbed load.
+    """
+    largest_move = _moved(system, response, loads)
+    if not np.isfinite(largest_move) or largest_move == 0.0:
+        raise ConvergenceError("the perturbing load moves nothing")
+    size = DIFFERENCE * system.length / largest_move
+
+    heating = loads.heating if loads.heating.any() else None
+    # Thermal strain is in the internal force of a neighbour already.
+    mechanical = loads.external(loads.period, u)[0] - loads.external(0.0, u)[0]
+
+    def neighbour(h: float) -> Floats:
+        system.free.offset = None if heating is None else h * heating
+        try:
+            at = _symmetric(system, system.evaluate(u + h * response, 0.0))
+        finally:
+            system.free.offset = None
+        return _unknowns(system, at, at.residual - h * mechanical)
+
+    ahead, behind = neighbour(size), neighbour(-size)
+    change: Floats = ahead - behind
+    # A smooth tangent is nearly linear over such a distance; one that jumps has a corner.
+    ahead += behind
+    ahead -= 2.0 * values
+    if np.abs(ahead).max() > CORNER * np.abs(change).max():
+        raise UnsupportedError(
+            "the tangent jumps about this state (plastic flow, contact): linear buckling has "
+            "no meaning there; follow the path instead (path=ArcLength(...))"
+        )
+    change /= 2.0 * size
+    _, stiffness = loads.external(loads.period, u)
+    if stiffness is not None:
+        # Its entries join the full tangent first, since constraints reduce them too.
+        zero = np.zeros(system.n_dofs)
+        empty = np.zeros(len(system.indices))
+        at = _symmetric(system, Evaluation(zero, zero, zero, empty, stiffness))
+        link = None if system.ties is None else system.ties.link(u)
+        change += _unknowns(system, replace(at, link=link), zero)
+    return change
+
+
+def _symmetric(system: System, at: Evaluation) -> Evaluation:
+    """The evaluation with the stiffness of its loads in its values."""
+    if at.load_stiffness is None:
+        return at
+    symmetric, _ = system._add_load_stiffness(at)
+    if not symmetric:
+        raise UnsupportedError(
+            "loads that follow the structure without a potential have no buckling factors "
+            "(non-conservative: use dynamics)"
+        )
+    return replace(at, load_stiffness=None)
+
+
+__all__ = ["buckle_step"]

@@ -1,0 +1,526 @@
+"""A dynamic step: increments of a time scheme until the end of the step."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.increments import CUT, SAME, Increments
+from corota.analysis.newton import Outcome, Settings, newton
+from corota.analysis.procedures.explicit import explicit_step
+from corota.analysis.procedures.localization import softening
+from corota.analysis.procedures.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
+from corota.analysis.procedures.schemes import SCHEMES
+from corota.analysis.procedures.static import iteration_reporter
+from corota.analysis.terms.contact.newton import newton_with_contact
+from corota.analysis.terms.damping import damping_matrix
+from corota.errors import ConvergenceError, Interrupted, ModelError
+from corota.model import elements
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.observers import Observers
+    from corota.analysis.state import State
+    from corota.analysis.terms.contact.equations import TouchingSystem
+    from corota.model.loads import Amplitude
+    from corota.model.steps import Dynamic
+
+    Floats = NDArray[np.float64]
+
+#: An automatic increment aims at this share of the allowed local error.
+AIM = 0.7
+#: Share of the increment whose square weighs the stiffness in the first accelerations.
+TRACE = 1e-3
+#: Increments that a wave of a load needs at least, and those that follow it well.
+LEAST_PER_WAVE, PER_WAVE = 4.0, 20.0
+#: Displacements below this share of the model's size are as good as none.
+REST = 1e-5
+#: Automatic increments may miss the straight line of an amplitude by this share of its size.
+LOAD_ERROR = 0.05
+#: Initial velocities may break constraints by this share of the largest.
+UNEQUAL = 1e-9
+#: It shrinks or grows at most by these factors.
+LEAST, MOST = 0.25, 1.5
+
+
+def dynamic_step(
+    system: System,
+    step: Dynamic,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Callable[[State, int, float, dict[str, float]], None],
+    stops: list[float],
+) -> None:
+    """Run a dynamic step from the committed state.
+
+    Raises
+    ------
+    ModelError
+        If a material has no density.
+    ConvergenceError
+        With the reason, when no smaller increment helps.
+    """
+    check_density(system)
+    if step.scheme == "central_difference":
+        explicit_step(system, step, number, state, observers, save, stops)
+        return
+    warn_of_long_increments(system, step, state)
+    inertia = Inertia(system, step.mass, light_nodes(system, step))
+    now = start_motion(system, step, state, inertia)
+    book = Balance(system, step, now, inertia)
+    control = Increments(step, stops)
+    if not step.fixed_increments and step.first_increment >= step.period:
+        control.size = step.period / 100.0
+    again = system.again if system.touching is None else None
+    settings = Settings(step.tolerance, step.max_iterations, again)
+    count = state.counters
+    turned: Floats | float = 0.0
+    while not control.finished:
+        if control.number >= step.max_increments:
+            raise ConvergenceError(
+                f"step {number} used its {step.max_increments} increments at step time "
+                f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
+            )
+        target = control.target()
+        if not step.fixed_increments:
+            target = _not_over_a_load(system, step, control.time, target)
+        motion = _motion(system, step, inertia, now, target - control.time)
+        report = iteration_reporter(observers, system, number, control)
+        prescribed = system.conditions.prescribed(target, now.u)
+        outcome: Outcome[Evaluation]
+        if system.touching is None:
+            outcome = newton(motion, now.u, prescribed, target, settings, None, report)
+        else:
+            outcome, touching = newton_with_contact(
+                motion, system, now.u, prescribed, target, settings, report,
+                last_chance=step.fixed_increments,
+            )  # fmt: skip
+        count["iterations"] = count.get("iterations", 0) + outcome.iterations
+        reason = outcome.reason if not outcome.converged else ""
+        error = 0.0
+        if outcome.converged and not step.fixed_increments:
+            error = _local_error(system, motion, step, inertia.light)
+            if system.touching is not None:
+                energy = max(book.energy, book.driven(motion.end))
+                missed = _contact_error(touching, motion, step, energy)
+                # An impact that no increment is short enough for is taken as it is.
+                if CUT * (target - control.time) >= step.smallest_increment:
+                    error = max(error, missed)
+            if error > 1.0:
+                reason = f"local error {error:.2g} times the allowed one"
+        if reason:
+            count["cut-backs"] = count.get("cut-backs", 0) + 1
+            end = control.cut(target)
+            if end:
+                raise ConvergenceError(
+                    f"step {number} stopped at step time {control.time:g} of {step.period:g}: "
+                    f"{end}; last attempt: {reason}{softening(system.blocks)}. "
+                    "All converged increments are kept"
+                )
+            observers.cut_back(
+                number, control.number + 1, control.attempt - 1, reason, control.size
+            )
+            continue
+        system.commit()
+        inertia.settle(now, motion.end, target - control.time)
+        if system.touching is None:
+            book.accept(motion)
+        else:
+            touching.accept(outcome.u, target)
+            assert touching.touch is not None
+            book.accept(motion, touching.touch.force)
+        now = motion.end
+        state.u, state.v, state.a = now.u + turned, now.v, now.a
+        if (more := _whole_turns(system, now.u)) is not None:
+            now.u = now.u - more
+            turned = turned + more
+        state.at = outcome.at
+        state.step_time = target
+        state.work = book.external
+        dt = target - control.time
+        attempts = control.attempt
+        control.accept(target, outcome.iterations)
+        if not step.fixed_increments:
+            grown = AIM * dt * math.sqrt(1.0 / max(error, 1e-6))
+            control.size = min(max(grown, LEAST * dt), MOST * dt, step.largest_increment)
+        scalars = {
+            "dt": dt,
+            "iterations": float(outcome.iterations),
+            "attempts": float(attempts),
+            "residual": outcome.sizes[-1],
+            "external work": book.external,
+        }
+        book.add_to(scalars)
+        save(state, control.number, target / step.period, scalars)
+        if observers.stop_requested:
+            raise Interrupted(
+                f"stopped at step {number}, step time {target:g}; everything up to there is kept"
+            )
+    if step.scheme == "energy_momentum" and state.v is not None:
+        state.carried = (state.u, state.v)
+    # A static step that follows needs the static equation at this displacement.
+    state.at = system.evaluate(state.u, step.period)
+
+
+def light_nodes(system: System, step: Dynamic) -> NDArray[np.bool_] | None:
+    """Nodes whose mass others carry: the slave nodes of contact.
+
+    A contact force that acts on nodes without mass is bounded and does no work in the limit of
+    small increments; on nodes with mass it creates energy and chatters.
+    """
+    if system.touching is None or not step.redistribute:
+        return None
+    light = np.zeros(len(system.per_node), bool)
+    for pair in system.touching.pairs:
+        if not pair.tied:
+            light[pair.slave.node_list] = True
+    return light
+
+
+def _whole_turns(system: System, u: Floats) -> Floats | None:
+    """Whole turns that all rotations have made, or None; what is computed is the same without.
+
+    Rotations of many turns are rounded accordingly, and momenta with them. Line elements,
+    supports and constraints may know the number of turns.
+    """
+    mask = system.is_rotation
+    known = system.ties is not None or system.touching is not None
+    if known or not (mask.any() and system.turning):
+        return None
+    turns = np.round(float(u[mask].mean()) / (2.0 * np.pi))
+    lines = any(elements.find(b.section.element).line for b in system.blocks)
+    if turns == 0.0 or lines or system.conditions.held[mask].any():
+        return None
+    return np.where(mask, 2.0 * np.pi * turns, 0.0)
+
+
+def check_density(system: System) -> None:
+    """Refuse materials without mass."""
+    for block in system.blocks:
+        material = block.section.material
+        if material.rho <= 0.0 and not block.section.element.startswith("SPRING"):
+            raise ModelError(
+                f"material {material.name or material.law!r} has no density, which motion needs; "
+                "add one (*DENSITY, rho=)",
+                material.where or block.section.where,
+            )
+
+
+def warn_of_long_increments(system: System, step: Dynamic, state: State) -> None:
+    """Warn where a fixed increment steps over a load's wave; names the increment to use.
+
+    The period of an amplitude is twice the shortest time between its turning points.
+    """
+    if not step.fixed_increments:
+        return
+    for name, amplitude in _amplitudes(system, step):
+        slope = np.diff(amplitude.value)
+        moving = np.flatnonzero(slope)
+        turns = moving[1:][np.sign(slope[moving[1:]]) != np.sign(slope[moving[:-1]])]
+        if len(turns) < 2:
+            continue
+        wave = 2.0 * float(np.diff(amplitude.time[turns]).min())
+        if step.first_increment > wave / LEAST_PER_WAVE:
+            note = (
+                f"the increment {step.first_increment:g} is long for the amplitude {name!r}, which "
+                f"has a period of {wave:.3g}: use at most {wave / PER_WAVE:.2g}"
+            )
+            state.notes.append(note)
+            warnings.warn(note, stacklevel=2)
+
+
+def _amplitudes(system: System, step: Dynamic) -> list[tuple[str, Amplitude]]:
+    """Amplitudes of the loads and supports of a step by name."""
+    model = system.model
+    items = [*model.loads, *model.supports, *step.loads, *step.supports]
+    names = sorted({item.amplitude for item in items if item.amplitude})
+    return [(name, model.amplitudes[name]) for name in names]
+
+
+def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) -> float:
+    """The target, or an earlier point of an amplitude that an increment would step over.
+
+    Between both ends of an increment the schemes see a straight line. A body at rest has no
+    local error: its increments grow, and a pulse could pass between two of them.
+    """
+    for _, amplitude in _amplitudes(system, step):
+        start = system.conditions.time if amplitude.total_time else 0.0
+        points = np.asarray(amplitude.time) - start
+        inside = points[(points > time + SAME * step.period) & (points < target)]
+        ends = np.array([amplitude(start + t) for t in (time, target)])
+        size = np.abs(amplitude.value).max()
+        for point in inside:
+            line = np.interp(point, (time, target), ends)
+            if abs(amplitude(start + point) - line) > LOAD_ERROR * size:
+                target = float(inside[0])
+                break
+    return target
+
+
+def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) -> Moving:
+    """Velocities and accelerations at the start of a step."""
+    zero = np.zeros(system.n_dofs)
+    if state.v is None:
+        state.v = initial_velocity(system, state.u)
+    support_a = _start_supports(system, step, state)
+    at = system.evaluate(state.u, 0.0)
+    u, v = state.u, state.v
+    last = state.carried
+    goes_on = last is not None and last[0] is u and last[1] is v
+    goes_on = goes_on and step.scheme == "energy_momentum"
+    if system.ties is not None:
+        # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
+        # they keep their own velocities, which are those of its mid-point relations.
+        system.ties.complete_rates(u, v.copy() if goes_on else v, zero)
+    force = inertia.force(u, v, zero)
+    rayleigh, matrix = _damping(system, step, u)
+    resting = zero
+    if system.touching is not None:
+        # Bodies may rest on each other from a step before.
+        touching = system.touching
+        resting = touching.evaluate(u, touching.committed, 0.0, at.values).force
+    damping = inertia.damping(at, u, v, 0.0, rayleigh, matrix)
+    internal, external = at.internal, at.external
+    # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
+    # The consistent mass of drilling elements has none for a uniform drilling rotation, which
+    # follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness
+    # decides it.
+    mass = inertia.tangent(u)
+    if system.is_rotation.any() or inertia.light.any():
+        trace = step.period if not step.fixed_increments else step.first_increment
+        mass += (TRACE * trace) ** 2 * at.values
+    at.values[:] = mass
+    at.internal, at.load_stiffness = internal + force + damping - resting, None
+    link = at.link
+    if link is not None:
+        at.link = replace(link, curvature=0.0)
+    a = zero + system.predict(at, support_a)[0]
+    state.a = a
+    if not goes_on:
+        system.core.start_motion(system.in_space(u), system.in_space(v))
+    return Moving(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+
+
+def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
+    """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
+
+    Both are differences of second order over the first increments: the trapezoidal rule would
+    carry a wrong start on for ever.
+    """
+    assert state.v is not None
+    held = system.conditions.held
+    whole = not step.fixed_increments and step.first_increment >= step.period
+    h = min(step.period / 100.0 if whole else step.first_increment, step.period / 3.0)
+    p = [system.conditions.prescribed(k * h, state.u) for k in range(4)]
+    state.v[held] = ((-3.0 * p[0] + 4.0 * p[1] - p[2]) / (2.0 * h))[held]
+    rate = (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) / (h * h)
+    return np.where(held, rate, 0.0)
+
+
+def initial_velocity(system: System, u: Floats | None = None) -> Floats:
+    """The model's initial velocities by dof; a spin is that of the displaced body."""
+    out = np.zeros((len(system.per_node), 3))
+    points = system.model.mesh.points
+    u = np.zeros(system.n_dofs) if u is None else u
+    if system.turning:
+        points = points + system.by_node(u)[:, :2]
+    for item in system.model.velocities:
+        if isinstance(item.nodes, str):
+            everywhere = np.arange(len(points))
+            nodes = system.model.mesh.nodes_of(item.nodes) if item.nodes else everywhere
+        else:
+            nodes = np.asarray(item.nodes, np.int64)
+        if item.dof is not None:
+            out[nodes, item.dof] = item.value[0]
+            continue
+        vx, vy, spin, x0, y0 = (*item.value, 0.0, 0.0, 0.0)[:5]
+        out[nodes, 0] = vx - spin * (points[nodes, 1] - y0)
+        out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
+        out[nodes, 2] = spin
+    v = system.from_nodes(out)
+    if system.ties is not None:
+        _follow_constraints(system, u, v)
+    return v
+
+
+def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
+    """Give dependent dofs the velocity that follows from the others, in place.
+
+    Raises
+    ------
+    ModelError
+        If another one was given.
+    """
+    assert system.ties is not None
+    given = v.copy()
+    system.ties.complete_rates(u, v)
+    off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
+    if off.any():
+        dof = int(np.flatnonzero(off)[0])
+        raise ModelError(
+            f"the initial velocity of {system.describe(dof)}, {given[dof]:g}, breaks the "
+            f"constraint that determines it, which gives {v[dof]:g}: give the velocity to the "
+            "nodes it depends on too (a reference node has a rotation, dof 6 in decks)",
+            next((item.where for item in system.model.velocities if item.where), None),
+        )
+
+
+def _motion(
+    system: System, step: Dynamic, inertia: Inertia, now: Moving, dt: float
+) -> NewmarkMotion | ConservingMotion:
+    rayleigh, matrix = _damping(system, step, now.u)
+    if step.scheme == "energy_momentum":
+        return ConservingMotion(system, inertia, now, dt, rayleigh, matrix)
+    scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)
+    return NewmarkMotion(system, inertia, scheme, now, dt, rayleigh, matrix)
+
+
+def _damping(system: System, step: Dynamic, u: Floats) -> tuple[tuple[float, float], Floats | None]:
+    """Damping per mass of the model, and the matrix of all other."""
+    matrix = damping_matrix(system, u, step.rayleigh[1], step.mass)
+    return (step.rayleigh[0], 1.0), matrix
+
+
+def _local_error(
+    system: System,
+    motion: NewmarkMotion | ConservingMotion,
+    step: Dynamic,
+    light: NDArray[np.bool_],
+) -> float:
+    """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991)."""
+    begin, end, dt = motion.start, motion.end, motion.dt
+    beta = motion.scheme.beta if isinstance(motion, NewmarkMotion) else 0.25
+    moves = ~system.is_rotation & ~light
+    error = abs(beta - 1.0 / 6.0) * dt * dt * np.abs(end.a - begin.a)[moves].max(initial=0.0)
+    size = max(np.abs(end.u[moves]).max(initial=0.0), dt * np.abs(end.v[moves]).max(initial=0.0))
+    # No increment is short enough for the relative error of a motion out of rest.
+    return float(error / (step.error_tolerance * max(size, REST * system.length)))
+
+
+def _contact_error(
+    contact: TouchingSystem, motion: NewmarkMotion | ConservingMotion, step: Dynamic, energy: float
+) -> float:
+    """What an increment misses of the moment of impact, over the allowed share.
+
+    Gaps that close within the increment: the work contact does on the way, against a thousandth
+    of the energy for a tolerance of one percent; where a rate condition keeps that at zero, the
+    depth they are left with, against a tenth of an edge.
+    """
+    touch, touching = contact.touch, contact.touching
+    assert touch is not None
+    if touching.persistent:
+        depth = 0.0
+        for pair, terms in zip(touching.pairs, touch.terms, strict=True):
+            if pair.start is not None and pair.n:
+                deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
+                edge = float(pair.slave.length.mean())
+                depth = max(depth, float((deeper / pair.full).max()) / edge)
+        return 0.1 * depth / step.error_tolerance
+    work = float(touch.force @ (motion.end.u - motion.start.u))
+    parts = touching.parts(touch.multipliers)
+    for pair, terms, (_, q) in zip(touching.pairs, touch.terms, parts, strict=True):
+        if pair.friction:
+            work -= float(q @ terms.slip)
+        if pair.law is not None:
+            before = (
+                0.0
+                if touching.at is None
+                else pair.law_energy(touching.at.terms[touching.pairs.index(pair)])
+            )
+            work += pair.law_energy(terms) - before
+    return 10.0 * abs(work) / (step.error_tolerance * energy) if energy > 0.0 else 0.0
+
+
+class Balance:
+    """Energies and momenta along a step.
+
+    Work is summed with the mean of the forces at both ends of each increment, and with the
+    mid-point forces in the energy-momentum scheme, where the sums are exact.
+    """
+
+    def __init__(self, system: System, step: Dynamic, now: Moving, inertia: Inertia) -> None:
+        self.system, self.step, self.now, self.inertia = system, step, now, inertia
+        self.internal = self.external = self.damping = self.contact = 0.0
+        self.carried = step.scheme == "energy_momentum"
+        self.first = self._kinetic(now)
+        self.energy, self.mass = self.first[0], self.first[4]
+        self.kept = self._kept()
+
+    def _kept(self) -> float:
+        """What friction took so far and pressure laws hold; else contact does no work."""
+        touching = self.system.touching
+        if touching is None or touching.at is None:
+            return 0.0
+        pairs = zip(touching.pairs, touching.at.terms, strict=True)
+        return sum(pair.friction_work + pair.law_energy(terms) for pair, terms in pairs)
+
+    def _kinetic(self, now: Moving) -> list[float]:
+        return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
+
+    def driven(self, now: Moving) -> float:
+        """Energy of the body in the frame of what drives it: that of an impact from rest."""
+        moved = self.system.conditions.held & ~self.system.is_rotation
+        speed = np.abs(now.v[moved]).max(initial=0.0)
+        return 0.5 * self.mass * float(speed) ** 2
+
+    def accept(
+        self, motion: NewmarkMotion | ConservingMotion, contact: Floats | None = None
+    ) -> None:
+        """Add the work of an increment, in which contact has a force, shape (n_dofs,)."""
+        begin, end = motion.start, motion.end
+        held = self.system.conditions.held
+        if isinstance(motion, ConservingMotion):
+            d = motion.increment(end.u)
+            internal, external, damping = end.internal, end.external, end.damping
+            reaction = end.reaction()
+        else:
+            d = end.u - begin.u
+            internal, external, damping = (
+                0.5 * (getattr(begin, name) + getattr(end, name))
+                for name in ("internal", "external", "damping")
+            )
+            reaction = 0.5 * (begin.reaction() + end.reaction())
+        self.internal += float(internal @ d)
+        self.damping += float(damping @ d)
+        if contact is not None:
+            self.contact += float(contact @ d)
+            reaction = reaction - contact
+        # Supports that move do the work of the reaction.
+        reaction = np.where(held, reaction, 0.0)
+        self.external += float((external + reaction) @ d)
+        self.now = end
+        self.energy = max(self.energy, abs(self.internal), abs(self.external))
+
+    def add_to(self, scalars: dict[str, Any]) -> None:
+        """Write the balance into a frame's scalars."""
+        kinetic, px, py, angular, _ = self._kinetic(self.now)
+        if self.system.touching is not None:
+            scalars["contact work"] = self.contact
+        scalars.update(
+            {
+                "kinetic energy": kinetic,
+                "internal work": self.internal,
+                "external work": self.external,
+                "damping energy": self.damping,
+                "energy balance": kinetic
+                - self.first[0]
+                + self.internal
+                + self.damping
+                + self._kept()
+                - self.kept
+                - self.external,
+                "momentum x": px,
+                "momentum y": py,
+                "angular momentum": angular,
+            }
+        )

@@ -1,0 +1,349 @@
+"""A system in motion: what Newton's method sees of an increment of a time scheme.
+
+It offers the same methods as the static system, with the inertia and the weights of the
+scheme put into residual and tangent; so there is one Newton's method.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.equations import Evaluation, failure
+from corota.analysis.terms.attachments import Attachments
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.constraints.elimination import Link
+    from corota.analysis.equations import System
+    from corota.analysis.newton import Judgement
+    from corota.analysis.procedures.schemes import Scheme
+    from corota.model.steps import Step
+    from corota.results.results import PointFields
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class Moving:
+    """State of motion at the end of an increment.
+
+    Parameters
+    ----------
+    u, v, a : ndarray, shape (n_dofs,)
+    internal, external, inertia, damping : ndarray, shape (n_dofs,)
+        Forces at `u`, each with the sign of the residual's first term but `external`.
+    link : Link or None
+        What the constraints make of these forces.
+    """
+
+    u: Floats
+    v: Floats
+    a: Floats
+    internal: Floats
+    external: Floats
+    inertia: Floats
+    damping: Floats
+    link: Link | None = None
+
+    def gathered(self, force: Floats) -> Floats:
+        """A force with what dependent dofs pass on to their masters."""
+        return force if self.link is None else self.link.gather(force)
+
+    def reaction(self) -> Floats:
+        """What supports and nothing else must carry, at held dofs."""
+        return self.gathered(self.internal + self.damping + self.inertia - self.external)
+
+
+class Inertia:
+    """Inertia of a model: the constant matrix where there is one, else by element.
+
+    Parameters
+    ----------
+    system : System
+    kind : {"consistent", "constant", "lumped"}
+    light : ndarray of bool, shape (n_nodes,), optional
+        Nodes whose mass the other nodes of their elements carry.
+
+    Attributes
+    ----------
+    light : ndarray of bool, shape (n_dofs,)
+        Displacements without mass.
+    """
+
+    def __init__(self, system: System, kind: str, light: NDArray[np.bool_] | None = None) -> None:
+        self.system, self.kind = system, kind
+        self.attached = Attachments(system)
+        flags = np.zeros(0, bool) if light is None else np.ascontiguousarray(light)
+        system.core.set_light(flags)
+        self.light = np.zeros(system.n_dofs, bool)
+        if light is not None:
+            self.light = light[system.node_of_dof] & ~system.is_rotation
+            self.light &= self.attached.mass == 0.0
+        coupled = kind == "consistent" and bool(system.is_rotation.any())
+        zero = np.zeros(system.n_dofs)
+        self.matrix: Floats | None = None
+        if not coupled:
+            self.matrix = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
+
+    def settle(self, begin: Moving, end: Moving, dt: float) -> None:
+        """Give displacements without mass the mean velocity of the increment, in place.
+
+        They follow quasi-statically; what the scheme carries on for them is noise.
+        """
+        if self.light.any():
+            end.v[self.light] = (end.u - begin.u)[self.light] / dt
+            end.a[self.light] = 0.0
+
+    def force(self, u: Floats, v: Floats, a: Floats) -> Floats:
+        """Inertia force [force]."""
+        if self.matrix is not None:
+            return self.system.product(self.matrix, a)
+        return self._evaluate(u, v, a, (0.0, 0.0, 0.0), False)[0]
+
+    def add(
+        self, at: Evaluation, u: Floats, v: Floats, a: Floats, weights: tuple[float, float, float]
+    ) -> Floats:
+        """Add the tangent to `at` and the size to its scale; returns the force."""
+        if self.matrix is not None:
+            at.values += weights[2] * self.matrix
+            force = self.force(u, v, a)
+            at.scale += np.abs(force)
+            return force
+        force, scale, values = self._evaluate(u, v, a, weights, True)
+        at.values += values
+        at.scale += scale
+        return force
+
+    def tangent(self, u: Floats) -> Floats:
+        """Mass matrix at a displacement, upper triangle."""
+        if self.matrix is not None:
+            return np.array(self.matrix)
+        zero = np.zeros_like(u)
+        _, _, values = self._evaluate(u, zero, zero, (0.0, 0.0, 1.0), True)
+        return values
+
+    def _evaluate(
+        self, u: Floats, v: Floats, a: Floats, weights: tuple[float, float, float], tangent: bool
+    ) -> tuple[Floats, Floats, Floats]:
+        system = self.system
+        force, scale = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
+        values = np.zeros(len(system.indices) if tangent else 0)
+        with system.timed("assemble"):
+            x, rate, growth = (system.in_space(x) for x in (u, v, a))
+            system.core.inertia(x, rate, growth, self.kind, list(weights), force, scale, values)
+        own = self.attached.mass * a
+        if tangent:
+            values[self.attached.diagonal] += weights[2] * self.attached.mass
+        return system.at_nodes(force) + own, scale + np.abs(own), values
+
+    def momenta(self, u: Floats, v: Floats, carried: bool) -> Floats:
+        """Kinetic energy, linear and angular momentum and mass, shape (5,)."""
+        x, rate = (self.system.in_space(x) for x in (u, v))
+        core = np.array(self.system.core.momenta(x, rate, self.kind, carried))
+        return core + self.attached.momenta(u, v) if self.attached.mass.any() else core
+
+    def damping(
+        self, at: Evaluation, u: Floats, v: Floats, weight: float,
+        rayleigh: tuple[float, float], stiffness: Floats | None,
+    ) -> Floats:  # fmt: skip
+        """Rayleigh damping and dashpots; `weight` times the derivative by velocity goes to `at`."""
+        values = at.values
+        per_mass, per_stiffness = rayleigh
+        force = np.zeros_like(v)
+        if per_mass:
+            mass = self.tangent(u)
+            force += per_mass * self.system.product(mass, v)
+            values += weight * per_mass * mass
+        if per_stiffness and stiffness is not None:
+            force += per_stiffness * self.system.product(stiffness, v)
+            values += weight * per_stiffness * stiffness
+        if self.attached.dampers:
+            damped, triplets = self.attached.damp(u, v, values, weight)
+            force += damped
+            if triplets is not None:
+                # Derivatives of external forces have the other sign.
+                rows, columns, products = triplets
+                products = -products
+                if at.load_stiffness is not None:
+                    rows = np.concatenate([at.load_stiffness[0], rows])
+                    columns = np.concatenate([at.load_stiffness[1], columns])
+                    products = np.concatenate([at.load_stiffness[2], products])
+                at.load_stiffness = (rows, columns, products)
+        return force
+
+
+class NewmarkMotion:
+    """One increment of a scheme with Newmark's relations, for Newton's method.
+
+    Parameters
+    ----------
+    system : System
+    inertia : Inertia
+    scheme : Scheme
+    start : Moving
+    dt : float
+    rayleigh : tuple of float
+    stiffness : ndarray or None
+        Tangent at the start, for the damping per stiffness.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        inertia: Inertia,
+        scheme: Scheme,
+        start: Moving,
+        dt: float,
+        rayleigh: tuple[float, float] = (0.0, 0.0),
+        stiffness: Floats | None = None,
+    ) -> None:
+        self.system, self.inertia, self.scheme = system, inertia, scheme
+        self.start, self.dt = start, dt
+        self.rayleigh, self.stiffness = rayleigh, stiffness
+        self.end = start
+        # Forces of the start on the independent dofs: dependent ones have turned by the end.
+        self.begun = start.gathered(start.internal + start.damping)
+        self.begun_inertia = start.gathered(start.inertia)
+        self.begun_external = start.gathered(start.external)
+
+    def _rates(self, u: Floats) -> tuple[Floats, Floats]:
+        s, dt, b = self.scheme, self.dt, self.start
+        a = (u - b.u - dt * b.v) / (s.beta * dt * dt) - (0.5 / s.beta - 1.0) * b.a
+        v = b.v + dt * ((1.0 - s.gamma) * b.a + s.gamma * a)
+        if self.system.ties is not None:
+            self.system.ties.complete_rates(u, v, a)
+        return v, a
+
+    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
+        """Residual and effective tangent of the equation of motion."""
+        s, dt = self.scheme, self.dt
+        at = self.system.evaluate(u, step_time)
+        v, a = self._rates(u)
+        internal, external = at.internal, at.external
+        c_v, c_a = s.gamma / (s.beta * dt), 1.0 / (s.beta * dt * dt)
+        share = 1.0 - s.alpha_f
+        at.values *= share
+        if at.load_stiffness is not None:
+            rows, columns, values = at.load_stiffness
+            at.load_stiffness = (rows, columns, share * values)
+        m = 1.0 - s.alpha_m
+        force = self.inertia.add(at, u, v, a, (m, m * c_v, m * c_a))
+        damping = self.inertia.damping(at, u, v, share * c_v, self.rayleigh, self.stiffness)
+        self.end = Moving(u, v, a, internal, external, force, damping, at.link)
+        at.internal = (
+            share * (internal + damping)
+            + s.alpha_f * self.begun
+            + m * force
+            + s.alpha_m * self.begun_inertia
+        )
+        at.external = share * external + s.alpha_f * self.begun_external
+        return at
+
+    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+        """Newton correction."""
+        return self.system.predict(at, du_held)
+
+    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+        """Size of the residual."""
+        return self.system.judge(at, u)
+
+    def release(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back."""
+        self.system.release(at)
+
+
+class ConservingMotion:
+    """One increment of the energy-momentum scheme.
+
+    Loads are taken at the middle of the increment. The increment that moments do work on is
+    ``2 tan(dphi / 2)``, which also carries the rotational velocities.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        inertia: Inertia,
+        start: Moving,
+        dt: float,
+        rayleigh: tuple[float, float] = (0.0, 0.0),
+        stiffness: Floats | None = None,
+    ) -> None:
+        self.system, self.inertia = system, inertia
+        self.start, self.dt = start, dt
+        self.rayleigh, self.stiffness = rayleigh, stiffness
+        self.end = start
+
+    def increment(self, u: Floats) -> Floats:
+        """Increment that the forces do work on, shape (n_dofs,)."""
+        d = u - self.start.u
+        turn = self.system.is_rotation
+        if self.system.turning:
+            d[turn] = 2.0 * np.tan(0.5 * d[turn])
+        return d
+
+    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
+        """Residual and tangent of the mid-point equation of motion."""
+        system, b, dt = self.system, self.start, self.dt
+        n = system.n_dofs
+        force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
+        values = system.room()
+        if system.ties is not None:
+            system.ties.complete(u)
+        x1, x0, v0 = (system.in_space(x) for x in (u, b.u, b.v))
+        system.heat(step_time - 0.5 * dt)
+        try:
+            with system.timed("assemble"):
+                system.core.conserving(
+                    x1, x0, v0, dt, self.inertia.kind, system.turning,
+                    force, internal, scale, values,
+                )  # fmt: skip
+        except RuntimeError as error:
+            raise failure(system._labels(error.args[1])) from None
+        force, internal = system.at_nodes(force), system.at_nodes(internal)
+        middle = 0.5 * (u + b.u)
+        external, stiffness = system.conditions.external(step_time - 0.5 * dt, middle)
+        if stiffness is not None:
+            rows, columns, k = stiffness
+            stiffness = (rows, columns, 0.5 * k)
+        d = self.increment(u)
+        v = 2.0 / dt * d - b.v
+        attached = self.inertia.attached
+        force += attached.mass * (v - b.v) / dt
+        values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
+        link = None if system.ties is None else system.ties.secant(b.u, u)
+        at = Evaluation(force, external, scale, values, stiffness, link)
+        damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
+        at.internal = force + damping
+        self.end = Moving(u, v, (v - b.v) / dt, internal, external, force - internal, damping, link)
+        return at
+
+    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+        """Newton correction."""
+        return self.system.predict(at, du_held)
+
+    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+        """Size of the residual."""
+        return self.system.judge(at, u)
+
+    def release(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back."""
+        self.system.release(at)
+
+
+def add_kinetic(
+    system: System, fields: list[PointFields], u: Floats, v: Floats, step: Step
+) -> None:
+    """Give fields the kinetic energy of their elements, per volume."""
+    kind, scheme = (getattr(step, name, "") for name in ("mass", "scheme"))
+    x, rate = system.in_space(u), system.in_space(v)
+    for number, block in enumerate(fields):
+        carried = scheme == "energy_momentum"
+        each = system.core.kinetic(number, x, rate, kind or "consistent", carried)
+        volume = block.volume.sum(axis=1)
+        density = np.divide(each, volume, out=np.zeros_like(each), where=volume > 0.0)
+        block.values["EKEDEN"] = np.repeat(density[:, None], block.volume.shape[1], axis=1)

@@ -1,0 +1,3 @@
+"""Equilibrium paths: arc length, displacement control, stability and branches."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,307 @@
+"""A static step that follows the equilibrium path of a model by arc length or displacement.
+
+Time in such a step is the length of the path, in units in which a linear structure takes one
+to the full load; the load factor multiplies what the step changes, while what earlier steps
+reached stays.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.newton import ElementFailure, Settings
+from corota.analysis.procedures.path.controls import Row
+from corota.analysis.procedures.path.corrector import Point
+from corota.analysis.procedures.path.equations import path_system
+from corota.analysis.procedures.path.tracer import End, Follower, PathStalled, Plan
+from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
+from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label, dof_index
+from corota.results.observer import Iteration
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.newton import Judgement
+    from corota.analysis.observers import Observers
+    from corota.analysis.procedures.path.tracer import Increment
+    from corota.analysis.state import State
+    from corota.model.paths import Where
+    from corota.model.steps import Static
+
+    Floats = NDArray[np.float64]
+    Save = Callable[[State, int, float, dict[str, float]], None]
+
+
+def path_step(
+    system: System,
+    step: Static,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Save,
+    path: ArcLength | DisplacementControl,
+    *,
+    factor: float = 0.0,
+    increment: int = 0,
+) -> CriticalPoint | None:
+    """Run a step, or the rest of one, along its path.
+
+    Parameters
+    ----------
+    path : ArcLength or DisplacementControl
+    factor : float
+        Load factor of the committed state.
+    increment : int
+        Increments of the step so far.
+
+    Returns
+    -------
+    CriticalPoint or None
+        The limit point at which the path was asked to end.
+
+    Raises
+    ------
+    ConvergenceError
+        With the reason, when the path cannot be followed further.
+    ModelError
+        If the step's loads do not grow with a load factor, or none does.
+    """
+    system.conditions.check_proportional()
+    run = PathStep(system, step, number, state, observers, save, factor, increment)
+    return run.run(path)
+
+
+class PathStep:
+    """One run of :func:`path_step`."""
+
+    def __init__(
+        self,
+        system: System,
+        step: Static,
+        number: int,
+        state: State,
+        observers: Observers,
+        save: Save,
+        factor: float,
+        increment: int,
+    ) -> None:
+        self.system, self.step, self.number, self.state = system, step, number, state
+        self.observers, self.save = observers, save
+        self.factor, self.increment = factor, increment
+        self.along = path_system(system, state.notes)
+
+    def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
+        """Follow the path to its end."""
+        system, step, state = self.system, self.step, self.state
+        period = step.period
+        start = self.along.start(state.u)
+        at = self.along.evaluate(start, self.factor * period)
+        force, move = system.load_rate(state.u)
+        heats = system.free.largest(system.conditions.heating) > 0.0
+        if not (np.any(force[~system.conditions.held]) or np.any(move) or heats):
+            raise ModelError(
+                f"step {self.number} follows a path, but nothing in it grows with the load "
+                "factor: give it a load or a moving support of its own",
+                step.where,
+            )
+        follower = Follower(
+            self.along,
+            Point(start, self.factor, at),
+            period,
+            Settings(step.tolerance, step.max_iterations + self.along.more_iterations),
+            self._plan(path),
+            self._report,
+            self._cut_back,
+        )
+        limit: CriticalPoint | None = None
+        try:
+            for found in follower:
+                point = self._accept(found)
+                if found.last and point is not None and getattr(path, "stop_at_limit", False):
+                    limit = point
+                self._check(found)
+        except PathStalled as stalled:
+            raise ConvergenceError(
+                f"step {self.number} stopped on its path at load factor {self.factor:.6g} "
+                f"(increment {self.increment}): {stalled}. All converged increments are kept"
+            ) from None
+        except SingularError as error:
+            if self.increment:
+                raise ConvergenceError(
+                    f"step {self.number} stopped on its path at load factor "
+                    f"{self.factor:.6g}: {error}"
+                ) from None
+            raise
+        finally:
+            counters = state.counters
+            counters["iterations"] = counters.get("iterations", 0) + follower.iterations
+            # The factorisation has changed the tangent's held rows in place.
+            system.conditions.end_time = self.factor * period
+            try:
+                self.along.restart()
+                z = self.along.start(state.u)
+                state.at = self.along.plain(self.along.evaluate(z, self.factor * period))
+            except ElementFailure as error:
+                raise ConvergenceError(
+                    f"step {self.number} stopped on its path at load factor {self.factor:.6g}: "
+                    f"{error}"
+                ) from None
+        return limit
+
+    # -- increments --------------------------------------------------------------------
+
+    def _accept(self, found: Increment) -> CriticalPoint | None:
+        state, system = self.state, self.system
+        before, at, u = state.at, self.along.plain(found.point.at), found.point.u[: system.n_dofs]
+        if before is not None:
+            du = u - state.u
+            held = system.conditions.held
+            old = system.conditions.external(self.factor * self.step.period, state.u)[0]
+            mean = 0.5 * (old + at.external)
+            pull = system.reaction(at) + before.internal - old
+            if before.link is not None:
+                pull += before.link.gather(before.internal - old) - (before.internal - old)
+            mean[held] += 0.5 * pull[held]
+            state.work += float(np.einsum("i,i->", mean, du))
+        state.u, state.at = u, at
+        state.step_time += found.size * self.step.period
+        state.negative = found.negative
+        self.factor = found.point.factor
+        self.increment += 1
+        scalars = {
+            "dt": found.size * self.step.period,
+            "iterations": float(found.iterations),
+            "attempts": float(found.attempts),
+            "residual": system.judge(at, u).size,
+            "external work": state.work,
+            "negative pivots": float(found.negative),
+        }
+        if found.negative < 0 and self.along.not_conservative not in state.notes:
+            state.notes.append(self.along.not_conservative)
+        if found.negative >= 0:
+            scalars["stable"] = float(found.negative == 0)
+        critical = None
+        if found.critical is not None:
+            assert found.critical.kind != "kink"
+            kind = found.critical.kind
+            scalars[f"{kind} point"] = 1.0
+            critical = CriticalPoint(
+                kind, self.number, self.increment, self.factor,
+                system.by_node(found.critical.mode[: system.n_dofs]), found.critical.projection,
+                found.critical.negative,
+            )  # fmt: skip
+            state.critical.append(critical)
+            state.notes.append(str(critical))
+        self.save(state, self.increment, self.factor, scalars)
+        return critical
+
+    def _check(self, found: Increment) -> None:
+        """End for reasons that are not of the path."""
+        if self.observers.stop_requested:
+            raise Interrupted(
+                f"stopped at step {self.number}, load factor {self.factor:.6g}; everything up "
+                "to there is kept"
+            )
+        if not found.last and self.increment >= self.step.max_increments:
+            raise ConvergenceError(
+                f"step {self.number} used its {self.step.max_increments} increments at load "
+                f"factor {self.factor:.6g}; allow more, or name another end of the path"
+            )
+
+    def _report(
+        self,
+        attempt: int,
+        iteration: int,
+        judged: Judgement,
+        correction: float,
+        factor: float,
+        size: float,
+    ) -> None:
+        system = self.system
+        self.observers.iteration(
+            Iteration(
+                self.number,
+                self.increment + 1,
+                attempt,
+                iteration,
+                judged.force,
+                judged.moment,
+                correction,
+                int(system.node_of_dof[judged.worst]),
+                int(system.component[judged.worst]),
+                "",
+                size,
+                factor,
+            )
+        )
+
+    def _cut_back(self, attempt: int, reason: str, size: float) -> None:
+        counters = self.state.counters
+        counters["cut-backs"] = counters.get("cut-backs", 0) + 1
+        self.observers.cut_back(self.number, self.increment + 1, attempt, reason, size)
+
+    # -- plan --------------------------------------------------------------------------
+
+    def _plan(self, path: ArcLength | DisplacementControl) -> Plan:
+        step, period = self.step, self.step.period
+        plan = Plan(
+            step.first_increment / period,
+            step.smallest_increment / period,
+            step.largest_increment / period,
+            step.fixed_increments,
+            locate=path.locate,
+        )
+        if isinstance(path, DisplacementControl):
+            row = self._row(path.terms)
+            left = path.target - row.of(self.state.u)
+            if left == 0.0:
+                raise InputError(
+                    f"the controlled displacement is at its target {path.target:g} already",
+                    step.where,
+                )
+            row.value = left / path.increments
+            plan.row = row
+            plan.ends.append(End(path.target, row))
+            return plan
+        if path.factor is not None:
+            plan.ends.append(End(path.factor))
+        if path.displacement is not None:
+            where, dof, value = path.displacement
+            plan.ends.append(End(value, self._row([(where, dof, 1.0)])))
+        plan.increments = path.increments or 0
+        plan.spherical = path.shape == "spherical"
+        plan.switch, plan.side = path.switch, path.side
+        plan.stop_at_limit = path.stop_at_limit
+        return plan
+
+    def _row(self, terms: Sequence[tuple[Where, str | int, float]]) -> Row:
+        """Means over sets as one combination of dofs."""
+        dofs: list[int] = []
+        weights: list[float] = []
+        mesh = self.system.model.mesh
+        for where, name, weight in terms:
+            if isinstance(where, str):
+                nodes = mesh.nodes_of(where)
+            elif isinstance(where, Label):
+                nodes = np.flatnonzero(mesh.node_labels == where)
+            else:
+                nodes = np.atleast_1d(np.asarray(where, np.int64))
+            dof = dof_index(name)
+            if nodes.size == 0 or nodes.min() < 0 or nodes.max() >= mesh.n_nodes:
+                raise InputError(f"no such nodes to control or end a path: {where!r}")
+            found = self.system.dofs(nodes, dof)
+            if (found < 0).any():
+                label = mesh.node_labels[nodes[found < 0][0]]
+                raise InputError(f"node {label} has no {name} to control or end a path")
+            dofs += found.tolist()
+            weights += [weight / len(nodes)] * len(nodes)
+        return Row(np.array(dofs), np.array(weights), 0.0)
+
+
+__all__ = ["path_step"]

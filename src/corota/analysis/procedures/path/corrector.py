@@ -1,0 +1,236 @@
+"""Newton's method with the load factor among the unknowns, and directions along a path.
+
+The bordered system is solved by elimination: one factorisation, two right-hand sides.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.newton import DIVERGED, ElementFailure, GiveUp, Judgement, Settings
+from corota.analysis.procedures.path.controls import product
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.procedures.path.controls import Control
+    from corota.analysis.procedures.path.equations import PathSystem
+
+    Floats = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+
+
+@dataclass
+class Point:
+    """An equilibrium: displacement, load factor and the evaluation there."""
+
+    u: Floats
+    factor: float
+    at: Any
+
+
+@dataclass
+class Tangent:
+    """Direction of the path at a point.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n_dofs,)
+        Displacement per unit of path.
+    factor : float
+        Load factor per unit of path.
+    negative : int
+        Negative pivots of the tangent matrix, -1 if unknown.
+    """
+
+    u: Floats
+    factor: float
+    negative: int
+
+    def reversed(self) -> Tangent:
+        """The other sense."""
+        return Tangent(-self.u, -self.factor, self.negative)
+
+
+@dataclass
+class Metric:
+    """Length of directions in displacement and load factor.
+
+    The displacement that a unit of load factor makes at the start of the step counts as much
+    as that unit, so that arcs have no unit and a linear structure takes one to factor one.
+    """
+
+    counted: Mask
+    length: float  # displacement of a unit of load factor at the start
+
+    def dot(self, u: Floats, f: float, v: Floats, g: float) -> float:
+        """Scalar product of two directions."""
+        return 0.5 * (product(u, v, self.counted) / self.length**2 + f * g)
+
+    def size(self, u: Floats, f: float) -> float:
+        """Length of a direction."""
+        return float(np.sqrt(self.dot(u, f, u, f)))
+
+    def displacement(self, u: Floats) -> float:
+        """Length of the displacements alone [length]."""
+        return float(np.sqrt(product(u, u, self.counted)))
+
+
+@dataclass
+class Corrected:
+    """What became of an attempt.
+
+    Parameters
+    ----------
+    point : Point or None
+        Equilibrium, if it was found.
+    iterations : int
+    sizes : list of float
+        Residuals, the first before the first correction.
+    reason : str
+        Why it was not found.
+    singular : SingularError or None
+        Set where a tangent on the way had no inverse.
+    """
+
+    point: Point | None
+    iterations: int = 0
+    sizes: list[float] = field(default_factory=list)
+    reason: str = ""
+    singular: SingularError | None = None
+
+
+def correct(
+    system: PathSystem,
+    base: Point,
+    guess: Point,
+    period: float,
+    control: Control,
+    settings: Settings,
+    report: Callable[[int, Judgement, float, float], None] | None = None,
+    loose: bool = False,
+) -> Corrected:
+    """Find the equilibrium that meets a control, starting from a guess.
+
+    Parameters
+    ----------
+    system : PathSystem
+    base : Point
+        Where the increment starts.
+    guess : Point
+        Meets the control, with held dofs where its load factor puts them.
+    period : float
+        Step time of load factor one [time].
+    control : Control
+    settings : Settings
+    report : callable, optional
+        Told iteration, judgement, largest correction and load factor.
+    loose : bool
+        Whether what moves freely may be brought to a hold.
+
+    Returns
+    -------
+    Corrected
+    """
+    done = Corrected(None)
+    system.restart(loose, guess.at)
+    at = _search(done, system, base, guess, period, control, settings, report)
+    if done.point is not None:
+        done.reason = system.refuse(at, done.point.u)
+        if done.reason:
+            done.point = None
+    if done.point is None and at is not None:
+        done.reason += system.explain(at)
+    return done
+
+
+def _search(
+    done: Corrected,
+    system: PathSystem,
+    base: Point,
+    guess: Point,
+    period: float,
+    control: Control,
+    settings: Settings,
+    report: Callable[[int, Judgement, float, float], None] | None,
+) -> Any:
+    """Fill in what became of an attempt; returns the last evaluation, None if there is none."""
+    u, factor = guess.u, guess.factor
+    n, best, at = system.n_dofs, np.inf, None
+    judged: Judgement | None = None
+    correction = 0.0
+    for iteration in range(settings.max_iterations + 1):
+        try:
+            at = system.evaluate(u, factor * period)
+        except ElementFailure as error:
+            done.reason = str(error)
+            return at
+        before, judged = judged, system.judge(at, u)
+        done.sizes.append(judged.size)
+        done.iterations = iteration
+        if iteration and report is not None:
+            report(iteration, judged, correction, factor)
+        if not np.isfinite(judged.size):
+            done.reason = "the residual is not finite"
+            return at
+        stalled = before is not None and judged.size >= 0.1 * before.size
+        if judged.size <= settings.tolerance or (stalled and judged.rounding(settings.tolerance)):
+            done.point = Point(u, factor, at)
+            return at
+        if iteration > 1 and judged.size > DIVERGED * max(best, 1e-6):
+            done.reason = f"diverges: the residual grew to {judged.size:.1e}"
+            return at
+        best = min(best, judged.size)
+        if iteration == settings.max_iterations:
+            break
+        force, move = system.load_rate(u)
+        try:
+            a, b = system.advance(at, force, move)
+        except SingularError as error:
+            done.reason, done.singular = str(error), error
+            return at
+        except GiveUp as error:
+            done.reason = str(error)
+            return at
+        change = control.change(u - base.u, factor - base.factor, a, b)
+        du = a if change is None else a + change * b
+        if change is None or not np.isfinite(du).all():
+            done.reason = "no equilibrium near the guess at this length"
+            return at
+        correction = float(np.abs(du[:n]).max(initial=0.0))
+        u, factor = u + du, factor + change
+    done.reason = (
+        f"no convergence in {settings.max_iterations} iterations (residual {done.sizes[-1]:.1e})"
+    )
+    return at
+
+
+def tangent_at(
+    system: PathSystem, point: Point, metric: Metric | None = None
+) -> tuple[Tangent, Metric]:
+    """Direction of the path at an equilibrium, of length one, towards growing load factor.
+
+    Raises
+    ------
+    SingularError
+        If the tangent matrix has no inverse there.
+    """
+    force, move = system.load_rate(point.u)
+    # The matrix is overwritten by the factorisation's preparation: the point keeps its own.
+    x, negative = system.rate(point.at, force, move)
+    if metric is None:
+        metric = Metric(system.counted, float(np.sqrt(product(x, x, system.counted))))
+        if metric.length == 0.0:
+            metric.length = 1.0
+    size = metric.size(x, 1.0)
+    return Tangent(x / size, 1.0 / size, negative), metric
+
+
+__all__ = ["Corrected", "Metric", "Point", "Tangent", "correct", "tangent_at"]

@@ -1,0 +1,174 @@
+"""What the followers of paths see of a system: rates and corrections per unit of load factor."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.newton import Judgement
+    from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
+
+    Floats = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+
+#: What cannot be judged when the tangent is not symmetric.
+NOT_CONSERVATIVE = (
+    "the loads follow the structure and have no potential: the tangent is not symmetric, its "
+    "pivots do not tell stability (non-conservative: use dynamics)"
+)
+
+
+class PathSystem(Protocol):
+    """A system whose load has a factor.
+
+    Its unknowns are the dofs and whatever the system adds behind them, which a path neither
+    measures nor steers by.
+    """
+
+    @property
+    def n_dofs(self) -> int:
+        """Dofs, the first of the unknowns."""
+        ...
+
+    @property
+    def counted(self) -> Mask:
+        """Unknowns that measure lengths, shape (n,)."""
+        ...
+
+    @property
+    def length(self) -> float:
+        """Size of the structure [length]."""
+        ...
+
+    def restart(self, loose: bool = False, like: Any = None) -> None:
+        """Begin an attempt at an increment: forget what another one left.
+
+        `loose` allows what moves freely to be brought to a hold, as bodies into contact; `like`
+        is an evaluation that the guess was taken from.
+        """
+        ...
+
+    def evaluate(self, u: Floats, step_time: float) -> Any:
+        """Residual and tangent."""
+        ...
+
+    def judge(self, at: Any, u: Floats) -> Judgement:
+        """Size of the residual."""
+        ...
+
+    def refuse(self, at: Any, u: Floats) -> str:
+        """Why an equilibrium cannot be the next of the path, or nothing."""
+        ...
+
+    def explain(self, at: Any) -> str:
+        """What an attempt that failed at an evaluation hung on, for its message."""
+        ...
+
+    def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
+        """Change of forces and of held dofs per unit of load factor."""
+        ...
+
+    def advance(self, at: Any, force: Floats, move: Floats) -> tuple[Floats, Floats]:
+        """Newton correction at the load factor, and the change per unit of it.
+
+        `force` and `move` are those of :meth:`load_rate`.
+        """
+        ...
+
+    def rate(self, at: Any, force: Floats, move: Floats) -> tuple[Floats, int]:
+        """Change per unit of load factor, and negative pivots (-1 if unknown)."""
+        ...
+
+    def solve_again(self, rhs: Floats) -> Floats:
+        """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
+        ...
+
+    def ahead(self, at: Any, rate: Floats) -> float:
+        """Whether a direction leads away from the kink since the committed state.
+
+        Positive if so, negative if it leads back, 0 where the path has no kink.
+        """
+        ...
+
+    def around(
+        self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
+    ) -> tuple[Point, Tangent] | None:
+        """Predict a point behind kinks that lie on the way from a committed one.
+
+        Also the direction there; None where there is no kink within a distance.
+        """
+        ...
+
+    def commit(self) -> None:
+        """Accept the last evaluated state."""
+        ...
+
+
+class SmoothPath:
+    """A system without contact on a path.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    more_iterations = 0
+    not_conservative = NOT_CONSERVATIVE
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.n_dofs, self.counted, self.length = system.n_dofs, system.counted, system.length
+        self.evaluate, self.judge, self.commit = system.evaluate, system.judge, system.commit
+        self.load_rate, self.solve_again = system.load_rate, system.solve_again
+        self.rate = system.correct
+
+    def start(self, u: Floats) -> Floats:
+        """The unknowns of a committed state."""
+        return u
+
+    def plain(self, at: Evaluation) -> Evaluation:
+        """The system's own evaluation."""
+        return at
+
+    def restart(self, loose: bool = False, like: Any = None) -> None:
+        """Nothing is kept between attempts."""
+
+    def refuse(self, at: Evaluation, u: Floats) -> str:
+        """Every equilibrium is taken."""
+        return ""
+
+    def explain(self, at: Evaluation) -> str:
+        """The residual says all."""
+        return ""
+
+    def ahead(self, at: Evaluation, rate: Floats) -> float:
+        """No kinks are known."""
+        return 0.0
+
+    def around(self, *_: Any) -> None:
+        """No kinks are known."""
+
+    def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
+        """See :class:`PathSystem`; `at` is overwritten."""
+        rhs = np.stack([-at.residual, force], axis=1)
+        held = np.stack([np.zeros_like(move), move], axis=1)
+        x, _ = self.system.correct(at, rhs, held)
+        return x[:, 0], x[:, 1]
+
+
+def path_system(system: System, notes: list[str]) -> Any:
+    """The system as a path sees it; `notes` takes remarks for the user."""
+    if system.touching is None:
+        return SmoothPath(system)
+    from corota.analysis.terms.contact.path import TouchingPath
+
+    return TouchingPath(system, notes)
+
+
+__all__ = ["NOT_CONSERVATIVE", "PathSystem", "SmoothPath", "path_system"]

@@ -1,0 +1,105 @@
+"""What a path is asked for, and what it gives back: plan, ends, increments."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Literal
+
+from corota.analysis.procedures.path.controls import Factor, Row
+
+if TYPE_CHECKING:
+    from corota.analysis.procedures.path.controls import Control
+    from corota.analysis.procedures.path.corrector import Point, Tangent
+    from corota.analysis.procedures.path.stability import Critical
+
+
+class PathStalled(Exception):
+    """No further increment could be found; the message says why."""
+
+
+@dataclass
+class End:
+    """Where a path ends: a displacement or the load factor (``row`` None) has a value."""
+
+    value: float
+    row: Row | None = None
+
+    def miss(self, point: Point) -> float:
+        """Signed distance from the end."""
+        return (point.factor if self.row is None else self.row.of(point.u)) - self.value
+
+    def control(self, base: Point) -> Control:
+        """What lands on the end from a point."""
+        if self.row is None:
+            return Factor(self.value - base.factor)
+        return replace(self.row, value=self.value - self.row.of(base.u))
+
+
+@dataclass
+class Plan:
+    """How a path is followed.
+
+    Parameters
+    ----------
+    first, smallest, largest : float
+        Sizes of increments, in units of the path (see :class:`Metric`).
+    fixed : bool
+        Never change the size.
+    ends : list of End
+    increments : int
+        End after so many; 0 for no such end.
+    row : Row, optional
+        Displacement control; its ``value`` is the increment of the displacement.
+    spherical, locate, switch, stop_at_limit : bool
+    side : int
+        Sign of the mode along which another branch is entered.
+    """
+
+    first: float = 0.05
+    smallest: float = 1e-7
+    largest: float = math.inf
+    fixed: bool = False
+    ends: list[End] = field(default_factory=list)
+    increments: int = 0
+    row: Row | None = None
+    spherical: bool = False
+    locate: bool = True
+    switch: bool = False
+    side: int = 1
+    stop_at_limit: bool = False
+
+
+@dataclass
+class Increment:
+    """An accepted point of the path.
+
+    Parameters
+    ----------
+    point : Point
+    tangent : Tangent
+        Direction in which the path goes on.
+    iterations, attempts : int
+    size : float
+        Length of the increment, in units of the path.
+    negative : int
+        Negative pivots, -1 if unknown; at a critical point those before it.
+    control : {"arc", "displacement", "load", "mode"}
+    critical : Critical or None
+    last : bool
+        Whether the path ends here.
+    """
+
+    point: Point
+    tangent: Tangent
+    iterations: int
+    attempts: int
+    size: float
+    negative: int
+    control: Literal["arc", "displacement", "load", "mode"] = "arc"
+    critical: Critical | None = None
+    last: bool = False
+
+
+__all__ = ["End", "Increment", "PathStalled", "Plan"]

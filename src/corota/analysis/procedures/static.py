@@ -1,0 +1,272 @@
+"""A static step: increments of Newton's method until the end of the step."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from corota.analysis.equations import Evaluation
+from corota.analysis.increments import Increments
+from corota.analysis.newton import Outcome, Settings, newton
+from corota.analysis.procedures.localization import softening
+from corota.analysis.procedures.path.arc_length import path_step
+from corota.analysis.terms.contact.newton import newton_with_contact
+from corota.errors import (
+    ConvergenceError,
+    Interrupted,
+    ModelError,
+    SingularError,
+)
+from corota.model.paths import ArcLength
+from corota.results.observer import Iteration
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.newton import Judgement
+    from corota.analysis.observers import Observers
+    from corota.analysis.state import State
+    from corota.model.steps import Static
+
+    Floats = NDArray[np.float64]
+
+#: Failed attempts under growing negative pivots after which a limit point is looked for.
+STALLED = 3
+
+
+def static_step(
+    system: System,
+    step: Static,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Callable[[State, int, float, dict[str, float]], None],
+    stops: list[float],
+) -> None:
+    """Run a static step from the committed state; `save` is told every accepted increment.
+
+    Raises
+    ------
+    ConvergenceError
+        With the reason, when no smaller increment helps.
+    SingularError
+        If the structure is not held.
+    """
+    state.step_time = 0.0
+    if step.path is not None:
+        path_step(system, step, number, state, observers, save, step.path)
+        return
+    control = Increments(step, stops)
+    settings = Settings(step.tolerance, step.max_iterations)
+    while not control.finished:
+        if control.number >= step.max_increments:
+            raise ConvergenceError(
+                f"step {number} used its {step.max_increments} increments at step time "
+                f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
+            )
+        target = control.target()
+        begin = None
+        # Temperatures that change need a new evaluation.
+        heated = system.free.expands and not system.free.follows(
+            system.conditions.temperatures(target)
+        )
+        if state.at is not None and not heated and system.touching is None:
+            begin = _with_loads(system, state.at, state.u, target)
+            # Newton's method overwrites the tangent; a further attempt needs it again.
+            begin.values = system.room()
+            begin.values[:] = state.at.values
+        report = iteration_reporter(observers, system, number, control)
+        prescribed = system.conditions.prescribed(target, state.u)
+        try:
+            if system.touching is None:
+                outcome = newton(system, state.u, prescribed, target, settings, begin, report)
+            else:
+                known = None if state.at is None or heated else state.at.values
+                outcome, touching = newton_with_contact(
+                    system, system, state.u, prescribed, target, settings, report,
+                    tangent=known, last_chance=step.fixed_increments,
+                )  # fmt: skip
+        except SingularError as error:
+            if number == 1 and control.number == 0:
+                raise
+            outcome = Outcome(False, state.u, None, reason=f"the tangent is singular: {error}")
+        count = state.counters
+        count["iterations"] = count.get("iterations", 0) + outcome.iterations
+        grown = 0.0
+        if outcome.converged and step.plastic_increment:
+            grown = system.plastic_increment()
+            if grown > step.plastic_increment:
+                outcome.converged = False
+                outcome.reason = (
+                    f"the equivalent plastic strain grew by {grown:.3g}, "
+                    f"{step.plastic_increment:g} is allowed in one increment"
+                )
+        if not outcome.converged:
+            count["cut-backs"] = count.get("cut-backs", 0) + 1
+            softer = outcome.negative > max(state.negative, 0)
+            end = control.cut(target)
+            if (end or (softer and control.attempt > STALLED)) and _go_along_path(
+                system, step, number, state, observers, save, control
+            ):
+                return
+            if end:
+                raise ConvergenceError(_reason(system, number, control, outcome, state, end))
+            observers.cut_back(
+                number, control.number + 1, control.attempt - 1, outcome.reason, control.size
+            )
+            continue
+        if system.touching is not None:
+            state.notes += touching.accept(outcome.u, target)
+        _accept(system, state, outcome, target)
+        dt = target - control.time
+        attempts = control.attempt
+        control.accept(target, outcome.iterations)
+        if grown > 0.0 and not step.fixed_increments:
+            control.size = min(control.size, dt * step.plastic_increment / grown)
+        scalars: dict[str, float] = {
+            "dt": dt,
+            "iterations": float(outcome.iterations),
+            "attempts": float(attempts),
+            "residual": outcome.sizes[-1],
+            "external work": state.work,
+        }
+        if outcome.negative >= 0:
+            scalars["negative pivots"] = float(outcome.negative)
+            scalars["stable"] = float(outcome.negative == 0)
+        save(state, control.number, target / step.period, scalars)
+        if observers.stop_requested:
+            raise Interrupted(
+                f"stopped at step {number}, step time {target:g}; everything up to there is kept"
+            )
+
+
+def _go_along_path(
+    system: System,
+    step: Static,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Callable[[State, int, float, dict[str, float]], None],
+    control: Increments,
+) -> bool:
+    """Go on by arc length from where load control stalls; False where that is no help.
+
+    Raises
+    ------
+    ConvergenceError
+        At the limit point, unless the step is to follow the path beyond it.
+    """
+    if system.touching is not None and system.touching.damped.any():
+        return False  # damping needs a time
+    try:
+        system.conditions.check_proportional()
+    except ModelError:
+        return False
+    path = ArcLength(factor=1.0, stop_at_limit=step.at_limit == "stop")
+    along = replace(
+        step,
+        path=path,
+        increments=0,
+        first_increment=max(control.size, step.smallest_increment),
+        largest_increment=0.0,
+        fixed_increments=False,
+    )
+    before = control.number
+    try:
+        limit = path_step(
+            system, along, number, state, observers, save, path,
+            factor=control.time / step.period, increment=before,
+        )  # fmt: skip
+    except (ConvergenceError, SingularError, ModelError):
+        return False
+    state.counters["arc length took over"] = 1
+    if limit is None:
+        return True
+    raise ConvergenceError(
+        f"limit point at load factor {limit.factor:.6g} of step {number}: in equilibrium the "
+        "structure carries no more this way. The states up to it are kept; to go on, follow "
+        "the path (Static(path=ArcLength(...)) or at_limit='follow', *STATIC, RIKS), prescribe "
+        "a displacement instead of the load, or compute the jump as dynamics"
+    )
+
+
+def _with_loads(system: System, at: Evaluation, u: Floats, time: float) -> Evaluation:
+    """An evaluation at `u` with the loads of another time."""
+    external, stiffness = system.conditions.external(time, u)
+    return Evaluation(at.internal, external, at.scale, at.values, stiffness, at.link)
+
+
+def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: float) -> None:
+    new = outcome.at
+    assert new is not None
+    if state.at is not None:
+        # Forces do work on all dofs, reactions on those that are moved; trapezoidal rule.
+        fixed = system.conditions.fixed
+        old = _with_loads(system, state.at, state.u, state.step_time)
+        mean = old.external + new.external
+        mean[fixed] += system.reaction(old)[fixed] + system.reaction(new)[fixed]
+        state.work += 0.5 * float(mean @ (outcome.u - state.u))
+        if system.touching is None:
+            system.release(state.at)
+    system.commit()
+    state.u, state.at = outcome.u, new
+    state.step_time = target
+    state.negative = outcome.negative
+
+
+def iteration_reporter(
+    observers: Observers, system: System, number: int, control: Increments
+) -> Callable[[int, Judgement, float, str], None] | None:
+    """Pass Newton's iterations on to the observers, if there are any."""
+    if not observers.each:
+        return None
+
+    def report(iteration: int, judged: Judgement, correction: float, note: str) -> None:
+        observers.iteration(
+            Iteration(
+                number,
+                control.number + 1,
+                control.attempt,
+                iteration,
+                judged.force,
+                judged.moment,
+                correction,
+                int(system.node_of_dof[judged.worst]),
+                int(system.component[judged.worst]),
+                note,
+            )
+        )
+
+    return report
+
+
+def _reason(
+    system: System,
+    number: int,
+    control: Increments,
+    outcome: Outcome[Evaluation],
+    state: State,
+    end: str,
+) -> str:
+    """Say what happened, where, why, and what helps."""
+    period = control.step.period
+    where = (
+        f"step {number} stopped at step time {control.time:g} of {period:g} "
+        f"(load factor {control.time / period:.6g}): {end}; last attempt: {outcome.reason}"
+    )
+    if outcome.at is not None:
+        judged = system.judge(outcome.at, outcome.u)
+        where += f"; largest residual at {system.describe(judged.worst)}"
+    if outcome.negative > 0:
+        where += (
+            f". The tangent has {outcome.negative} negative pivot"
+            f"{'s' if outcome.negative > 1 else ''}: a limit or bifurcation point lies just "
+            "ahead, the structure cannot carry more this way; prescribe a displacement "
+            "instead of the load"
+        )
+    return where + softening(system.blocks) + ". All converged increments are kept"

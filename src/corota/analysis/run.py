@@ -1,0 +1,266 @@
+"""The analysis as a whole: a model through its steps to results."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import os
+import time as clock
+import warnings
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import SOLVERS
+from corota.analysis.observers import Observers
+from corota.analysis.procedures.localization import localised
+from corota.analysis.procedures.motion import add_kinetic
+from corota.analysis.procedures.registry import PROCEDURES, procedure
+from corota.analysis.state import State
+from corota.errors import CorotaError, InputError, UnsupportedError
+from corota.results.results import Frame, Results
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.linear.solvers import LinearSolver
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.observer import Observer
+    from corota.results.results import PointFields
+
+    Floats = NDArray[np.float64]
+
+#: Procedures that know contact and ties between surfaces.
+WITH_CONTACT = ("static", "dynamic", "frequency", "modal dynamic", "steady state")
+#: Local strain above which the linear one of ``simplified`` is no longer a good measure.
+LARGE_STRAIN = 0.05
+
+
+def solve(
+    model: Model,
+    steps: Step | Sequence[Step] | None = None,
+    *,
+    observers: Iterable[Observer] = (),
+    solver: str | LinearSolver = "faer",
+    threads: int | None = None,
+    keep: Literal["all", "last"] = "all",
+    fields: bool = True,
+) -> Results:
+    """Run the steps of a model.
+
+    Parameters
+    ----------
+    model : Model
+    steps : Step or sequence of Step, optional
+        The model's own steps by default, or one ``Static()``.
+    observers : iterable of Observer
+        Told of every iteration and increment.
+    solver : str or LinearSolver
+        Name in :data:`corota.analysis.linear.solvers.SOLVERS`, or an object with its three methods.
+    threads : int, optional
+        All cores by default. Results do not depend on it.
+    keep : {"all", "last"}
+        Frames held in memory.
+    fields : bool
+        Recover stress and strain at the points of every increment.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        If the model cannot be analysed as it stands.
+    ConvergenceError
+        If an increment cannot be converged; ``error.results`` has everything before it.
+    SingularError
+        If the structure is not held.
+
+    Examples
+    --------
+    >>> import corota as ct
+    >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+    >>> model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    >>> model.fix("left")
+    >>> model.force("right", y=-0.1)
+    >>> results = ct.solve(model, ct.Static(), threads=1)
+    >>> bool(results.frames[-1].U[:, 1].min() < -0.7)
+    True
+    """
+    run = Analysis(model, steps, observers, solver, threads, keep, fields)
+    return run.run()
+
+
+class Analysis:
+    """One run of :func:`solve`."""
+
+    def __init__(
+        self,
+        model: Model,
+        steps: Step | Sequence[Step] | None,
+        observers: Iterable[Observer],
+        solver: str | LinearSolver,
+        threads: int | None,
+        keep: Literal["all", "last"],
+        fields: bool,
+    ) -> None:
+        from corota.model.steps import Static, Step
+
+        if steps is None:
+            steps = model.steps or [Static()]
+        self.steps = [steps] if isinstance(steps, Step) else list(steps)
+        self.model, self.fields = model, fields
+        self.observers = Observers(observers)
+        self.results = Results(model, keep=keep)
+        self.threads = threads or os.cpu_count() or 1
+        if isinstance(solver, str):
+            if solver not in SOLVERS:
+                raise InputError(f"no solver named {solver!r}; there are {', '.join(SOLVERS)}")
+            self.solver: LinearSolver = SOLVERS[solver]()
+        else:
+            self.solver = solver
+        if hasattr(self.solver, "threads"):
+            self.solver.threads = self.threads
+        self.system: System
+        self.warned: set[str] = set()
+
+    def run(self) -> Results:
+        """Run all steps; observers hear the end whatever happens."""
+        results, begin = self.results, clock.perf_counter()
+        error: BaseException | None = None
+        counters: dict[str, int] = {}
+        try:
+            self.system = System(self.model, self.solver, self.threads)
+            results.info["n_dofs"] = self.system.n_dofs
+            results.info["threads"] = self.threads
+            self.observers.start(self.model, self.steps)
+            state = State(
+                np.zeros(self.system.n_dofs),
+                counters=counters,
+                critical=results.critical_points,
+                modes=results.modes,
+                notes=results.notes,
+            )
+            reaction = None
+            for number, step in enumerate(self.steps, start=1):
+                reaction = self._step(step, number, state, reaction)
+        except CorotaError as caught:
+            error = caught
+            if hasattr(caught, "results"):
+                caught.results = results
+            raise
+        except BaseException as caught:
+            error = caught
+            raise
+        finally:
+            info = results.info
+            info.update(counters)
+            if hasattr(self, "system"):
+                info["profile"] = dict(self.system.profile)
+            info["seconds"] = clock.perf_counter() - begin
+            self.observers.end(results, error if isinstance(error, Exception) else None)
+        return results
+
+    def _step(
+        self, step: Step, number: int, state: State, reaction: Floats | None
+    ) -> Floats | None:
+        system = self.system
+        if step.procedure not in PROCEDURES:
+            raise UnsupportedError(
+                f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
+            )
+        if system.touching is not None and step.procedure not in WITH_CONTACT:
+            raise UnsupportedError(
+                f"a {step.procedure} step takes no contact pairs or ties; leave them out, or use "
+                f"{' or '.join(WITH_CONTACT)} steps",
+                step.where,
+            )
+        self.observers.step(number, step)
+        turning = system.turning
+        system.begin(step, state.time, state.u, reaction)
+        if state.at is None or turning != system.turning:
+            state.at = system.evaluate(state.u, 0.0)
+        if number == 1:
+            if system.touching is not None:
+                state.notes += system.touching.notes
+            self._save(number, state, 0, 0.0, {})
+
+        def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
+            self._save(number, state, increment, factor, scalars)
+
+        stops = self._stops(step)
+        run = procedure(step.procedure)
+        run(system, step, number, state, self.observers, save, stops)
+        assert state.at is not None
+        state.time += state.step_time
+        state.step_time = 0.0
+        return system.reaction(state.at)
+
+    def _warn(self, kind: str, note: str) -> None:
+        """Say a thing once, and keep it."""
+        if kind not in self.warned:
+            self.warned.add(kind)
+            self.results.notes.append(note)
+            warnings.warn(note, stacklevel=3)
+
+    def _stops(self, step: Step) -> list[float]:
+        """Step times that outputs ask for."""
+        tables = getattr(self.model, "time_points", {})
+        return [
+            float(t) for out in step.outputs if out.time_points for t in tables[out.time_points]
+        ]
+
+    def _save(
+        self, number: int, state: State, increment: int, factor: float, scalars: dict[str, float]
+    ) -> None:
+        system = self.system
+        assert state.at is not None
+        by_node = system.by_node(state.u)
+        fields: list[PointFields] = []
+        if self.fields:
+            with system.timed("recover"):
+                fields, sums = system.recover(state.u)
+                step = self.steps[number - 1]
+                if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
+                    add_kinetic(system, fields, state.u, state.v, step)
+            strain = sums.pop("largest simplified strain")
+            scalars = {**scalars, **sums}
+            if strain > LARGE_STRAIN:
+                self._warn(
+                    "strain",
+                    f"local strain reaches {strain:.1%} in step {number}, increment {increment}; "
+                    "the simplified local strain is meant for a few percent: compare with "
+                    "local_strain='modified' (LOCAL STRAIN=MODIFIED)",
+                )
+            for block, own in zip(system.blocks, fields, strict=True):
+                if "flow" not in self.warned and (found := localised(block, own)):
+                    label = self.model.mesh.cell_labels[found[0]]
+                    self._warn("flow", f"element {label}, step {number}, increment {increment}: "
+                               + found[1])  # fmt: skip
+        contact = None
+        if system.touching is not None:
+            contact, sums = system.touching.output()
+            scalars = {**scalars, **sums}
+        frame = Frame(
+            number,
+            increment,
+            state.time + state.step_time,
+            state.step_time,
+            factor,
+            by_node[:, :2].copy(),
+            by_node[:, 2].copy(),
+            system.by_node(system.reaction(state.at)),
+            system.by_node(state.at.external),
+            fields,
+            scalars,
+            None if state.v is None else system.by_node(state.v),
+            None if state.a is None else system.by_node(state.a),
+            contact,
+        )
+        self.results.add(frame)
+        with system.timed("write"):
+            self.observers.increment(frame)

@@ -1,0 +1,61 @@
+"""Where an analysis stands between increments."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import Evaluation
+    from corota.model.paths import CriticalPoint, Modes
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class State:
+    """Where an analysis stands: the committed state.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n_dofs,)
+    time : float
+        Total time at the start of the current step [time].
+    step_time : float
+        Time in the current step [time].
+    at : Evaluation or None
+        Evaluation at `u`.
+    work : float
+        Work of loads and moving supports so far [force*length].
+    negative : int
+        Negative pivots of the tangent, -1 if unknown.
+    counters : dict of str to int
+    v, a : ndarray, shape (n_dofs,), or None
+        Velocity and acceleration; None before any motion.
+    carried : tuple of ndarray or None
+        The very arrays `u` and `v` that a step of the energy-momentum scheme ended with: the
+        elements still carry the rates that their momenta are made of.
+    critical : list of CriticalPoint
+    modes : list of Modes
+        Found so far.
+    notes : list of str
+        Remarks for the user.
+    """
+
+    u: Floats
+    time: float = 0.0
+    step_time: float = 0.0
+    at: Evaluation | None = None
+    work: float = 0.0
+    negative: int = -1
+    counters: dict[str, int] = field(default_factory=dict)
+    v: Floats | None = None
+    a: Floats | None = None
+    carried: tuple[Floats, Floats] | None = None
+    critical: list[CriticalPoint] = field(default_factory=list)
+    modes: list[Modes] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)

@@ -1,0 +1,141 @@
+"""Point masses and dashpots: what hangs on nodes and acts in motion only."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import ModelError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+class Attachments:
+    """Point masses and dashpots of a model by dof.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    mass : ndarray, shape (n_dofs,)
+        Added to the diagonal of any mass matrix [mass], [mass*length^2].
+    diagonal : ndarray of int, shape (n_dofs,)
+        Places of the diagonal in the upper triangle.
+
+    Raises
+    ------
+    ModelError
+        If a node carries no element and no constraint.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.diagonal: Ints = system.indptr[1:].astype(np.int64) - 1
+        self.mass = np.zeros(system.n_dofs)
+        for item in system.model.point_masses:
+            nodes = system.model.mesh.nodes_of(item.nodes) if isinstance(item.nodes, str) else (
+                np.asarray(item.nodes, np.int64)
+            )  # fmt: skip
+            for dof, value in enumerate((item.mass, item.mass, item.inertia)):
+                if value:
+                    np.add.at(self.mass, self._dofs(nodes, dof, "point mass"), value)
+        self.dampers = bool(system.model.dashpots)
+        self._ground(system)
+        self._pairs(system)
+
+    def _dofs(self, nodes: Ints, dof: int, what: str) -> Ints:
+        dofs = self.system.dofs(nodes, dof)
+        if (dofs < 0).any():
+            node = self.system.model.mesh.node_labels[nodes[int(np.argmax(dofs < 0))]]
+            kind = "rotation" if dof == 2 else "displacement"
+            raise ModelError(
+                f"the {what} at node {node} needs a {kind}, which no element there has: put it "
+                "on a node of an element" + (" with drilling rotations" if dof == 2 else "")
+            )
+        return dofs
+
+    def _ground(self, system: System) -> None:
+        self.ground = np.zeros(system.n_dofs)
+        for item in system.model.dashpots:
+            if item.second is None:
+                nodes = np.array([item.first], np.int64)
+                for dof, value in enumerate(item.to_ground):
+                    if value:
+                        self.ground[self._dofs(nodes, dof, "dashpot")] += value
+
+    def _pairs(self, system: System) -> None:
+        pairs = [d for d in system.model.dashpots if d.second is not None]
+        ends = np.array([[d.first, d.second] for d in pairs], np.int64).reshape(-1, 2)
+        self.c = np.array([d.c for d in pairs])
+        self.nodes = ends
+        flat = np.column_stack([self._dofs(ends[:, e], i, "dashpot") for e in (0, 1)
+                                for i in (0, 1)]).reshape(-1, 4)  # fmt: skip
+        self.dofs = flat
+        rows, columns = np.indices((4, 4)).reshape(2, -1)
+        self.pair = (rows, columns)
+        self.triplets = (flat[:, rows].ravel(), flat[:, columns].ravel())
+
+    def damp(
+        self, u: Floats, v: Floats, values: Floats, weight: float
+    ) -> tuple[Floats, tuple[Ints, Ints, Floats] | None]:
+        """Force of the dashpots and `weight` times its derivative by velocity.
+
+        What dashpots to the ground give goes to `values`.
+
+        Parameters
+        ----------
+        u, v : ndarray, shape (n_dofs,)
+            Displacement and velocity.
+        values : ndarray, shape (nnz,)
+            Upper triangle, added to in place.
+        weight : float
+            Derivative of velocity by displacement in the time scheme [1/time].
+
+        Returns
+        -------
+        force : ndarray, shape (n_dofs,)
+        triplets : tuple of ndarray or None
+            Rows, columns and values of the dashpots between nodes, in global axes.
+        """
+        system = self.system
+        u, v = system.in_space(u), system.in_space(v)
+        force: Floats = self.ground * v
+        values[self.diagonal] += weight * self.ground
+        if not len(self.c):
+            return system.at_nodes(force), None
+        axis = self._axes(u)
+        rate = np.einsum("ki,ki->k", axis, v[self.dofs])
+        np.add.at(force, self.dofs, (self.c * rate)[:, None] * axis)
+        rows, columns = self.pair
+        outer = weight * self.c[:, None] * axis[:, rows] * axis[:, columns]
+        return system.at_nodes(force), (*self.triplets, outer.ravel())
+
+    def _axes(self, u: Floats) -> Floats:
+        """Directions of the dashpots, minus at the first end; shape (n, 4)."""
+        points = self.system.model.mesh.points
+        moved = u[self.dofs] if self.system.turning else np.zeros_like(u[self.dofs])
+        line = points[self.nodes[:, 1]] + moved[:, 2:] - points[self.nodes[:, 0]] - moved[:, :2]
+        line /= np.linalg.norm(line, axis=1)[:, None]
+        return np.hstack([-line, line])
+
+    def momenta(self, u: Floats, v: Floats) -> Floats:
+        """Kinetic energy, linear and angular momentum, mass of the point masses, shape (5,)."""
+        system = self.system
+        m = np.zeros((len(system.per_node), 3))
+        m[system.node_of_dof, system.component] = self.mass
+        rate = system.by_node(v)
+        x = system.model.mesh.points + system.by_node(u)[:, :2]
+        p = m * rate
+        turn = x[:, 0] @ p[:, 1] - x[:, 1] @ p[:, 0] + p[:, 2].sum()
+        kinetic = 0.5 * float((p * rate).sum())
+        return np.array([kinetic, p[:, 0].sum(), p[:, 1].sum(), turn, m[:, 0].sum()])

@@ -1,0 +1,325 @@
+"""Contact pairs and ties during an analysis: gaps, forces and their multipliers.
+
+With the weighted gap G_k(x) and slip S_k(x) of a slave node k and the tractions p_k, q_k that
+belong to them, the Lagrangian is ``Pi - sum_k p_k G_k - sum_k q_k S_k``. G and S come from the
+core as functions of the nodal positions alone, with exact first and second derivatives.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
+from corota.analysis.terms.contact.side import check_side
+from corota.errors import ModelError
+from corota.model.contact import ContactPair, Tie
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.linear.saddle_point import Bordered
+    from corota.model.steps import Step
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Damping of stabilised surfaces per stiffness of their nodes and period.
+STABILISE = 1e-3
+
+
+@dataclass
+class Touch:
+    """All pairs at a state.
+
+    Parameters
+    ----------
+    terms : list of Terms
+    force : ndarray, shape (n_dofs,)
+        Of the pairs on the nodes, along the axes of the nodes.
+    size : ndarray, shape (n_dofs,)
+        Sum of sizes of its parts.
+    multipliers : ndarray, shape (n_multipliers,)
+    damping : ndarray, shape (n_dofs,), or None
+        Stabilising stiffness of this increment.
+    """
+
+    terms: list[Terms]
+    force: Floats
+    size: Floats
+    multipliers: Floats
+    damping: Floats | None = None
+    states: list[NDArray[np.int8]] = field(default_factory=list)
+
+
+class Touching:
+    """All contact pairs and ties of a model.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    pairs : list of Pair
+    n : int
+        Multipliers of all pairs.
+    committed : ndarray, shape (n,)
+        Their values in the committed state.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        model = system.model
+        items: list[ContactPair | Tie] = [*model.ties, *model.contacts]
+        self.pairs = [Pair(system, item) for item in items]
+        names: dict[str, int] = {}
+        for pair in self.pairs:
+            count = names[pair.item.name] = names.get(pair.item.name, 0) + 1
+            pair.name = pair.item.name + (f" ({count})" if count > 1 else "")
+        self.n = 0
+        for pair in self.pairs:
+            pair.first = self.n
+            self.n += pair.width
+        self.committed = np.zeros(self.n)
+        self.u = np.zeros(system.n_dofs)
+        self.at: Touch | None = None
+        self.period, self.number = 1.0, 0
+        self.time = 0.0
+        self.notes: list[str] = []
+        self.damped = np.zeros(0)
+        #: Whether stabilising damping acts; it does not on paths, whose time is none.
+        self.damps, self.persistent = True, False
+        self.damping_work = 0.0
+        # Dof of each variable 3 node + component, -1 where there is none.
+        dof = np.full(3 * len(system.per_node), -1, np.int64)
+        dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
+        self._dof = np.append(dof, -1)
+        self._stiff = False
+        self.told: set[int] = set()  # dropped constraints that were reported
+        self.border: Bordered | None = None  # linear algebra with the multipliers, made when needed
+
+    # -- steps -------------------------------------------------------------------------
+
+    def begin(self, step: Step) -> None:
+        """Start a step."""
+        self.number += 1
+        self.period, self.time = step.period, 0.0
+        self.damps = step.procedure == "static"
+        self.persistent = getattr(step, "scheme", "") == "energy_momentum"
+        if self.number == 1:
+            self._start()
+        x = self.positions(self.u)
+        for pair in self.pairs:
+            pair.fixed = pair.start = None
+            if self.persistent and not pair.tied and pair.law is None:
+                pair.persist(pair.evaluate(x, x, self.system.turning))
+
+    def _start(self) -> None:
+        """Look at the gaps of the start; report, adjust or note what to ramp."""
+        x = self.positions(self.u)
+        for pair in self.pairs:
+            item = pair.item
+            if isinstance(item, Tie):
+                self._start_tie(pair, x)
+                continue
+            check_side(self.system, pair, x)
+            pair.core.search(x)
+            raw = pair.core.evaluate(x, x)
+            area = raw["total_area"]
+            seen = area > COVERED * pair.full
+            gap = np.where(seen, raw["total_gap"] / np.where(seen, area, 1.0), 0.0)
+            if item.clearance is not None:
+                pair.core.offset = np.where(seen, gap - item.clearance, 0.0)
+                gap = np.where(seen, item.clearance, 0.0)
+            pair.overlap = np.minimum(gap, 0.0)
+            pair.base = pair.core.offset
+            pair.area = np.where(seen, area, pair.full)
+            deepest = int(np.argmin(gap))
+            longest = float(pair.slave.length.max())
+            if gap[deepest] < -1e-9 * longest:
+                how = {
+                    "keep": "is pushed out in the first increment (start='ramp' or 'adjust' "
+                    "would spread it over the step, or take it as no strain)",
+                    "adjust": "counts as touching, without strain",
+                    "ramp": "is pushed out over the first step",
+                }[item.start]
+                label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
+                self.notes.append(
+                    f"contact pair {pair.name!r}: the surfaces overlap by up to "
+                    f"{-gap[deepest]:.4g} at node {label} at the start; this {how}"
+                )
+            if item.start == "adjust":
+                near = np.where(seen & (gap <= item.adjust), np.maximum(gap, 0.0), 0.0)
+                pair.core.offset = pair.core.offset + pair.overlap + near
+
+    def _start_tie(self, pair: Pair, x: Floats) -> None:
+        pair.core.search(x)
+        raw = pair.core.evaluate(x, x)
+        bare = raw["total_area"] <= COVERED * pair.full
+        if bare.all():
+            raise ModelError(
+                f"tie {pair.name!r}: no edge of {pair.slave.name!r} lies on {pair.item.master!r} "
+                "within its tolerance; raise it (tolerance=, POSITION TOLERANCE=)",
+                pair.item.where,
+            )
+        if bare.any():
+            labels = self.system.model.mesh.node_labels[pair.nodes[bare]]
+            self.notes.append(
+                f"tie {pair.name!r}: {len(labels)} nodes of {pair.slave.name!r} are out of "
+                f"tolerance and stay free: {_few(labels)}"
+            )
+
+    # -- evaluation --------------------------------------------------------------------
+
+    def positions(self, u: Floats) -> Floats:
+        """Positions and rotations of all nodes at a displacement, shape (n_nodes, 3)."""
+        x = self.system.by_node(u)
+        x[:, :2] += self.system.model.mesh.points
+        return x
+
+    def dofs(self, variables: Ints) -> Ints:
+        """Dofs of variables of the core, -1 for none."""
+        return self._dof[variables]
+
+    def parts(self, multipliers: Floats) -> list[tuple[Floats, Floats]]:
+        """Tractions p and q of each pair."""
+        out = []
+        for pair in self.pairs:
+            p = multipliers[pair.first : pair.first + pair.n]
+            q = multipliers[pair.first + pair.n : pair.first + pair.width]
+            out.append((p, q if pair.two else np.zeros(pair.n)))
+        return out
+
+    def evaluate(self, u: Floats, multipliers: Floats, step_time: float, values: Floats) -> Touch:
+        """All pairs at a trial state.
+
+        Parameters
+        ----------
+        values : ndarray, shape (nnz,)
+            Tangent of the elements, for the stiffness of the nodes.
+        """
+        system = self.system
+        if not self._stiff:
+            self._measure(values)
+        x, old = self.positions(u), self.positions(self.u)
+        force, size = np.zeros(system.n_dofs + 1), np.zeros(system.n_dofs + 1)
+        found = []
+        for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
+            with system.timed("contact"):
+                self._ramp(pair, step_time)
+                terms = pair.evaluate(x, old, system.turning)
+            found.append(terms)
+            part = p[terms.constraint, None] * terms.gap_gradient
+            if pair.two:
+                part = part + q[terms.constraint, None] * terms.slip_gradient
+            where = self.dofs(terms.variables)
+            np.add.at(force, where, part)
+            np.add.at(size, where, np.abs(part))
+        damping = self._damping(step_time)
+        return Touch(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
+
+    def _ramp(self, pair: Pair, step_time: float) -> None:
+        item = pair.item
+        if isinstance(item, ContactPair) and item.start == "ramp" and self.number == 1:
+            pair.core.offset = pair.base + pair.overlap * (1.0 - step_time / self.period)
+
+    def _measure(self, values: Floats) -> None:
+        """Pressure per gap of each node: stiffness of the node over its area."""
+        system = self.system
+        diagonal = np.abs(values[system.indptr[1:].astype(np.int64) - 1])
+        by_node = np.zeros((len(system.per_node), 3))
+        by_node[system.node_of_dof, system.component] = diagonal
+        nodal = by_node[:, :2].mean(axis=1)
+        top = float(nodal.max()) or 1.0
+        for pair in self.pairs:
+            k = nodal[pair.nodes]
+            pair.stiffness = np.where(k > 0.0, k, top) / pair.full
+        self.damped = np.zeros(system.n_dofs)
+        for pair in self.pairs:
+            if isinstance(pair.item, ContactPair) and pair.item.stabilise:
+                nodes = pair.slave.node_list
+                if pair.master is not None:
+                    nodes = np.union1d(nodes, pair.master.node_list)
+                for component in (0, 1):
+                    dofs = system.dofs(nodes, component)
+                    self.damped[dofs] = STABILISE * diagonal[dofs]
+        self._stiff = True
+
+    def _damping(self, step_time: float) -> Floats | None:
+        if not self.damps or not self.damped.any():
+            return None
+        dt = step_time - self.time
+        left = 1.0 - step_time / self.period
+        if dt <= 0.0 or left <= 0.0:
+            return None
+        return self.damped * (left * self.period / dt)
+
+    # -- increments --------------------------------------------------------------------
+
+    def commit(self, u: Floats, touch: Touch, step_time: float) -> None:
+        """Accept a state."""
+        states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
+        if self.at is not None:
+            states = self.at.states
+        for pair, terms, (_, q), (_, before), state in zip(
+            self.pairs, touch.terms, self.parts(touch.multipliers), self.parts(self.committed),
+            states, strict=True,
+        ):  # fmt: skip
+            pair.commit(terms, q, before, state == CLOSED)
+        if touch.damping is not None:
+            self.damping_work += float(touch.damping @ (u - self.u) ** 2)
+        self.u, self.committed, self.time = u.copy(), touch.multipliers.copy(), step_time
+        touch.states = [
+            pair.states(terms, p, q)
+            for pair, terms, (p, q) in zip(
+                self.pairs, touch.terms, self.parts(self.committed), strict=True
+            )
+        ]
+        # Rounding leaves crumbs on what is open.
+        for pair, state, tractions in zip(
+            self.pairs, touch.states, self.parts(self.committed), strict=True
+        ):
+            for part in tractions if not pair.tied else ():
+                part[state == OPEN] = 0.0
+        for i, (pair, terms) in enumerate(zip(self.pairs, touch.terms, strict=True)):
+            if pair.start is not None:
+                pair.persist(terms)
+            touch.terms[i] = terms.bare or terms
+        self.at = touch
+
+    def restore(self) -> None:
+        """Go back to the committed state."""
+        for pair in self.pairs:
+            pair.core.restore()
+            pair.frozen = False
+
+    def output(self) -> tuple[Floats, dict[str, float]]:
+        """Contact at the nodes of the committed state, and sums of the pairs.
+
+        Returns
+        -------
+        values : ndarray, shape (n_nodes, 5)
+            See :attr:`corota.results.Frame.C`.
+        sums : dict of str to float
+            Force on the slave surface, its moment about the origin, and energies.
+        """
+        from corota.analysis.terms.contact.output import output
+
+        return output(self)
+
+    def label(self, pair: Pair, constraint: int) -> int:
+        """The user's number of the slave node of a constraint."""
+        return int(self.system.model.mesh.node_labels[pair.nodes[constraint]])
+
+
+def _few(labels: Ints, most: int = 5) -> str:
+    shown = ", ".join(str(n) for n in labels[:most])
+    return shown + (", ..." if len(labels) > most else "")
+
+
+__all__ = ["Touch", "Touching"]

@@ -1,0 +1,210 @@
+"""Where contact changes its states along a path, to first order: the predictor goes round kinks.
+
+From an equilibrium the direction of the path holds until the first gap closes, the first pressure
+vanishes or the first traction reaches the bound of friction. From there the direction is that of
+the new states, in the sense in which what changed goes on to do so.
+
+Source: the pivoting of parametric linear complementarity, R. W. Cottle, J.-S. Pang and R. E. Stone,
+*The Linear Complementarity Problem* (2009), ch. 4.5.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.terms.contact.path import Along, TouchingPath
+
+    Floats = NDArray[np.float64]
+    States = list[NDArray[np.int8]]
+    #: Distance, pair, constraint and its new state.
+    Event = tuple[float, int, int, int]
+
+#: Most changes in one increment, and share of it within which they happen at once.
+MOST, AT_ONCE = 12, 1e-9
+
+
+def go_round(
+    path: TouchingPath, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
+) -> tuple[Point, Tangent, States] | None:
+    """Predict a point behind changes of states; None where there is none on the way.
+
+    Parameters
+    ----------
+    base : Point
+        Committed.
+    tangent : Tangent
+        Direction there.
+    size : float
+        Way to go, by the metric.
+
+    Returns
+    -------
+    point : Point
+    tangent : Tangent
+        Direction of the last part of the way.
+    states : list of ndarray
+        Predicted at the point.
+    """
+    committed = path.touching.at
+    if committed is None or not committed.states:
+        return None
+    way = Way(path, base, tangent, [s.copy() for s in committed.states])
+    left, met = size, None
+    for _ in range(MOST):
+        event = way.first(None if met is None else met[0])
+        if event is None or event[0] >= left:
+            break
+        distance, k, i, state = event
+        way.go(distance)
+        left -= distance
+        if met is None or distance > AT_ONCE * size:
+            met = ((k, i), int(way.states[k][i]), state)
+        if not way.change(k, i, state, period) or not way.turn(metric, *met):
+            return None
+    if met is None:
+        return None
+    way.go(left)
+    return Point(way.z, way.factor, None), way.tangent, way.states
+
+
+class Way:
+    """A way along directions of the linearised path.
+
+    Parameters
+    ----------
+    path : TouchingPath
+    base : Point
+        Committed.
+    tangent : Tangent
+        Direction there.
+    states : list of ndarray
+        There; changed in place.
+    """
+
+    def __init__(self, path: TouchingPath, base: Point, tangent: Tangent, states: States) -> None:
+        self.path, self.base, self.tangent, self.states = path, base, tangent, states
+        self.at: Along = base.at
+        self.gaps = [terms.gap for terms in self.at.touch.terms]
+        self.z, self.factor = base.u, base.factor
+        self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}
+        self.senses: dict[tuple[int, int], float] = {}
+        self._changed = False
+
+    def go(self, distance: float) -> None:
+        """Go on along the direction."""
+        rates = self.path.gap_rates(self.at, self.tangent.u)
+        self.gaps = [gap + distance * rate for gap, (rate, _) in zip(self.gaps, rates, strict=True)]
+        self.z = self.z + distance * self.tangent.u
+        self.factor += distance * self.tangent.factor
+
+    def change(self, k: int, i: int, state: int, period: float) -> bool:
+        """Give a constraint another state; False where it had it before."""
+        path = self.path
+        pair = path.touching.pairs[k]
+        slides = path.gap_rates(self.at, self.tangent.u)[k][1][i]
+        if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
+            # What closes while it slides goes on sliding, if it can.
+            state, self.senses[k, i] = SLIPPING, -float(np.sign(slides))
+        elif state == SLIPPING:
+            q = path.touching.parts(self.z[path.n :])[k][1][i]
+            dq = path.touching.parts(self.tangent.u[path.n :])[k][1][i]
+            self.senses[k, i] = 1.0 if (q or dq) > 0.0 else -1.0
+        if (k, i, state) in self.seen:
+            return False
+        if not self._changed:
+            # The core's derivatives are those of what was evaluated last.
+            path.restart()
+            self.at = path.evaluate(self.base.u.copy(), self.base.factor * period)
+            self._changed = True
+        self.seen.add((k, i, state))
+        self.states[k][i] = state
+        return True
+
+    def turn(self, metric: Metric, where: tuple[int, int], before: int, state: int) -> bool:
+        """Take the direction of the states, in the sense in which one change goes on."""
+        path = self.path
+        try:
+            x, negative = path.rate_with(
+                self.at, self.states, *path.load_rate(self.base.u), self.senses
+            )
+        except SingularError:
+            return False
+        length, old = metric.size(x, 1.0), self.tangent
+        self.tangent = Tangent(x / length, 1.0 / length, negative)
+        going = self._going(where, before, state)
+        if going < 0.0:
+            self.tangent = self.tangent.reversed()
+        # Friction lets the path bend; that it turned back would be the other way of loading.
+        new, gaps = self.tangent, OPEN in (before, state)
+        return going != 0.0 and (gaps or metric.dot(new.u, new.factor, old.u, old.factor) > 0.0)
+
+    def _going(self, where: tuple[int, int], before: int, state: int) -> float:
+        """Positive where the direction leads into a new state."""
+        (k, i), path = where, self.path
+        dp, dq = path.touching.parts(self.tangent.u[path.n :])[k]
+        dgap, dslip = path.gap_rates(self.at, self.tangent.u)[k]
+        if state == OPEN:
+            return float(dgap[i])
+        if before == OPEN:
+            return float(dp[i])
+        q = path.touching.parts(self.z[path.n :])[k][1][i]
+        sense = self.senses.get((k, i), 1.0 if q > 0.0 else -1.0)
+        if state == SLIPPING:
+            return float(-sense * dslip[i])
+        # What sticks again loads off.
+        return float(path.touching.pairs[k].friction * dp[i] - sense * dq[i])
+
+    def first(self, latest: tuple[int, int] | None) -> Event | None:
+        """The next change along the direction; of several at once, that of the latest first."""
+        best: Event | None = None
+        path, touching = self.path, self.path.touching
+        tractions, rates = (
+            touching.parts(self.z[path.n :]),
+            touching.parts(self.tangent.u[path.n :]),
+        )
+        moves = path.gap_rates(self.at, self.tangent.u)
+        for k, pair in enumerate(touching.pairs):
+            if pair.tied or pair.law is not None or not pair.n:
+                continue
+            (p, q), (dp, dq), (dgap, dslip) = tractions[k], rates[k], moves[k]
+            state, seen = self.states[k], self.at.touch.terms[k].area > COVERED * pair.full
+            found = [
+                (_reach(self.gaps[k], -dgap, seen & (state == OPEN)), CLOSED),
+                (_reach(p, -dp, state != OPEN), OPEN),
+            ]
+            if pair.friction:
+                mu, sticks = pair.friction, state == CLOSED
+                for sign in (1.0, -1.0):
+                    room = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)
+                    found.append((room, SLIPPING))
+                sense = np.sign(q)
+                for (which, i), other in self.senses.items():
+                    if which == k:
+                        sense[i] = other
+                found.append((_reach(0.0 * q, dslip * sense, state == SLIPPING), CLOSED))
+            for ways, new in found:
+                i = int(np.argmin(ways))
+                if latest is not None and latest[0] == k and ways[latest[1]] <= ways[i]:
+                    i = latest[1]
+                if ways[i] < (np.inf if best is None else best[0]):
+                    best = (float(ways[i]), k, i, new)
+        return best
+
+
+def _reach(room: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
+    """Ways after which something that shrinks at a rate has used up its room."""
+    shrinks = which & (rate > 0.0)
+    return np.where(shrinks, np.maximum(room, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
+
+
+__all__ = ["go_round"]

@@ -1,0 +1,97 @@
+"""What contact shows: values at slave nodes, resultants of pairs, energies."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.terms.contact.pair import COVERED, OPEN
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.terms.contact.contact import Touching
+    from corota.analysis.terms.contact.pair import Pair, Terms
+
+    Floats = NDArray[np.float64]
+
+
+def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
+    """See :meth:`corota.analysis.terms.contact.contact.Touching.output`."""
+    n = len(touching.system.per_node)
+    values = np.zeros((n, 5))
+    sums: dict[str, float] = {}
+    touch = touching.at
+    friction = law = 0.0
+    x = touching.positions(touching.u)
+    for k, (pair, (p, q)) in enumerate(
+        zip(touching.pairs, touching.parts(touching.committed), strict=True)
+    ):
+        if touch is None:
+            continue
+        terms, state = touch.terms[k], touch.states[k]
+        seen = terms.area > COVERED * pair.full
+        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
+        # Positive when the slave is pulled along its own edges' direction.
+        rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]
+        if pair.tied:
+            rows[:] = 0.0
+        _spread(values, pair, rows, seen)
+        fx, fy, moment = resultant(pair, terms, p, q, x)
+        sums[f"{pair.name}: force x"] = fx
+        sums[f"{pair.name}: force y"] = fy
+        sums[f"{pair.name}: moment"] = moment
+        if not pair.tied:
+            sums[f"{pair.name}: area"] = float(terms.area[state != OPEN].sum())
+        if pair.friction:
+            shear = resultant(pair, terms, np.zeros_like(p), q, x)
+            for name, value in zip(("x", "y", "moment"), shear, strict=True):
+                sums[f"{pair.name}: friction {name}"] = value
+        friction += pair.friction_work
+        law += pair.law_energy(terms)
+    sums["friction energy"] = friction
+    sums["contact energy"] = law
+    sums["stabilisation energy"] = touching.damping_work
+    return values, sums
+
+
+def _spread(values: Floats, pair: Pair, rows: Floats, seen: NDArray[np.bool_]) -> None:
+    """Add a pair's rows to the nodes; mid-side nodes get the mean of their corners."""
+    n = len(values)
+    own = np.zeros((n, 5))
+    own[pair.nodes] = rows
+    given = np.zeros(n, bool)
+    given[pair.nodes] = True
+    edges = pair.slave.nodes
+    middle = (edges[:, 2] >= 0) & ~given[np.maximum(edges[:, 2], 0)]
+    a, b, m = edges[middle].T
+    own[m] = 0.5 * (own[a] + own[b])
+    own[m, 4] = np.maximum(own[a, 4], own[b, 4])
+    nodes = np.unique(np.concatenate([pair.nodes, m]))
+    before = values[nodes, 4] > 0.0
+    values[nodes, :2] += own[nodes, :2]
+    values[nodes, 3] += own[nodes, 3]
+    # The gap of a node with several pairs is that of the closed one, else the smallest.
+    first = ~before & (values[nodes, 2] == 0.0)
+    values[nodes, 2] = np.where(first, own[nodes, 2], np.minimum(values[nodes, 2], own[nodes, 2]))
+    values[nodes, 4] = np.maximum(values[nodes, 4], own[nodes, 4])
+
+
+def resultant(
+    pair: Pair, terms: Terms, p: Floats, q: Floats, x: Floats
+) -> tuple[float, float, float]:
+    """Force on the slave surface and its moment about the origin."""
+    part = p[terms.constraint, None] * terms.gap_gradient
+    if pair.two:
+        part = part + q[terms.constraint, None] * terms.slip_gradient
+    node = np.maximum(terms.variables, 0) // 3
+    on = (terms.variables >= 0) & pair.on_slave[node]
+    nodal = np.zeros((len(x), 3))
+    np.add.at(nodal, (node[on], terms.variables[on] % 3), part[on])
+    moment = x[:, 0] @ nodal[:, 1] - x[:, 1] @ nodal[:, 0] + nodal[:, 2].sum()
+    return float(nodal[:, 0].sum()), float(nodal[:, 1].sum()), float(moment)
+
+
+__all__ = ["output", "resultant"]

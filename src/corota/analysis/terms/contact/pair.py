@@ -1,0 +1,354 @@
+"""One contact pair or tie: gaps, states, rows of its constraints."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.terms.contact.setup import contact_core, tie_core
+from corota.model.contact import ContactPair, Tie
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: States of a constraint.
+OPEN, CLOSED, SLIPPING = 0, 1, 2
+#: Share of its full area below which a node sees nothing of the other side.
+COVERED = 1e-9
+#: Share of its area below which a node leaves its part to a neighbour.
+WEAK = 0.2
+EPS = float(np.finfo(float).eps)
+
+
+@dataclass
+class Terms:
+    """Gaps and slips of one pair at a state.
+
+    Parameters
+    ----------
+    gap, slip, area : ndarray, shape (k,)
+        Weighted gap and slip of each constraint [length^3], covered area [length^2].
+    constraint, pair : ndarray of int, shape (m,)
+        Constraint of each term, and candidate pair of the core.
+    variables : ndarray of int, shape (m, v)
+        ``3 node + component``, -1 for none.
+    gap_gradient, slip_gradient : ndarray, shape (m, v)
+    parts : tuple of ndarray, shape (k,)
+        Gap and area of each node before neighbours share constraints.
+    bare : Terms or None
+        Gaps and areas as they are, where a condition on rates has changed them.
+    """
+
+    gap: Floats
+    slip: Floats
+    area: Floats
+    constraint: Ints
+    pair: Ints
+    variables: Ints
+    gap_gradient: Floats
+    slip_gradient: Floats
+    parts: tuple[Floats, Floats]
+    bare: Terms | None = None
+
+
+class Pair:
+    """One contact pair or tie.
+
+    Parameters
+    ----------
+    system : System
+    item : ContactPair or Tie
+
+    Attributes
+    ----------
+    n : int
+        Constraints.
+    nodes : ndarray of int, shape (n,)
+        Their slave nodes.
+    width : int
+        Multipliers of the pair: n, or 2 n with friction and in ties.
+    """
+
+    def __init__(self, system: System, item: ContactPair | Tie) -> None:
+        self.item = item
+        self.tied = isinstance(item, Tie)
+        self.friction = 0.0 if isinstance(item, Tie) else item.friction
+        self.law = None if isinstance(item, Tie) else item.law
+        build: Any = tie_core if self.tied else contact_core
+        self.core, self.slave, self.master, self.reach = build(system, item)
+        self.nodes = np.asarray(self.core.nodes, np.int64)
+        self.n = len(self.nodes)
+        self.full = np.asarray(self.core.full_area, float)
+        self.two = self.tied or self.friction > 0.0
+        self.width = self.n * (2 if self.two else 1)
+        self.first = 0
+        self.reference = np.column_stack([system.model.mesh.points, np.zeros(len(system.per_node))])
+        self.on_slave = np.zeros(len(system.per_node), bool)
+        self.on_slave[self.slave.node_list] = True
+        self.fixed: Terms | None = None  # of geometrically linear steps
+        self.area = self.full.copy()  # areas of pressure laws, kept within an increment
+        #: Gaps and areas of the committed state where gaps must not fall below those.
+        self.start: tuple[Floats, Floats] | None = None
+        self.overlap = self.base = np.zeros(self.n)  # of the start, and gap that counts as none
+        self.owner = np.arange(self.n)  # whose constraint a node's part belongs to
+        self.frozen = False  # whether that is settled for the increment
+        self.beside: tuple[Ints, Ints] | None = None
+        if isinstance(item, ContactPair) and item.method == "mortar":
+            place = np.full(len(system.per_node) + 1, -1, np.int64)
+            place[self.nodes] = np.arange(self.n)
+            ends = place[self.slave.nodes[:, :2]]
+            left, right = np.full(self.n, -1, np.int64), np.full(self.n, -1, np.int64)
+            right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
+            self.beside = (left, right)
+        self.slid = np.zeros(self.n)  # slip so far [length]
+        self.friction_work = 0.0
+        self.seen = False  # whether the surfaces were ever near each other
+        self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
+        far = float(np.abs(system.model.mesh.points).max())
+        self.noise = 32.0 * EPS * (system.length + far)  # gaps that are rounding [length]
+        self.name = item.name
+
+    # -- evaluation --------------------------------------------------------------------
+
+    def evaluate(self, x: Floats, old: Floats, turning: bool) -> Terms:
+        """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3)."""
+        if not turning:
+            return self._since(self._linear(x, old))
+        self.core.search(x)
+        return self._since(self._read(self.core.evaluate(x, old if self.friction else None)))
+
+    def _since(self, terms: Terms) -> Terms:
+        """Gaps as the persistency condition sees them (Laursen & Chawla 1997).
+
+        There is no contact before an increment begins in it, and from then on none deeper.
+        """
+        if self.start is None:
+            return terms
+        start, far = self.begun()
+        gap = terms.gap - np.where(far, 0.0, np.minimum(start, 0.0))
+        return replace(terms, gap=gap, area=np.where(far, 0.0, terms.area), bare=terms)
+
+    def begun(self) -> tuple[Floats, NDArray[np.bool_]]:
+        """Gaps that the increment began with, and where they were open."""
+        assert self.start is not None
+        gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
+        return gap, (gap > self.noise * self.full) | (area <= COVERED * self.full)
+
+    def persist(self, terms: Terms) -> None:
+        """Take the gaps of a state for the start of an increment."""
+        self.start = terms.parts
+
+    def _read(self, raw: dict[str, Any]) -> Terms:
+        gap, slip, area = raw["total_gap"], raw["total_slip"], raw["total_area"]
+        parts = (gap, area)
+        self.seen = self.seen or bool(len(raw["constraint"]))
+        constraint = raw["constraint"]
+        if self.beside is not None:
+            if not self.frozen:
+                self.owner = self._owners(area)
+            if (self.owner != np.arange(self.n)).any():
+                gap, slip, area = (np.bincount(self.owner, t, self.n) for t in (gap, slip, area))
+                constraint = self.owner[constraint]
+        return Terms(
+            gap, slip, area, constraint, raw["pair"],
+            raw["variables"], raw["gap_gradient"], raw["slip_gradient"], parts,
+        )  # fmt: skip
+
+    def _owners(self, area: Floats) -> Ints:
+        """Constraint that each node's part belongs to: its own, or a neighbour's.
+
+        At the end of the other side a slave edge is covered in part. The node beyond would have
+        a constraint on next to nothing, with any pressure; its neighbour's pressure acts there.
+        """
+        own = np.arange(self.n)
+        assert self.beside is not None
+        cover = area / self.full
+        weak = cover < WEAK
+        if not weak.any():
+            return own
+        left, right = self.beside
+        a, b = (np.where(side >= 0, cover[side], 0.0) for side in (left, right))
+        best, which = np.maximum(a, b), np.where(a >= b, left, right)
+        return np.where(weak & (best >= WEAK), which, own)
+
+    def _linear(self, x: Floats, old: Floats) -> Terms:
+        """The pair as it is in the reference configuration, linear in displacement."""
+        if self.fixed is None:
+            self.core.search(self.reference)
+            self.fixed = self._read(self.core.evaluate(self.reference, self.reference))
+        at = self.fixed
+
+        def rise(gradient: Floats, since: Floats) -> Floats:
+            moved = (x - since).ravel()[at.variables]
+            out = np.zeros(self.n)
+            np.add.at(out, at.constraint, (gradient * moved).sum(axis=1))
+            return out
+
+        gap = at.gap + rise(at.gap_gradient, self.reference)
+        slip = rise(at.slip_gradient, self.reference if self.tied else old)
+        return Terms(
+            gap, slip, at.area, at.constraint, at.pair, at.variables, at.gap_gradient,
+            at.slip_gradient, (gap, at.area),
+        )  # fmt: skip
+
+    # -- states ------------------------------------------------------------------------
+
+    def trial(self, terms: Terms, p: Floats) -> tuple[Floats, Floats]:
+        """Gap [length] and trial pressure of each constraint; not covered: infinitely open."""
+        seen = terms.area > COVERED * self.full
+        if self.law is not None:
+            # The areas of the law are those of the increment's start: its tangent is exact.
+            gap = np.where(seen, terms.gap / self.area, np.inf)
+            return gap, np.where(seen, -gap - self.law.start, -np.inf)
+        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), np.inf)
+        return gap, np.where(seen, p - self.stiffness * np.where(seen, gap, 0.0), -np.inf)
+
+    def states(
+        self, terms: Terms, p: Floats, q: Floats, last: NDArray[np.int8] | None = None
+    ) -> NDArray[np.int8]:
+        """State of each constraint that its gap, slip and tractions ask for, shape (n,).
+
+        What was closed in the last correction has no linearised gap left: its pressure alone
+        decides. The gap that is there is a rest of the nonlinearity, which in a slender body
+        is worth many times the pressure.
+        """
+        if self.tied:
+            return np.where(terms.area > COVERED * self.full, CLOSED, OPEN).astype(np.int8)
+        _, push = self.trial(terms, p)
+        # What touches without pressure holds, or nothing would hold a body that just rests.
+        rounding = self.noise if self.law is not None else self.stiffness * self.noise
+        shear = self.shear(terms, q)
+        if last is not None and self.law is None:
+            seen = terms.area > COVERED * self.full
+            push = np.where((last != OPEN) & seen, np.maximum(p, push), push)
+            shear = np.where(last == CLOSED, q, shear)
+        state = np.where(push > -rounding, CLOSED, OPEN).astype(np.int8)
+        if self.friction:
+            bound = self.friction * (p if self.law is not None else push)
+            if last is not None:
+                # What slips goes on, unless it turned round: at the bound rounding would decide.
+                bound = np.where(last == SLIPPING, (1.0 - 1e-6) * bound, bound)
+            slips = (state == CLOSED) & (np.abs(shear) > bound)
+            if last is not None:
+                # And what turns round sticks first.
+                slips &= (last != SLIPPING) | (shear * q >= 0.0)
+            state[slips] = SLIPPING
+        return state
+
+    def sense(self, terms: Terms, q: Floats) -> Floats:
+        """Sign of the shear traction if it slips, shape (n,)."""
+        return np.where(self.shear(terms, q) > 0.0, 1.0, -1.0)
+
+    def shear(self, terms: Terms, q: Floats) -> Floats:
+        """Trial shear traction, shape (n,)."""
+        seen = terms.area > COVERED * self.full
+        slip: Floats = terms.slip / np.where(seen, terms.area, 1.0)
+        return q - self.stiffness * np.where(seen, slip, 0.0)
+
+    def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
+        """What the contact conditions lack, as a force by constraint, shape (n,)."""
+        seen = terms.area > COVERED * self.full
+        area = np.where(seen, terms.area, self.full)
+
+        def beyond(length: Floats) -> Floats:
+            return np.sign(length) * np.maximum(np.abs(length) - self.noise, 0.0)
+
+        gap = beyond(terms.gap / area)
+        slip = beyond(terms.slip / area)
+        c = self.stiffness
+        if self.tied:
+            return np.where(seen, area * c * np.hypot(gap, slip), self.full * np.hypot(p, q))
+        if self.law is None:
+            lack = np.abs(np.minimum(c * gap, p))
+        else:
+            lack = np.abs(p - self._pressure(terms.gap / self.area)[0])
+        lack = np.where(seen, lack, np.abs(p))
+        if self.friction:
+            bound = self.friction * np.maximum(p, 0.0)
+            lack += np.abs(q - np.where(seen, np.clip(q - c * slip, -bound, bound), 0.0))
+        return area * lack
+
+    def _pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
+        """The law at gaps: pressure, slope, energy per area; none where it has not begun."""
+        assert self.law is not None
+        begun = -gap > self.law.start
+        p, slope, energy = self.law(np.where(begun, -gap, self.law.start))
+        return (
+            np.where(begun, p, 0.0), np.where(begun, slope, 0.0), np.where(begun, energy, 0.0)
+        )  # fmt: skip
+
+    def law_energy(self, terms: Terms) -> float:
+        """Energy of the pressure law [force*length]."""
+        if self.law is None:
+            return 0.0
+        seen = terms.area > COVERED * self.full
+        gap = np.where(seen, terms.gap / self.area, -self.law.start)
+        return float((self._pressure(gap)[2] * self.area)[seen].sum())
+
+    def rows(
+        self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, sense: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """The constraints linearised: diagonals and right-hand sides of p and q, and the slope.
+
+        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone. `sense` is
+        the sign of slipping tractions.
+
+        Returns
+        -------
+        diagonal_p, rhs_p, diagonal_q, rhs_q, follow : ndarray, shape (n,)
+            ``follow`` is dq / dp of slipping rows.
+        """
+        own = self.full / self.stiffness  # of the size of a row
+        closed = state != OPEN
+        dp = np.where(closed, 0.0, own)
+        rp = np.where(closed, terms.gap, -own * p)
+        if self.law is not None and closed.any():
+            area = self.area
+            value, slope, _ = self.law(np.maximum(-terms.gap / area, self.law.start))
+            weight = area / np.where(slope > 0.0, slope, self.stiffness)
+            dp = np.where(closed, -weight, dp)
+            rp = np.where(closed, weight * (p - value), rp)
+        if not self.two:
+            return dp, rp, dp[:0], dp[:0], dp[:0]
+        sticks = state == CLOSED
+        dq = np.where(sticks, 0.0, own)
+        follow = np.where(state == SLIPPING, self.friction * sense, 0.0)
+        rq = np.where(sticks, terms.slip, 0.0)
+        return dp, rp, dq, rq, follow
+
+    # -- increments --------------------------------------------------------------------
+
+    def commit(self, terms: Terms, q: Floats, before: Floats, stuck: NDArray[np.bool_]) -> None:
+        """Accept a state.
+
+        Parameters
+        ----------
+        q, before : ndarray, shape (n,)
+            Shear tractions, and those of the committed state.
+        stuck : ndarray of bool, shape (n,)
+            What stuck there.
+        """
+        self.core.commit()
+        self.frozen = False
+        seen = terms.area > COVERED * self.full
+        self.area = np.where(seen, terms.area, self.full)
+        if self.friction:
+            slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
+            self.slid += np.where(q != 0.0, slip, 0.0)
+            # What stuck, or turned round, slid after its traction had grown. In the scheme of
+            # rate conditions the traction of the end acts all the way.
+            whole = stuck | (before * q < 0.0) | (self.start is not None)
+            mean = np.where(whole, q, 0.5 * (before + q))
+            # What parted may have slid back without traction.
+            self.friction_work += float(np.maximum(-mean * terms.slip, 0.0).sum())
+
+
+__all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "Pair", "Terms"]

@@ -1,0 +1,260 @@
+"""A system with contact on an equilibrium path: dofs, then multipliers, and the load factor.
+
+Lengths are those of displacements alone. Every attempt begins with the states of the last
+commit; a point's own states give the direction of the path there.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.procedures.path.equations import NOT_CONSERVATIVE
+from corota.analysis.terms.contact.equations import MORE, Asked, Touched, TouchingSystem
+from corota.analysis.terms.contact.event_predictor import go_round
+from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.errors import ModelError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
+
+    Floats = NDArray[np.float64]
+    States = list[NDArray[np.int8]]
+
+#: What cannot be judged where friction slips.
+SLIPS = (
+    "friction slips, and has no potential: the tangent is not symmetric, its pivots do not tell "
+    "stability there (use dynamics)"
+)
+
+
+@dataclass
+class Along(Touched):
+    """An evaluation on a path.
+
+    Parameters
+    ----------
+    two : tuple of bool
+        Whether a pair has multipliers of its slips too.
+    states : list of ndarray or None
+        Of the constraints at the point, once they were asked for.
+    """
+
+    two: tuple[bool, ...] = ()
+    states: States | None = None
+
+    @property
+    def internal(self) -> Floats:
+        """Forces at dofs, then gaps and slips as the multipliers see them."""
+        parts = [self.at.internal]
+        for terms, two in zip(self.touch.terms, self.two, strict=True):
+            parts += [-terms.gap, -terms.slip] if two else [-terms.gap]
+        return np.concatenate(parts)
+
+
+class TouchingPath(TouchingSystem):
+    """See :class:`corota.analysis.procedures.path.equations.PathSystem`.
+
+    Parameters
+    ----------
+    system : System
+    notes : list of str
+        Takes remarks for the user.
+
+    Raises
+    ------
+    ModelError
+        If an overlap is to be ramped along the path.
+    """
+
+    more_iterations = MORE
+
+    def __init__(self, system: System, notes: list[str]) -> None:
+        super().__init__(system, system)
+        touching = self.touching
+        for pair in touching.pairs:
+            ramped = getattr(pair.item, "start", "") == "ramp" and touching.number == 1
+            if ramped and pair.overlap.any():
+                raise ModelError(
+                    f"contact pair {pair.name!r} overlaps at the start, which start='ramp' would "
+                    "push out over a step that follows a path; do so in a static step before, or "
+                    "take start='keep' or 'adjust'",
+                    pair.item.where,
+                )
+        touching.damps = False
+        self.notes = notes
+        self.n_dofs, self.length = system.n_dofs, system.length
+        self.counted = np.concatenate([system.counted, np.zeros(touching.n, bool)])
+        self.two = tuple(pair.two for pair in touching.pairs)
+        self._now: tuple[Floats, Along, float] | None = None
+        #: States of the direction at the committed state, with which an attempt begins.
+        self._base: States | None = None
+        #: Whether nothing was tried since, and whether an attempt may bring bodies into contact.
+        self._fresh, self._loose = True, False
+
+    @property
+    def not_conservative(self) -> str:
+        """Why pivots do not tell stability."""
+        return SLIPS if any(p.friction for p in self.touching.pairs) else NOT_CONSERVATIVE
+
+    def plain(self, at: Along) -> Evaluation:
+        """The system's own evaluation, its internal force with that of contact."""
+        return at.at
+
+    def restart(self, loose: bool = False, like: Along | None = None) -> None:
+        """Begin an attempt with the states of the last commit, or of another evaluation."""
+        self.touching.restore()
+        self.forget()
+        self._fresh, self._loose = False, loose
+        first = self._base if like is None or like.states is None else like.states
+        if first is not None:
+            self.last = [s.copy() for s in first]
+
+    def evaluate(self, z: Floats, step_time: float) -> Along:
+        """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
+        found = super().evaluate(z, step_time)
+        at = Along(found.at, found.touch, self.two)
+        self._now = (z, at, step_time)
+        return at
+
+    def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
+        """Change of forces and of held dofs per unit of load factor, 0 for multipliers."""
+        none = np.zeros(self.touching.n)
+        force, move = self.system.load_rate(z[: self.n])
+        return np.concatenate([force, none]), np.concatenate([move, none])
+
+    def advance(self, at: Along, force: Floats, move: Floats) -> tuple[Floats, Floats]:
+        """Newton correction, and the change per unit of load factor with the same states."""
+        n = self.n
+        asked = Asked(
+            np.stack([-at.at.residual, force[:n]], axis=1),
+            np.stack([np.zeros(n), move[:n]], axis=1),
+            np.array([1.0, 0.0]),
+        )
+        x, _ = self._columns(at, asked, self._choose(at.touch))
+        return x[:, 0], x[:, 1]
+
+    def rate(self, at: Along, force: Floats, move: Floats) -> tuple[Floats, int]:
+        """Change per unit of load factor with the states of a point, and negative pivots.
+
+        The pivots are those of the bodies: one for each closed constraint is taken off.
+        """
+        states = self._settled(at)
+        if self._fresh:
+            self._base = states
+        return self.rate_with(at, states, force, move)
+
+    def rate_with(
+        self,
+        at: Along,
+        states: States,
+        force: Floats,
+        move: Floats,
+        senses: dict[tuple[int, int], float] | None = None,
+    ) -> tuple[Floats, int]:
+        """The same with given states, and senses of slip of some (pair, constraint)."""
+        self._loose = False
+        asked = Asked(force[: self.n, None], move[: self.n, None], np.zeros(1))
+        x, negative = self._columns(at, asked, states, senses)
+        return x[:, 0], negative
+
+    def around(
+        self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
+    ) -> tuple[Point, Tangent] | None:
+        """A point round the kinks that lie on the way, and the direction behind them."""
+        if self.touching.at is not None:
+            self._base = None
+        found = go_round(self, base, tangent, metric, size, period)
+        if found is None:
+            return None
+        point, now, self._base = found
+        return point, now
+
+    def solve_again(self, rhs: Floats) -> Floats:
+        """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
+        return np.concatenate(self.border.again(rhs))
+
+    def ahead(self, at: Along, rate: Floats) -> float:
+        """Whether what changed its state since the commit goes on to do so along a direction.
+
+        Where a constraint closed its pressure grows from zero; where one opened its gap does;
+        so does the slip of what began to slip.
+        """
+        if self.touching.at is None:
+            return 0.0
+        gaps = self.gap_rates(at, rate)
+        total = 0.0
+        for k, (pair, (dp, _)) in enumerate(
+            zip(self.touching.pairs, self.touching.parts(rate[self.n :]), strict=True)
+        ):
+            before, now = self.touching.at.states[k], self._settled(at)[k]
+            area = np.maximum(at.touch.terms[k].area, pair.full)
+            closed, opened = (before == OPEN) & (now != OPEN), (before != OPEN) & (now == OPEN)
+            total += float((dp * area)[closed].sum())
+            total += float((gaps[k][0] * pair.stiffness)[opened].sum())
+            slid = (before == CLOSED) & (now == SLIPPING)
+            slip = at.touch.terms[k].slip
+            total += float((np.sign(slip) * gaps[k][1] * pair.stiffness)[slid].sum())
+        return total
+
+    def commit(self) -> None:
+        """Accept the last evaluated state, of bodies and contact."""
+        assert self._now is not None
+        z, at, step_time = self._now
+        self.system.commit()
+        self.touch = at.touch
+        self.notes += self.accept(z[: self.n], step_time)
+        self._base, self._fresh = None, True
+
+    # -- parts -------------------------------------------------------------------------
+
+    def _settled(self, at: Along) -> States:
+        """States of a point: as the last correction left them, if one was made."""
+        if at.states is None:
+            corrected = self.last if self.corrections else None
+            before: Any = corrected or [None] * len(self.touching.pairs)
+            at.states = [
+                pair.states(terms, p, q, last)
+                for (pair, terms, (p, q)), last in zip(self._pairs(at.touch), before, strict=True)
+            ]
+        return at.states
+
+    def gap_rates(self, at: Along, rate: Floats) -> list[tuple[Floats, Floats]]:
+        """Change of weighted gaps and slips of each pair along a direction."""
+        moved = np.append(rate[: self.n], 0.0)
+        out = []
+        for pair, terms in zip(self.touching.pairs, at.touch.terms, strict=True):
+            du = moved[self.touching.dofs(terms.variables)]
+            gap, slip = np.zeros(pair.n), np.zeros(pair.n)
+            np.add.at(gap, terms.constraint, (terms.gap_gradient * du).sum(axis=1))
+            np.add.at(slip, terms.constraint, (terms.slip_gradient * du).sum(axis=1))
+            out.append((gap, slip))
+        return out
+
+    def _held(
+        self, at: Touched, states: States, asked: Asked
+    ) -> tuple[Floats, Floats, int, States]:
+        """Correction for states as they are: on a path, what has no stiffness is critical.
+
+        Only where a path begins are bodies that nothing holds brought into contact.
+        """
+        if self._loose:
+            return super()._held(at, states, asked)
+        return *self._solve(at, states, asked), states
+
+    # A control bounds the correction that is made: none of its parts is one by itself.
+
+    def _far(self, du: Floats, asked: Asked) -> bool:
+        return False
+
+    def _let_slip(self, at: Any, states: States, asked: Asked, found: Any) -> Any:
+        return *found, states
+
+
+__all__ = ["SLIPS", "Along", "TouchingPath"]

@@ -1,0 +1,279 @@
+"""From the contact pairs and ties of a model to pairs of the core, checked and named."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota import _core
+from corota.errors import ModelError
+from corota.mesh import EDGES
+from corota.model import elements
+from corota.model.contact import ContactPair, RigidCurve, Tie
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.model.model import Model
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Distance at which pairs are looked at, in edges, unless the user says otherwise.
+REACH = 4.0
+
+
+@dataclass
+class Surface:
+    """Edges of a surface for the core.
+
+    Parameters
+    ----------
+    name : str
+    edges : ndarray of int, shape (n, 2)
+        Cell and local edge.
+    nodes : ndarray of int, shape (n, 3)
+        Corner, corner, mid-side node or -1; the element on the left.
+    bulge, thickness, length : ndarray, shape (n,)
+        Share of the drilling rotations in the shape of the edge [1], thickness and length of
+        the chord [length].
+    """
+
+    name: str
+    edges: Ints
+    nodes: Ints
+    bulge: Floats
+    thickness: Floats
+    length: Floats
+
+    def take(self, rows: Ints) -> Surface:
+        """Some of the edges."""
+        return Surface(
+            self.name, self.edges[rows], self.nodes[rows], self.bulge[rows],
+            self.thickness[rows], self.length[rows],
+        )  # fmt: skip
+
+    @property
+    def node_list(self) -> Ints:
+        """Nodes, each once."""
+        every = np.unique(self.nodes)
+        return np.asarray(every[every >= 0])
+
+
+def reference_nodes(model: Model) -> Ints:
+    """Nodes that carry rigid curves; they have two displacements and a rotation."""
+    found = {
+        int(pair.master.reference)
+        for pair in model.contacts
+        if isinstance(pair.master, RigidCurve)
+        and isinstance(pair.master.reference, int | np.integer)
+    }
+    for node in found:
+        if not 0 <= node < model.mesh.n_nodes:
+            raise ModelError(f"a rigid curve has the reference node index {node}: there is none")
+    return np.array(sorted(found), np.int64)
+
+
+def surface(system: System, where: str | Ints, item: ContactPair | Tie) -> Surface:
+    """Edges of a surface; refuses what is no boundary.
+
+    Raises
+    ------
+    ModelError
+        Naming the set and the element.
+    """
+    mesh = system.model.mesh
+    name = where if isinstance(where, str) else "edges"
+    if isinstance(where, str):
+        if where not in mesh.edge_sets:
+            hint = ""
+            if where in mesh.node_sets:
+                hint = f"; {where!r} is a node set: contact needs the edges"
+            known = ", ".join(mesh.edge_sets) or "none"
+            raise ModelError(
+                f"contact pair {item.name!r}: no surface named {where!r}{hint}; there are: {known}",
+                item.where,
+            )
+        edges = mesh.edge_sets[where]
+    else:
+        edges = np.asarray(where, np.int64).reshape(-1, 2)
+    if not len(edges):
+        raise ModelError(f"contact pair {item.name!r}: surface {name!r} is empty", item.where)
+    edges = edges[np.sort(np.unique(edges, axis=0, return_index=True)[1])]
+    inner = ~_among(edges, mesh.boundary_edges())
+    if inner.any():
+        cell = int(edges[int(np.argmax(inner)), 0])
+        raise ModelError(
+            f"contact pair {item.name!r}: surface {name!r} is not on the boundary: "
+            f"{int(inner.sum())} of its {len(edges)} edges lie between elements, the first at "
+            f"element {mesh.cell_labels[cell]}; take outer edges only",
+            item.where,
+        )
+    n = len(edges)
+    nodes = np.full((n, 3), -1, np.int64)
+    bulge, thickness = np.zeros(n), np.zeros(n)
+    found = np.zeros(n, bool)
+    for block in system.blocks:
+        order = np.argsort(block.cells)
+        at = np.minimum(np.searchsorted(block.cells[order], edges[:, 0]), len(order) - 1)
+        mine = block.cells[order][at] == edges[:, 0]
+        element = elements.find(block.section.element)
+        for side, local in enumerate(EDGES[element.cell]):
+            here = np.flatnonzero(mine & (edges[:, 1] == side))
+            rows = order[at[here]]
+            nodes[here, : len(local)] = block.nodes[rows][:, list(local)]
+            bulge[here] = element.alpha_b
+            thickness[here] = block.section.thickness
+            found[here] = True
+    if not found.all():
+        cell = int(edges[int(np.argmin(found)), 0])
+        raise ModelError(
+            f"contact pair {item.name!r}: element {mesh.cell_labels[cell]} of surface {name!r} "
+            "has no section, or no such edge",
+            item.where,
+        )
+    length = np.hypot(*(mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]).T)
+    return Surface(name, edges, nodes, bulge, thickness, length)
+
+
+def _among(edges: Ints, others: Ints) -> NDArray[np.bool_]:
+    """Which edges are in a list of others."""
+    many = 1 + max(int(edges[:, 1].max(initial=0)), int(others[:, 1].max(initial=0)))
+    key = edges[:, 0] * many + edges[:, 1]
+    return np.isin(key, others[:, 0] * many + others[:, 1])
+
+
+def along_contour(found: Surface) -> Surface:
+    """The edges one after the other along each contour."""
+    follower = {int(a): k for k, a in enumerate(found.nodes[:, 0])}
+    ends = set(found.nodes[:, 1].tolist())
+    starts = [k for k, a in enumerate(found.nodes[:, 0].tolist()) if a not in ends]
+    order: list[int] = []
+    seen = np.zeros(len(found.nodes), bool)
+    for first in [*starts, *range(len(found.nodes))]:
+        at: int | None = first
+        while at is not None and not seen[at]:
+            seen[at] = True
+            order.append(at)
+            at = follower.get(int(found.nodes[at, 1]))
+    return found.take(np.array(order, np.int64))
+
+
+def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surface | None, float]:
+    """The core's pair, its surfaces and how far it looks.
+
+    Raises
+    ------
+    ModelError
+        If the surfaces cannot touch as they are.
+    """
+    mesh = system.model.mesh
+    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
+    slave = surface(system, item.slave, item)
+    longest = float(slave.length.max())
+    master: Surface | None = None
+    if not item.itself and not isinstance(item.master, RigidCurve):
+        master = surface(system, item.master, item)
+        longest = max(longest, float(master.length.max()))
+        _check_pair(system, item, slave, master)
+    reach = item.reach or REACH * longest
+    common: dict[str, Any] = {"method": item.method, "reach": reach, "margin": 0.5 * reach}
+    try:
+        if item.itself:
+            slave = along_contour(slave)
+            core = _core.Contact.itself(x, slave.nodes, slave.bulge, slave.thickness, **common)
+        elif isinstance(item.master, RigidCurve):
+            reference = item.master.reference
+            node, point = -1, (0.0, 0.0)
+            if isinstance(reference, tuple):
+                point = reference
+            elif reference is not None:
+                node = int(reference)
+            core = _core.Contact.rigid(
+                x, slave.nodes, slave.bulge, slave.thickness, item.master.backward, node, point,
+                **common,
+            )  # fmt: skip
+        else:
+            assert master is not None
+            core = _core.Contact.edges(
+                x, slave.nodes, slave.bulge, slave.thickness, master.nodes, master.bulge, **common
+            )
+    except ValueError as error:
+        raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
+    return core, slave, master, reach
+
+
+def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface, float]:
+    """The same for a tie; slave edges that are out of its tolerance stay free."""
+    mesh = system.model.mesh
+    x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
+    slave, master = surface(system, item.slave, item), surface(system, item.master, item)
+    _check_pair(system, item, slave, master)
+    longest = float(max(slave.length.max(), master.length.max()))
+    reach = item.tolerance or 0.1 * longest
+    try:
+        core = _core.Contact.edges(
+            x, slave.nodes, slave.bulge, slave.thickness, master.nodes, master.bulge,
+            method="mortar", tie=True, reach=reach, margin=reach,
+        )  # fmt: skip
+    except ValueError as error:
+        raise ModelError(f"tie {item.name!r}: {error}", item.where) from None
+    return core, slave, master, reach
+
+
+def _check_pair(system: System, item: ContactPair | Tie, slave: Surface, master: Surface) -> None:
+    mesh = system.model.mesh
+    kind = "tie" if isinstance(item, Tie) else "contact pair"
+    both = _among(slave.edges, master.edges)
+    if both.any():
+        cell = mesh.cell_labels[int(slave.edges[int(np.argmax(both)), 0])]
+        raise ModelError(
+            f"{kind} {item.name!r}: {int(both.sum())} edges are on both surfaces, {slave.name!r} "
+            f"and {master.name!r}, the first at element {cell}; leave them out of one, or name "
+            "the same surface twice for contact with itself",
+            item.where,
+        )
+    if isinstance(item, Tie):
+        return
+    shared = np.intersect1d(slave.node_list, master.node_list)
+    if len(shared):
+        raise ModelError(
+            f"contact pair {item.name!r}: surfaces {slave.name!r} and {master.name!r} share node "
+            f"{mesh.node_labels[shared[0]]}, so they cannot part there; leave its edges out of "
+            "one of them, give the bodies their own nodes, or use contact of one surface with "
+            "itself",
+            item.where,
+        )
+    out_s, out_m = _normals(mesh.points, slave), _normals(mesh.points, master)
+    # Nothing faces anything: bodies may turn, but not before they touch.
+    facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) < 4_000_000 else 1.0
+    towards = _towards(mesh.points, slave, master, out_s)
+    if facing <= 0.0 or not towards:
+        raise ModelError(
+            f"contact pair {item.name!r}: no edge of {slave.name!r} faces any edge of "
+            f"{master.name!r} (their outward normals point away from each other); name the sides "
+            "that look at each other",
+            item.where,
+        )
+
+
+def _normals(x: Floats, found: Surface) -> Floats:
+    d = x[found.nodes[:, 1]] - x[found.nodes[:, 0]]
+    return np.asarray(np.column_stack([d[:, 1], -d[:, 0]]) / np.hypot(*d.T)[:, None])
+
+
+def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
+    """Whether any slave edge has the master before it, or overlaps it."""
+    at = x[slave.nodes[:, :2]].mean(axis=1)
+    centre = x[master.node_list]
+    low, high = centre.min(axis=0), centre.max(axis=0)
+    # The corner of the master's box farthest along each normal.
+    corner = np.where(out > 0.0, high, low)
+    return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())
+
+
+__all__ = ["Surface", "contact_core", "reference_nodes", "surface", "tie_core"]

@@ -1,0 +1,98 @@
+"""Slave surfaces that start behind a rigid curve, where nothing would ever touch."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.terms.contact.tunneling import other_side
+from corota.errors import ModelError
+from corota.model.contact import RigidCurve
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.terms.contact.pair import Pair
+
+    Floats = NDArray[np.float64]
+
+#: Cosine between the normals of slave and curve from which the slave shows its back.
+BACK = 0.2
+#: Distances that are equal, in slave edges.
+SAME = 1e-9
+
+
+def check_side(system: System, pair: Pair, x: Floats) -> None:
+    """Refuse a slave surface that starts wholly on the wrong side of a rigid curve.
+
+    Parameters
+    ----------
+    system : System
+    pair : Pair
+    x : ndarray, shape (n_nodes, 3)
+        Positions and rotations at the start.
+
+    Raises
+    ------
+    ModelError
+        Naming the pair, the curve and the nearest node.
+    """
+    curve = getattr(pair.item, "master", None)
+    if not isinstance(curve, RigidCurve):
+        return
+    pieces = other_side(pair, x, x)[0]
+    ends = x[pair.slave.nodes[:, :2], :2]
+    size = SAME * float(pair.slave.length.max())
+    distance, normal, inside = _signed(pieces, ends.mean(axis=1), size)
+    if not inside.any() or (distance[inside] > -size).any():
+        return
+    along = ends[:, 1] - ends[:, 0]
+    outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    nearest = int(np.argmax(np.where(inside, distance, -np.inf)))
+    if outward[nearest] @ normal[nearest] < BACK:
+        return  # it overlaps the curve, and faces it
+    label = system.model.mesh.node_labels[pair.slave.nodes[nearest, 0]]
+    name = f" {curve.name!r}" if curve.name else ""
+    raise ModelError(
+        f"contact pair {pair.item.name!r}: the slave surface starts wholly on the wrong side of "
+        f"the rigid curve{name}: node {label} is nearest, {-distance[nearest]:.4g} behind it. The "
+        "deformable body belongs on the left of the curve's direction of travel; give its points "
+        "in the other order (corota plot draws the rigid body shaded)",
+        pair.item.where,
+    )
+
+
+def _signed(
+    pieces: Floats, points: Floats, same: float
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Signed distance to the nearest piece, positive in front, and the normal there.
+
+    The last part of the result is whether the nearest point lies on the curve, not at a free end.
+    """
+    start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
+    square = (along**2).sum(axis=1)
+    normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.sqrt(square)[:, None]
+    joints = np.concatenate([pieces[:, 0], pieces[:, 1]])
+    free = [(np.hypot(*(joints - end).T) <= same).sum() == 1 for end in joints]
+    first, last = np.array(free[: len(pieces)]), np.array(free[len(pieces) :])
+    distance, normal = np.empty(len(points)), np.empty((len(points), 2))
+    inside = np.zeros(len(points), bool)
+    for i, p in enumerate(points):
+        away = p - start
+        t = (away * along).sum(axis=1) / square
+        foot = np.clip(t, 0.0, 1.0)
+        apart = away - foot[:, None] * along
+        size = np.hypot(*apart.T)
+        height = (away * normals).sum(axis=1)
+        near = np.flatnonzero(size <= size.min() + same)
+        # At a corner the piece that sees the point from farther off decides, as for a wedge.
+        k = int(near[np.argmax(np.abs(height[near]))])
+        distance[i], normal[i] = np.copysign(size[k], height[k]), normals[k]
+        inside[i] = not ((t[k] < 0.0 and first[k]) or (t[k] > 1.0 and last[k]))
+    return distance, normal, inside
+
+
+__all__ = ["check_side"]

@@ -1,0 +1,258 @@
+"""Thermal strain and initial stress: strains that the elements have without any displacement.
+
+With the free strain ``e = alpha dT - S s0`` (thermal strain, initial stress ``s0`` and elastic
+compliance ``S``) the law is ``strain - e = S stress``. In plane strain the strain through the
+thickness is eliminated, which leaves
+
+    e_in - S_in,zz e_zz / S_zz,zz     and the stress    -e_zz / S_zz,zz
+
+in the plane and through the thickness; for an isotropic material ``(1 + nu) alpha dT`` and
+``-E alpha dT`` (Timoshenko and Goodier, *Theory of Elasticity*, ch. 13).
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.errors import ModelError
+from corota.model import elements
+from corota.model.materials import Expansion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.blocks import BlockOfCells
+    from corota.model.model import Model
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Rows of a compliance in the plane, and through the thickness.
+IN, ZZ = [0, 1, 3], 2
+
+
+@dataclass
+class _Block:
+    """A block with free strains."""
+
+    index: int
+    nodes: Ints
+    shape: Floats  # (p, k)
+    expansion: Expansion
+    turn: Floats  # strain along the axes 1, 2, 3 to rows xx, yy, zz, xy
+    compliance: Floats  # (4, 4), rows xx, yy, zz, xy
+    line: bool
+    strain: bool  # plane strain
+    spherical: bool
+    stress: Floats | None = None  # initial, (n, p, 4)
+    start: Floats = field(init=False)
+
+
+class FreeStrains:
+    """The free strains of a model, and the temperatures that they follow.
+
+    Parameters
+    ----------
+    core : corota._core.Problem
+    model : Model
+    blocks : sequence of BlockOfCells
+
+    Attributes
+    ----------
+    start : ndarray, shape (n_nodes,)
+        Initial temperature.
+    now : ndarray, shape (n_nodes,)
+        Temperature in the core.
+    offset : ndarray or None
+        Added to every temperature while a driver looks at neighbouring states.
+    expands : bool
+        Whether any material expands.
+    """
+
+    def __init__(self, core: Any, model: Model, blocks: Sequence[BlockOfCells]) -> None:
+        self.core, self.model = core, model
+        self.start = np.zeros(model.mesh.n_nodes)
+        for item in model.initial_temperatures:
+            nodes = _nodes(model, item.nodes)
+            try:
+                self.start[nodes] = item.value
+            except ValueError:
+                raise ModelError(
+                    f"{np.size(item.value)} initial temperatures for "
+                    f"{len(self.start[nodes])} nodes",
+                    item.where,
+                ) from None
+        self.offset: Floats | None = None
+        stresses = self._stresses(blocks)
+        self._blocks: list[_Block] = []
+        for index, block in enumerate(blocks):
+            expansion = Expansion.of(block.section.material.expansion)
+            if expansion or stresses[index] is not None:
+                self._blocks.append(_block(core, index, block, expansion, stresses[index]))
+        self.expands = any(block.expansion for block in self._blocks)
+        self.now = self.start.copy()
+        for own in self._blocks:
+            own.start = self.start[own.nodes] @ own.shape.T
+            if own.stress is not None:
+                self._set(own, self.start)
+
+    def _stresses(self, blocks: Sequence[BlockOfCells]) -> list[Floats | None]:
+        """Initial stress by block, shapes (n, p, 4)."""
+        found: list[Floats | None] = [None] * len(blocks)
+        mesh = self.model.mesh
+        for item in self.model.initial_stresses:
+            cells = item.cells
+            if isinstance(cells, str):
+                if cells and cells not in mesh.cell_sets:
+                    raise ModelError(f"no element set named {cells!r}", item.where)
+                cells = mesh.cell_sets[cells] if cells else np.arange(mesh.n_cells)
+            order = np.full(mesh.n_cells, -1, np.int64)
+            order[cells] = np.arange(len(cells))
+            for index, block in enumerate(blocks):
+                rows = np.flatnonzero(order[block.cells] >= 0)
+                facts = elements.find(block.section.element)
+                if not len(rows) or block.section.element.startswith("SPRING"):
+                    continue
+                shape = (len(block.cells), facts.n_points)
+                stress = found[index]
+                if stress is None:
+                    stress = found[index] = np.zeros((*shape, 4))
+                at = order[block.cells[rows]]
+                for component, value in enumerate(item.value):
+                    given = np.asarray(value, dtype=np.float64)
+                    try:
+                        own = given if given.ndim == 0 else given[at]
+                        stress[rows, :, component] = np.broadcast_to(own, (len(rows), shape[1]))
+                    except (ValueError, IndexError):
+                        raise ModelError(
+                            f"an initial stress of shape {given.shape} does not fit {len(cells)} "
+                            f"cells with {shape[1]} points each ({facts.name}); give a number, "
+                            "(n, 1) or (n, points)",
+                            item.where,
+                        ) from None
+                if facts.line:
+                    stress[..., 1:] = 0.0
+                elif block.section.plane == "stress" and stress[..., 2].any():
+                    label = mesh.cell_labels[block.cells[np.argmax(stress[..., 2].any(axis=1))]]
+                    raise ModelError(
+                        f"element {label} is in plane stress and takes no initial stress through "
+                        "the thickness (zz)",
+                        item.where,
+                    )
+        return found
+
+    def require_expansion(self, where: Any) -> None:
+        """Refuse temperatures that nothing responds to.
+
+        Raises
+        ------
+        ModelError
+        """
+        if not self.expands:
+            raise ModelError(
+                "temperatures without effect: no material has a coefficient of thermal expansion; "
+                "give it one (expansion=, *EXPANSION)",
+                where,
+            )
+
+    def follows(self, temperature: Floats) -> bool:
+        """Whether the core has these temperatures already."""
+        return not self.expands or np.array_equal(self._wanted(temperature), self.now)
+
+    def apply(self, temperature: Floats) -> None:
+        """Give the core the strains at temperatures of the nodes, shape (n_nodes,)."""
+        if self.follows(temperature):
+            return
+        self.now = self._wanted(temperature)
+        for block in self._blocks:
+            if block.expansion:
+                self._set(block, self.now)
+
+    def largest(self, heating: Floats) -> float:
+        """Largest thermal strain of a change of temperature about those of the core."""
+        found = [
+            np.abs(
+                block.expansion.strain(
+                    (self.now + heating)[block.nodes], self.now[block.nodes]
+                )
+            ).max(initial=0.0)
+            for block in self._blocks
+            if block.expansion
+        ]  # fmt: skip
+        return float(max(found, default=0.0))
+
+    def _wanted(self, temperature: Floats) -> Floats:
+        return temperature + self.offset if self.offset is not None else temperature.copy()
+
+    def _set(self, block: _Block, temperature: Floats) -> None:
+        at_points = temperature[block.nodes] @ block.shape.T
+        free = block.expansion.strain(at_points, block.start) @ block.turn.T
+        if block.stress is not None:
+            free = free - block.stress @ block.compliance
+        self.core.set_initial(block.index, _rows(block, free).ravel())
+
+
+def _rows(block: _Block, free: Floats) -> Floats:
+    """What the core takes from free strains in rows xx, yy, zz, xy, shape (n, p, 4)."""
+    rows = np.zeros(free.shape)
+    if block.line:
+        rows[..., 0] = free[..., 0]
+        return rows
+    rows[..., :3], rows[..., 3] = free[..., IN], free[..., ZZ]
+    if not block.strain:
+        return rows
+    s = block.compliance
+    rows[..., 3] = -free[..., ZZ] / s[ZZ, ZZ]
+    rows[..., :3] += s[IN, ZZ] * rows[..., 3:]
+    if block.spherical:
+        # The same stress as a pressure on all sides, which leaves the deviator alone.
+        share = -s[ZZ, IN] / s[ZZ, ZZ]
+        reduced = s[np.ix_(IN, IN)] - np.outer(s[IN, ZZ], s[ZZ, IN]) / s[ZZ, ZZ]
+        rows[..., 3] /= 1.0 - share[0] - share[1]
+        rows[..., :3] += rows[..., 3:] * (reduced[:, 0] + reduced[:, 1])
+    return rows
+
+
+def _block(
+    core: Any, index: int, block: BlockOfCells, expansion: Expansion, stress: Floats | None
+) -> _Block:
+    section = block.section
+    facts = elements.find(section.element)
+    c, s = np.cos(section.orientation), np.sin(section.orientation)
+    # Strain along the material axes in global ones (engineering shear).
+    turn = np.array(
+        [
+            [c * c, s * s, 0.0, -c * s],
+            [s * s, c * c, 0.0, c * s],
+            [0.0, 0.0, 1.0, 0.0],
+            [2.0 * c * s, -2.0 * c * s, 0.0, c * c - s * s],
+        ]
+    )
+    compliance = turn @ section.material.compliance() @ turn.T
+    return _Block(
+        index,
+        block.nodes,
+        core.shape(index).reshape(-1, facts.n_nodes),
+        expansion,
+        turn[:, :3],
+        compliance,
+        facts.line,
+        section.plane == "strain",
+        section.material.law == "mises" and section.plane == "strain",
+        stress,
+    )
+
+
+def _nodes(model: Model, where: str | Ints) -> Any:
+    if isinstance(where, str):
+        return model.mesh.nodes_of(where) if where else slice(None)
+    return where
+
+
+__all__ = ["FreeStrains"]

@@ -1,0 +1,137 @@
+"""Blocks whose material is a Python function: strains out, stress and tangent in."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.newton import ElementFailure
+from corota.model.user_material import UserMaterial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+#: Change of the strain, relative to the largest, below which the linear part is exact.
+SETTLED = 1e-9
+#: Calls for one evaluation of elements with internal modes.
+MAX_CALLS = 30
+
+
+@dataclass
+class _Block:
+    index: int
+    material: UserMaterial
+    plane: str
+    shape: tuple[int, int]
+    modes: bool
+    committed: Floats
+    trial: Floats = field(init=False)
+    # Equivalent plastic strain, where the function gives one.
+    plastic: Floats | float = 0.0
+    plastic_trial: Floats | float = 0.0
+
+    def __post_init__(self) -> None:
+        self.trial = self.committed
+
+
+class UserBlocks:
+    """The blocks of a model with materials in Python.
+
+    Parameters
+    ----------
+    core : corota._core.Problem
+    blocks : sequence of BlockOfCells
+    """
+
+    def __init__(self, core: Any, blocks: Sequence[Any]) -> None:
+        from corota import _core
+
+        facts = {e["name"]: e for e in _core.elements()}
+        self.core = core
+        # Largest strain so far: a body may come back to its shape.
+        self.largest = 0.0
+        self.blocks = []
+        for index, block in enumerate(blocks):
+            material = block.section.material
+            if isinstance(material, UserMaterial):
+                fact = facts[block.section.element]
+                shape = (len(block.cells), fact["n_points"])
+                self.blocks.append(
+                    _Block(
+                        index,
+                        material,
+                        block.section.plane,
+                        shape,
+                        block.section.element in ("Q4I", "Q4D"),
+                        material.start(*shape),
+                    )
+                )
+
+    def assemble(self, u: Floats, turning: bool, assemble: Callable[[], None]) -> None:
+        """Assemble with the functions' answers at the strains of `u`.
+
+        Elements with internal modes find them with the linear part of the answer; that is
+        repeated until the strains stay.
+
+        Raises
+        ------
+        ElementFailure
+            If the internal modes do not settle.
+        """
+        if not self.blocks:
+            assemble()
+            return
+        assemble_once = not any(b.modes for b in self.blocks)
+        seen = [self._strain(b, u, turning, True) for b in self.blocks]
+        for _ in range(MAX_CALLS):
+            for block, strain in zip(self.blocks, seen, strict=True):
+                self._give(block, strain)
+            assemble()
+            if assemble_once:
+                return
+            now = [self._strain(b, u, turning, False) for b in self.blocks]
+            size = max(float(np.abs(e).max(initial=0.0)) for e in now)
+            change = max(
+                float(np.abs(a - b).max(initial=0.0)) for a, b in zip(now, seen, strict=True)
+            )
+            self.largest = max(self.largest, size)
+            if change <= SETTLED * self.largest:
+                return
+            seen = now
+        raise ElementFailure("the internal modes of elements with a Python material did not settle")
+
+    def _strain(self, block: _Block, u: Floats, turning: bool, committed: bool) -> Floats:
+        flat: Floats = self.core.strains(block.index, u, turning, committed)
+        return flat.reshape(*block.shape, 3)
+
+    def _give(self, block: _Block, strain: Floats) -> None:
+        stress, tangent, block.trial, extra = block.material.call(
+            strain, block.committed, block.plane
+        )
+        values = np.zeros((*block.shape, 16))
+        values[..., :3], values[..., 3:6] = strain, stress
+        symmetric = 0.5 * (tangent + np.swapaxes(tangent, -1, -2))
+        rows, columns = np.triu_indices(3)
+        values[..., 6:12] = symmetric[..., rows, columns]
+        for member, name in enumerate(("strain_zz", "stress_zz", "energy", "PEEQ"), start=12):
+            if name in extra:
+                values[..., member] = extra[name]
+        block.plastic_trial = values[..., 15]
+        self.core.give(block.index, values.ravel())
+
+    def commit(self) -> None:
+        """Accept the last answers."""
+        for block in self.blocks:
+            block.committed = block.trial
+            block.plastic = block.plastic_trial
+
+    def plastic_increment(self) -> float:
+        """Largest growth of the equivalent plastic strain since the last commit."""
+        return max((float(np.max(b.plastic_trial - b.plastic)) for b in self.blocks), default=0.0)

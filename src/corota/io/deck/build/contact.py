@@ -1,0 +1,203 @@
+"""From the contact pairs and ties of a deck to those of a model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.deck import numerals
+from corota.io.deck.build.mesh import placed
+from corota.io.deck.build.ties import single_node
+from corota.io.deck.cards.contact import interaction_of
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.io.deck.build.sets import Sets
+    from corota.io.deck.cards.contact import InteractionDraft, PairDraft
+    from corota.io.deck.deck import Deck, Draft, Surface
+    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.model.model import Model
+
+    Find = Callable[[Draft], str | Ints | None]
+
+
+def build_contacts(
+    deck: Deck, model: Model, sets: Sets, find: Find, rotating: NDArray[np.bool_]
+) -> None:
+    """Add the deck's contact pairs and ties to the model; reference nodes get a rotation."""
+    builder = _Builder(deck, model, sets, find, rotating)
+    for pair in deck.pairs:
+        try:
+            builder.add(pair)
+        except InputError as error:
+            deck.error(pair.card, pair.row.where, error.message, text=pair.row.text)
+    builder.unused()
+
+
+class _Builder:
+    def __init__(
+        self, deck: Deck, model: Model, sets: Sets, find: Find, rotating: NDArray[np.bool_]
+    ) -> None:
+        self.deck, self.model, self.sets = deck, model, sets
+        self.find, self.rotating = find, rotating
+        self.curves: dict[str, RigidCurve] = {}
+        self.used: set[str] = set()
+
+    def add(self, pair: PairDraft) -> None:
+        """Build one pair; faults go to the deck."""
+        interaction = None if pair.tied else interaction_of(self.deck, pair)
+        slave = self._surface(pair, 0)
+        itself = key(pair.slave) == key(pair.master)
+        master = slave if itself else self._surface(pair, 1)
+        if slave is None or master is None or (interaction is None and not pair.tied):
+            return
+        if isinstance(slave, RigidCurve):
+            self.deck.row_error(
+                pair.card, pair.row, 0, f"{pair.slave} is a rigid profile and cannot be the slave",
+                "name the deformable surface first, the rigid one second",
+            )  # fmt: skip
+            return
+        name = pair.name or f"{pair.slave}-{pair.master}"
+        tied = pair.tied or (interaction is not None and interaction.law == "TIED")
+        if tied:
+            if isinstance(master, RigidCurve):
+                self.deck.row_error(
+                    pair.card, pair.row, 1, "nothing can be tied to a rigid profile",
+                    "use *RIGID BODY, NSET=",
+                )  # fmt: skip
+                return
+            self.model.ties.append(Tie(slave, master, pair.adjust, name, pair.row.where))
+            return
+        assert interaction is not None
+        self.model.contacts.append(
+            ContactPair(
+                slave,
+                master,
+                cast("Literal['mortar', 'node_to_segment']", pair.method),
+                interaction.friction,
+                self._law(interaction),
+                pair.clearance,
+                cast("Literal['keep', 'adjust', 'ramp']", pair.start),
+                pair.stabilise,
+                name=name,
+                where=pair.row.where,
+                adjust=pair.adjust,
+            )
+        )
+
+    def _law(self, draft: InteractionDraft) -> PressureLaw | None:
+        if draft.law in ("HARD", "TIED") or not draft.pressure:
+            return None
+        kind = cast("Literal['linear', 'tabular', 'exponential']", draft.law.lower())
+        try:
+            return PressureLaw(kind, np.array(draft.pressure), np.array(draft.overclosure))
+        except InputError as error:
+            self.deck.error(draft.card, draft.law_where, error.message)
+            draft.pressure.clear()  # said once
+            return None
+
+    def _surface(self, pair: PairDraft, index: int) -> str | Ints | RigidCurve | None:
+        """A surface of a pair: name of edges, edges, or a rigid curve; ``None`` after an error."""
+        name = (pair.slave, pair.master)[index]
+        found = self.sets.surfaces.get(key(name))
+        index = min(index, len(pair.row) - 1)
+        if found is None:
+            known = [view.prefix + s.name for view, s in self.sets.surfaces.values()]
+            self.deck.row_error(
+                pair.card, pair.row, index, f"no surface named {numerals.shown(name)}",
+                nearest(name, known),
+            )  # fmt: skip
+            return None
+        view, surface = found
+        if key(surface.card.value("TYPE")) == "SEGMENTS":
+            return self._curve(name, surface)
+        full = view.prefix + surface.name
+        if surface.nodes:
+            edges = _edges_of_nodes(self.model.mesh, self.model.mesh.node_sets[full])
+            what = "no outer element edge has both ends in it"
+        else:
+            edges, what = self.model.mesh.edge_sets[full], "it has no edges"
+        if not len(edges):
+            if not self.deck.n_errors:
+                self.deck.row_error(
+                    pair.card, pair.row, index, f"surface {name} cannot touch: {what}",
+                    "contact acts on edges: give the surface by elements and faces",
+                )  # fmt: skip
+            return None
+        return edges if surface.nodes else full
+
+    def _curve(self, name: str, surface: Surface) -> RigidCurve | None:
+        if surface.profile is None:
+            return None  # its faults are told already
+        self.used.add(key(name))
+        if key(name) in self.curves:
+            return self.curves[key(name)]
+        view = self.sets.surfaces[key(name)][0]
+        rows = surface.profile.copy()
+        for columns in (slice(0, 2), slice(2, 4), slice(4, 6)):
+            rows[:, columns] = placed(rows[:, columns], view.instance)
+        reference: int | None = None
+        if key(name) in self.deck.carriers:
+            _, draft = self.deck.carriers[key(name)]
+            reference = single_node(self.deck, self.find, draft)
+            if reference is None:
+                return None
+            self.rotating[reference] = True
+        else:
+            self.deck.note(
+                f"{surface.card.where}: rigid profile {name} has no *RIGID BODY, so it stays "
+                "where it is"
+            )
+        self.curves[key(name)] = curve = _made(rows, surface.fillet, reference)
+        curve.name = name
+        return curve
+
+    def unused(self) -> None:
+        """Tell of rigid bodies of profiles that do not exist, and of what nothing uses."""
+        for name, (card, _) in self.deck.carriers.items():
+            if name not in self.sets.surfaces:
+                shown = card.value("ANALYTICALSURFACE")
+                names = [s.name for _, s in self.sets.surfaces.values()]
+                self.deck.error(
+                    card,
+                    card.at("ANALYTICALSURFACE"),
+                    f"no surface named {numerals.shown(shown)}",
+                    hint=nearest(shown, names),
+                )
+            elif key(self.sets.surfaces[name][1].card.value("TYPE")) != "SEGMENTS":
+                text = "the surface is no rigid profile (TYPE=SEGMENTS); use NSET= or ELSET="
+                self.deck.error(card, card.at("ANALYTICALSURFACE"), text)
+        named = {key(p.interaction) for p in self.deck.pairs}
+        for name, draft in self.deck.interactions.items():
+            if name not in named:
+                self.deck.note(f"{draft.card.where}: interaction {draft.name} is not used")
+
+
+def _made(rows: Floats, fillet: float, reference: int | None) -> RigidCurve:
+    if fillet <= 0.0:
+        return RigidCurve(rows, reference)
+    points = np.concatenate([rows[:1, :2], rows[:, 2:4]])
+    closed = bool(np.array_equal(points[0], points[-1]))
+    points = points[:-1] if closed else points
+    return RigidCurve.polyline(points, closed=closed, fillet=fillet, reference=reference)
+
+
+def _edges_of_nodes(mesh: Mesh, nodes: Ints) -> Ints:
+    """Outer edges whose two ends are in a set of nodes."""
+    free = mesh.boundary_edges()
+    inside = np.zeros(mesh.n_nodes, bool)
+    inside[nodes] = True
+    chosen = [bool(inside[ends[:2]].all()) for ends in mesh.edge_nodes(free)]
+    return np.asarray(free[np.array(chosen, bool)])
+
+
+__all__ = ["build_contacts"]

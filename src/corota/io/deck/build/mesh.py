@@ -1,0 +1,435 @@
+"""From what a deck said to a mesh: numbers looked up, cells turned, sets resolved."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import Diagnostic, Location
+from corota.io.deck.elements import COMPANIONS, ELEMENTS, LINES
+from corota.io.deck.lexer import key
+from corota.mesh.data import Cells, Mesh
+from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
+
+if TYPE_CHECKING:
+    from corota.io.deck.deck import Deck, ElementBlock, Instance, NodeBlock, Scope
+    from corota.mesh.data import Floats, Ints
+
+#: Largest coordinate; areas and their products stay finite.
+LARGEST = 1e100
+#: Faults of one sort that are listed one by one.
+MAX_LISTED = 20
+
+
+class Lookup:
+    """Indices of labels.
+
+    Parameters
+    ----------
+    labels, indices : ndarray of int, shape (n,)
+    """
+
+    def __init__(self, labels: Ints, indices: Ints) -> None:
+        if (np.diff(labels) < 0).any():
+            order = np.argsort(labels, kind="stable")
+            labels, indices = labels[order], indices[order]
+        self._labels, self._indices = labels, indices
+        # Labels without gaps are looked up by their distance from the first.
+        self._dense = len(labels) > 0 and bool((np.diff(labels) == 1).all())
+
+    def __call__(self, labels: Ints) -> Ints:
+        """Index of each label, -1 where there is none."""
+        if len(self._labels) == 0:
+            return np.full(np.shape(labels), -1, dtype=np.int64)
+        if self._dense:
+            at = labels - self._labels[0]
+            inside = (at >= 0) & (at < len(self._labels))
+            return np.where(inside, self._indices[np.where(inside, at, 0)], -1)
+        at = np.minimum(np.searchsorted(self._labels, labels), len(self._labels) - 1)
+        return np.where(self._labels[at] == labels, self._indices[at], -1)
+
+
+@dataclass
+class View:
+    """One name space placed in the model: the flat deck, or an instance of a part."""
+
+    scope: Scope
+    prefix: str = ""
+    instance: Instance | None = None
+    nodes: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, int), np.zeros(0, int)))
+    cells: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, int), np.zeros(0, int)))
+    lines: Lookup = field(default_factory=lambda: Lookup(np.zeros(0, int), np.zeros(0, int)))
+    node_offset: int = 0
+    cell_offset: int = 0
+
+
+@dataclass
+class Placed:
+    """Cells of one block that are fit for use."""
+
+    kind: str
+    nodes: Ints
+    labels: Ints
+    turned: Ints
+    view: View
+    block: ElementBlock
+
+
+class MeshBuilder:
+    """Builds the mesh of a deck; faults go to ``deck.diagnostics``.
+
+    Attributes
+    ----------
+    views : list of View
+        The flat deck first, then the instances.
+    types : list of str
+        Names of deck elements that occur.
+    cell_type : ndarray of int, shape (n_cells,)
+        Index into ``types``.
+    turned : ndarray of bool, shape (n_cells,)
+        Cells given clockwise.
+    line_nodes : list of ndarray of int
+        Nodes of each line element that is no truss.
+    twin : ndarray of int, shape (n_cells,)
+        Second half of a beam of three nodes, -1 for others.
+    """
+
+    def __init__(self, deck: Deck) -> None:
+        self.deck = deck
+        self.views = [View(deck.root)]
+        for instance in deck.instances.values():
+            view = View(deck.parts[instance.part], instance.name + ".", instance)
+            self.views.append(view)
+        self.types: list[str] = []
+        self.cell_type: Ints = np.zeros(0, np.int64)
+        self.turned = np.zeros(0, bool)
+        self.line_nodes: list[Ints] = []
+        self.twin: Ints = np.zeros(0, np.int64)
+        self._halves: list[tuple[View, Ints, Ints]] = []
+
+    def build(self) -> Mesh:
+        """Nodes and cells, without sets."""
+        points, labels = self._nodes()
+        blocks = self._cells(points)
+        kinds = list(dict.fromkeys(block.kind for block in blocks))
+        cells, order = [], []
+        for kind in kinds:
+            same = [block for block in blocks if block.kind == kind]
+            order += same
+            cells.append(
+                Cells(
+                    kind,
+                    np.concatenate([b.nodes for b in same]),
+                    np.concatenate([b.labels + b.view.cell_offset for b in same]),
+                )
+            )
+        self._index_cells(order)
+        return Mesh(points, cells, labels)
+
+    def _nodes(self) -> tuple[Floats, Ints]:
+        points, labels, start, largest = [np.zeros((0, 2))], [np.zeros(0, np.int64)], 0, 0
+        out_of_plane = 0.0
+        for view in self.views:
+            blocks = view.scope.nodes
+            if not blocks:
+                continue
+            own = np.concatenate([b.labels for b in blocks])
+            xyz = np.concatenate([b.points for b in blocks])
+            self._check_size(blocks, own, xyz)
+            keep = self._unique_nodes(blocks, own, xyz)
+            own, xyz = own[keep], xyz[keep]
+            out_of_plane = max(out_of_plane, self._check_plane(blocks, own, xyz))
+            view.nodes = Lookup(own, np.arange(start, start + len(own)))
+            view.node_offset = self._offset(view, own, largest, "nodes")
+            largest = max(largest, int(own.max()) + view.node_offset)
+            points.append(placed(xyz[:, :2], view.instance))
+            labels.append(own + view.node_offset)
+            start += len(own)
+        if start == 0:
+            self.deck.error(None, None, "the deck has no nodes")
+        elif out_of_plane > 0.0:
+            self.deck.note(
+                f"z coordinates up to {out_of_plane:g} are taken as 0: the part lies in the plane"
+            )
+        return np.concatenate(points), np.concatenate(labels)
+
+    def _check_size(self, blocks: list[NodeBlock], labels: Ints, xyz: Floats) -> None:
+        far = np.flatnonzero((np.abs(xyz) > LARGEST).any(axis=1))
+        for at in far[:MAX_LISTED]:
+            self._fault(
+                _where(blocks, int(at)),
+                f"node {labels[at]}: a coordinate exceeds {LARGEST:g}",
+                "*NODE",
+            )
+        xyz[far] = 0.0
+
+    def _offset(self, view: View, labels: Ints, largest: int, what: str) -> int:
+        if largest == 0 or view.instance is None:
+            return 0
+        offset: int = 10 ** len(str(largest))
+        self.deck.note(
+            f"instance {view.instance.name}: {offset} is added to the numbers of its {what}"
+        )
+        return int(offset)
+
+    def _unique_nodes(self, blocks: list[NodeBlock], labels: Ints, xyz: Floats) -> Ints:
+        order = np.argsort(labels, kind="stable")
+        same = np.flatnonzero(np.diff(labels[order]) == 0)
+        if not len(same):
+            return np.arange(len(labels))
+        second, first = order[same + 1], order[same]
+        differ = (xyz[second] != xyz[first]).any(axis=1)
+        for at, before in zip(second[differ][:MAX_LISTED], first[differ], strict=False):
+            self._fault(
+                _where(blocks, int(at)), f"node {labels[at]} is already defined with other "
+                f"coordinates ({_where(blocks, int(before))})", "*NODE",
+            )  # fmt: skip
+        self._more(differ.sum(), "nodes are defined twice")
+        if not differ.any():
+            self.deck.note(f"{len(same)} nodes are given twice with the same coordinates")
+        keep = np.ones(len(labels), bool)
+        keep[second] = False
+        return np.flatnonzero(keep)
+
+    def _check_plane(self, blocks: list[NodeBlock], labels: Ints, xyz: Floats) -> float:
+        size = float(np.ptp(xyz[:, :2], axis=0).max()) if len(xyz) else 0.0
+        out = np.abs(xyz[:, 2])
+        bad = np.flatnonzero(out > 1e-6 * size)
+        for at in bad[:1]:
+            place = next(
+                Location(b.file, int(b.lines[np.flatnonzero(b.labels == labels[at])[0]]))
+                for b in blocks
+                if (b.labels == labels[at]).any()
+            )
+            self._fault(
+                place,
+                f"node {labels[at]} has z = {xyz[at, 2]:g}; the part must lie in the plane z = 0"
+                + (f" ({len(bad)} nodes in all)" if len(bad) > 1 else ""),
+                "*NODE",
+            )
+        return 0.0 if len(bad) else float(out.max(initial=0.0))
+
+    def _cells(self, points: Floats) -> list[Placed]:
+        placed: list[Placed] = []
+        largest, n_turned, example = 0, 0, 0
+        for view in self.views:
+            blocks = view.scope.elements
+            if not blocks:
+                continue
+            own = np.concatenate([b.labels for b in blocks])
+            repeated = self._repeated(blocks, own)
+            view.cell_offset = self._offset(view, own, largest, "elements")
+            largest = max(largest, int(own.max()) + view.cell_offset)
+            line_labels, line_rows = [], []
+            trusses = _truss_labels(view.scope)
+            for block in blocks:
+                nodes = view.nodes(block.nodes)
+                good = self._known(block, nodes)
+                if repeated is not None:
+                    good &= ~np.isin(block.labels, repeated)
+                if block.type in COMPANIONS:
+                    placed += self._companions(view, block, nodes, good)
+                    continue
+                if block.type in LINES:
+                    truss = good & np.isin(block.labels, trusses)
+                    good &= ~truss
+                    if truss.any():
+                        placed += self._trusses(view, block, nodes, truss)
+                    for at in np.flatnonzero(good):
+                        line_labels.append(int(block.labels[at]))
+                        line_rows.append(len(self.line_nodes))
+                        self.line_nodes.append(nodes[at])
+                    continue
+                kind = ELEMENTS[block.type].kind
+                good &= self._distinct(block, nodes)
+                shape = np.zeros(len(nodes), np.int64)
+                shape[good] = classify(kind, points[nodes[good]])
+                self._bad_shapes(block, shape)
+                good &= (shape != FLAT) & (shape != FOLDED)
+                turned = shape == CLOCKWISE
+                nodes[turned] = nodes[turned][:, REVERSED[kind]]
+                if turned.any():
+                    n_turned += int(turned.sum())
+                    example = example or int(block.labels[np.flatnonzero(turned)[0]])
+                placed.append(
+                    Placed(kind, nodes[good], block.labels[good], turned[good], view, block)
+                )
+            view.lines = Lookup(
+                np.array(line_labels, dtype=np.int64), np.array(line_rows, dtype=np.int64)
+            )
+        if n_turned:
+            self.deck.note(
+                f"{n_turned} clockwise elements (such as {example}) are turned; their faces keep "
+                "the numbers of the deck"
+            )
+        if self.line_nodes:
+            self.deck.note(
+                f"{len(self.line_nodes)} line elements are not computed; sets of them name edges"
+            )
+        if not placed:
+            self.deck.error(None, None, "the deck has no elements")
+        return placed
+
+    def _trusses(self, view: View, block: ElementBlock, nodes: Ints, mine: Ints) -> list[Placed]:
+        if LINES[block.type] != 2:
+            at = int(np.flatnonzero(mine)[0])
+            self._block_fault(block, at, f"trusses have two nodes here; use {block.type[:-1]}2")
+            return []
+        rows = mine & self._distinct(block, nodes)
+        still = np.zeros(int(rows.sum()), np.int64)
+        return [Placed("line2", nodes[rows], block.labels[rows], still, view, block)]
+
+    def _companions(self, view: View, block: ElementBlock, nodes: Ints, good: Ints) -> list[Placed]:
+        """Cells of beams and springs; beams of three nodes become two."""
+        info = COMPANIONS[block.type]
+        if block.nodes.shape[1] > 1:
+            good = good & self._distinct(block, nodes)
+        nodes, labels = nodes[good], block.labels[good]
+        still = np.zeros(len(labels), np.int64)
+        if info.n_nodes < 3:
+            return [Placed(info.kind, nodes, labels, still, view, block)]
+        if not len(labels):
+            return []
+        every = np.concatenate([b.labels for b in view.scope.elements])
+        second = labels + 10 ** len(str(int(every.max())))
+        self.deck.note(
+            f"{block.type} elements are two beams of two nodes each; the second has a number from "
+            f"{int(second.min())} on"
+        )
+        self._halves.append((view, labels, second))
+        return [
+            Placed(info.kind, nodes[:, :2], labels, still, view, block),
+            Placed(info.kind, nodes[:, 1:], second, still, view, block),
+        ]
+
+    def _repeated(self, blocks: list[ElementBlock], labels: Ints) -> Ints | None:
+        order = np.argsort(labels, kind="stable")
+        same = np.flatnonzero(np.diff(labels[order]) == 0)
+        for at in same[:MAX_LISTED]:
+            second, first = int(order[at + 1]), int(order[at])
+            self._fault(
+                _where(blocks, second),
+                f"element {labels[second]} is already defined ({_where(blocks, first)})",
+                "*ELEMENT",
+            )
+        self._more(len(same), "elements are defined twice")
+        return labels[order[same]] if len(same) else None
+
+    def _known(self, block: ElementBlock, nodes: Ints) -> Ints:
+        bad = np.flatnonzero((nodes < 0).any(axis=1))
+        for at in bad[:MAX_LISTED]:
+            missing = block.nodes[at][nodes[at] < 0][0]
+            self._block_fault(block, int(at), f"node {missing} is not defined")
+        self._more(len(bad), "elements have undefined nodes")
+        return np.asarray((nodes >= 0).all(axis=1))
+
+    def _distinct(self, block: ElementBlock, nodes: Ints) -> Ints:
+        sorted_ = np.sort(nodes, axis=1)
+        twice = (np.diff(sorted_, axis=1) == 0) & (sorted_[:, 1:] >= 0)
+        bad = np.flatnonzero(twice.any(axis=1))
+        for at in bad[:MAX_LISTED]:
+            labels, counts = np.unique(block.nodes[at], return_counts=True)
+            self._block_fault(block, int(at), f"node {labels[counts > 1][0]} occurs twice")
+        self._more(len(bad), "elements have a node twice")
+        return np.asarray(~twice.any(axis=1))
+
+    def _bad_shapes(self, block: ElementBlock, shape: Ints) -> None:
+        for code, text in (
+            (FLAT, "it has no area or a side of no length"),
+            (FOLDED, "it is folded or inverted"),
+        ):
+            bad = np.flatnonzero(shape == code)
+            for at in bad[:MAX_LISTED]:
+                self._block_fault(block, int(at), text)
+            self._more(len(bad), f"elements are bad: {text}")
+
+    def _index_cells(self, order: list[Placed]) -> None:
+        names = [block.block.type for block in order]
+        self.types = list(dict.fromkeys(names))
+        start = 0
+        by_view: dict[int, list[tuple[Ints, Ints]]] = {}
+        types, turned = [np.zeros(0, np.int64)], [np.zeros(0, bool)]
+        for block, name in zip(order, names, strict=True):
+            count = len(block.labels)
+            rows = np.arange(start, start + count)
+            by_view.setdefault(id(block.view), []).append((block.labels, rows))
+            types.append(np.full(count, self.types.index(name), np.int64))
+            turned.append(np.asarray(block.turned, bool))
+            start += count
+        self.cell_type, self.turned = np.concatenate(types), np.concatenate(turned)
+        for view in self.views:
+            parts = by_view.get(id(view))
+            if parts:
+                view.cells = Lookup(
+                    np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+                )
+        self.twin = np.full(start, -1, np.int64)
+        for view, first, second in self._halves:
+            self.twin[view.cells(first)] = view.cells(second)
+
+    def _block_fault(self, block: ElementBlock, row: int, text: str) -> None:
+        where = Location(block.file, int(block.lines[row]))
+        self._fault(where, f"element {block.labels[row]}: {text}", block.card.spelled)
+
+    def _fault(self, where: Location, text: str, keyword: str) -> None:
+        self.deck.diagnostics.append(Diagnostic("error", text, where, keyword))
+
+    def _more(self, count: int, text: str) -> None:
+        if count > MAX_LISTED:
+            self.deck.error(None, None, f"{count} {text}; the first {MAX_LISTED} are listed")
+
+
+def _truss_labels(scope: Scope) -> Ints:
+    """Line elements of sets that hold nothing else and have a section: trusses."""
+    none = np.zeros(0, np.int64)
+    curves = [none, *(b.labels for b in scope.elements if b.type in LINES)]
+    every = np.concatenate(curves)
+
+    def labels(name: str, depth: int) -> Ints:
+        named = scope.elsets.get(key(name))
+        if named is None or depth > 50:
+            return none
+        parts = [none]
+        for entry in named.entries:
+            own = not entry.name or entry.name.startswith("@")
+            parts.append(entry.labels if own else labels(entry.name, depth + 1))
+        return np.concatenate(parts)
+
+    found = [none]
+    for section in scope.sections:
+        members = labels(section.elset, 0)
+        if len(members) and np.isin(members, every).all():
+            found.append(members)
+    return np.concatenate(found)
+
+
+def view_of(views: list[View], target: str) -> tuple[View, str] | None:
+    """Instance and rest of a name such as ``Part-1-1.12``, or ``None``."""
+    prefix, dot, rest = target.rpartition(".")
+    if dot:
+        for view in views[1:]:
+            if key(view.prefix) == key(prefix) + ".":
+                return view, rest
+    return None
+
+
+def placed(points: Floats, instance: Instance | None) -> Floats:
+    """Shift, then turn."""
+    if instance is None:
+        return points
+    moved = points + np.array(instance.shift)
+    c, s = math.cos(instance.angle), math.sin(instance.angle)
+    centre = np.array(instance.centre)
+    return np.asarray((moved - centre) @ np.array([[c, s], [-s, c]]) + centre)
+
+
+def _where(blocks: list[NodeBlock] | list[ElementBlock], row: int) -> Location:
+    for block in blocks:
+        if row < len(block.labels):
+            return Location(block.file, int(block.lines[row]))
+        row -= len(block.labels)
+    raise IndexError(row)

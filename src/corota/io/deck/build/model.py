@@ -1,0 +1,451 @@
+"""From what a deck said to a model: sections, materials, supports, loads, steps."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.deck import numerals
+from corota.io.deck.build.contact import build_contacts
+from corota.io.deck.build.materials import build_material, share_damping
+from corota.io.deck.build.mesh import MeshBuilder, View, view_of
+from corota.io.deck.build.sets import Elements, Sets
+from corota.io.deck.build.ties import build_ties
+from corota.io.deck.cards.attachments import build_attachments
+from corota.io.deck.cards.lines import build_lines, truss_section
+from corota.io.deck.cards.thermal import build_initial, build_temperature
+from corota.io.deck.deck import nearest
+from corota.io.deck.elements import COMPANIONS, DRILLING, ELEMENTS, LINES
+from corota.io.deck.lexer import key
+from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
+from corota.model.model import Model
+from corota.model.sections import Section
+from corota.model.steps import Static
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from corota.io.deck.cards.tie import TieDraft
+    from corota.io.deck.deck import Deck, Draft, SectionDraft, StepDraft
+    from corota.mesh.data import Ints
+    from corota.model.loads import Load
+    from corota.model.materials import Material
+    from corota.model.steps import Step
+
+#: Cards that give beams and springs their section.
+SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
+
+
+class ModelBuilder:
+    """Builds the model of a deck; faults go to ``deck.diagnostics``."""
+
+    def __init__(self, deck: Deck, name: str) -> None:
+        self.deck = deck
+        self.meshes = MeshBuilder(deck)
+        self.model = Model(self.meshes.build(), name)
+        self.mesh = self.model.mesh
+        self.sets = Sets(self.meshes, self.mesh)
+        self.rotating = np.zeros(self.mesh.n_nodes, bool)
+
+    def build(self) -> Model:
+        """Everything."""
+        self.sets.fill()
+        share_damping(self.deck)
+        self._sections()
+        model, deck = self.model, self.deck
+        build_ties(deck, model, self._nodes, self._tied, self.rotating)
+        build_contacts(deck, model, self.sets, self._nodes, self.rotating)
+        model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
+        model.supports = self._supports(deck.supports)
+        build_attachments(deck, model, self._nodes)
+        for item in deck.velocities:
+            nodes = self._nodes(item)
+            if nodes is not None:
+                model.velocities.append(
+                    InitialVelocity(nodes, item.value, item.index, item.row.where)
+                )
+        build_initial(deck, model, self._nodes, self._cells_of)
+        for draft in deck.steps:
+            step = self._step(draft)
+            if step is not None:
+                model.steps.append(step)
+        self.sets.judge_missing(self._names_used())
+        model.time_points = deck.time_points
+        model.title = " ".join(deck.heading)
+        self._move_supports()
+        self._unused()
+        model.notes += deck.notes
+        return model
+
+    def _tied(self, tie: TieDraft) -> Elements | None:
+        view, card = self.meshes.views[0], tie.card
+        return self.sets.elements(view, tie.elset, card.at("ELSET"), card)
+
+    def _cells_of(self, draft: Draft) -> Elements | None:
+        return self.sets.elements(
+            self.meshes.views[0], draft.target, draft.row.at(0), draft.card, draft.row.text
+        )
+
+    def _names_used(self) -> set[str]:
+        """Keys of the names that supports, loads and constraints use."""
+        deck = self.deck
+        drafts = deck.supports + deck.velocities + [item.draft for item in deck.initial]
+        drafts += [d for step in deck.steps for d in step.supports + step.loads]
+        drafts += [d for tie in deck.ties for d in (*tie.terms, tie.target) if d is not None]
+        return {key(d.target) for d in drafts} | {key(tie.surface) for tie in deck.ties}
+
+    def _unused(self) -> None:
+        deck = self.deck
+        scopes = [view.scope for view in self.meshes.views]
+        used = {key(s.material) for scope in scopes for s in scope.sections}
+        used |= {key(s.material) for scope in scopes for s in scope.lines}
+        for name, material in deck.materials.items():
+            if name not in used and self.model.sections:
+                deck.note(f"{material.card.where}: material {material.name} is not used")
+        drafts = deck.supports + [d for s in deck.steps for d in s.supports + s.loads]
+        named = {key(draft.amplitude) for draft in drafts}
+        for name, amplitude in deck.amplitudes.items():
+            if name not in named and deck.steps:
+                deck.note(f"{amplitude.where}: amplitude {amplitude.name} is not used")
+
+    def _sections(self) -> None:
+        owner = np.full(self.mesh.n_cells, -1, np.int64)
+        drafts = [(view, draft) for view in self.meshes.views for draft in view.scope.sections]
+        materials = {name: build_material(self.deck, m) for name, m in self.deck.materials.items()}
+        for number, (view, draft) in enumerate(drafts):
+            card = draft.card
+            found = self.sets.elements(view, draft.elset, card.at("ELSET"), card)
+            if found is None:
+                continue
+            if len(found.lines) and not len(found.cells):
+                self.deck.error(
+                    card,
+                    card.at("ELSET"),
+                    f"{draft.elset} holds line elements of curves only",
+                    hint="for trusses, put the set and the section beside the elements",
+                )
+                continue
+            taken = found.cells[owner[found.cells] >= 0]
+            if len(taken):
+                first = drafts[int(owner[taken[0]])][1].card.where
+                label = self.mesh.cell_labels[taken[0]]
+                self.deck.error(
+                    card, card.where, f"element {label} already has a section ({first})"
+                )
+                continue
+            owner[found.cells] = number
+            if draft.material and key(draft.material) not in materials:
+                names = [m.name for m in self.deck.materials.values()]
+                self.deck.error(
+                    card,
+                    card.at("MATERIAL"),
+                    f"no material named {draft.material!r}",
+                    hint=nearest(draft.material, names),
+                )
+                continue
+            material = materials[key(draft.material)]
+            if material is not None:
+                self._section(view, draft, found.cells, material)
+        build_lines(self.deck, self.model, self.meshes, self.sets, materials, self.rotating, owner)
+        bare = np.flatnonzero(owner == -1)
+        if len(bare) and (drafts or self.deck.steps):
+            label = self.mesh.cell_labels[bare[0]]
+            more = f" and {len(bare) - 1} others have" if len(bare) > 1 else " has"
+            companion = COMPANIONS.get(self.meshes.types[self.meshes.cell_type[bare[0]]])
+            wanted = SECTION_CARDS[companion.role] if companion else "*SOLID SECTION"
+            self.deck.error(None, None, f"element {label}{more} no {wanted}", hint="give it one")
+
+    def _section(self, view: View, draft: SectionDraft, cells: Ints, material: Material) -> None:
+        deck, card = self.deck, draft.card
+        angle = 0.0
+        if draft.orientation:
+            tables = (view.scope.orientations, deck.root.orientations)
+            named = next((t for t in tables if key(draft.orientation) in t), None)
+            if named is None:
+                names = [n for t in tables for n in t]
+                deck.error(
+                    card,
+                    card.at("ORIENTATION"),
+                    f"no orientation named {draft.orientation!r}",
+                    hint=nearest(draft.orientation, names),
+                )
+                return
+            angle = named[key(draft.orientation)]
+            if view.instance is not None:
+                angle += view.instance.angle
+        groups: dict[tuple[str, str], list[Ints]] = {}
+        types = self.meshes.cell_type[cells]
+        for code in np.unique(types):
+            name = self.meshes.types[code]
+            if name in LINES:
+                truss = truss_section(deck, draft, cells[types == code], material)
+                self.model.sections += [truss] if truss else []
+                continue
+            if name in COMPANIONS:
+                wanted = SECTION_CARDS[COMPANIONS[name].role]
+                deck.error(card, card.at("ELSET"), f"elements of type {name} take {wanted}")
+                continue
+            info = ELEMENTS[name]
+            if draft.plane and info.plane and draft.plane != info.plane:
+                deck.error(
+                    card,
+                    card.at("PLANE"),
+                    f"{self.meshes.types[code]} elements are in plane {info.plane}; "
+                    f"PLANE={draft.plane.upper()} does not fit",
+                )
+                return
+            plane = draft.plane or info.plane or "stress"
+            element = self._element(self.meshes.types[code])
+            groups.setdefault((element, plane), []).append(cells[types == code])
+        full = self.sets.full_name(self.sets.elsets, view, draft.elset)
+        for (element, plane), parts in groups.items():
+            mine = np.sort(np.concatenate(parts))
+            if element in DRILLING:
+                for block, row in ((self.mesh.cells[b], r) for b, r in self._rows(mine)):
+                    self.rotating[block.nodes[row]] = True
+            whole = full and len(mine) == len(cells)
+            where = self.sets.spelled(self.sets.elsets, full) if whole else mine
+            try:
+                self.model.sections.append(
+                    Section(
+                        where,
+                        element,
+                        material,
+                        draft.thickness,
+                        cast("Literal['stress', 'strain']", plane),
+                        cast(
+                            "Literal['simplified', 'modified', 'logarithmic']", draft.local_strain
+                        ),
+                        angle,
+                        card.where,
+                        mean_dilatation=draft.mean_dilatation,
+                        beta0=draft.beta0,
+                    )
+                )
+            except InputError as error:
+                deck.error(card, card.where, error.message)
+
+    def _element(self, type_: str) -> str:
+        mapped = self.deck.element_map.get(type_)
+        return mapped or ELEMENTS[type_].element
+
+    def _rows(self, cells: Ints) -> list[tuple[int, Ints]]:
+        offsets = self.mesh.offsets
+        inside = [(cells >= a) & (cells < b) for a, b in pairwise(offsets)]
+        return [(i, cells[m] - offsets[i]) for i, m in enumerate(inside) if m.any()]
+
+    def _nodes(self, draft: Draft) -> str | Ints | None:
+        """Name in the mesh, or indices, of a target of supports and nodal forces."""
+        target, row = draft.target, draft.row
+        found: tuple[View, str] | None
+        if numerals.is_integer(target):
+            found = (self.meshes.views[0], target)
+            if not self.deck.root.nodes and len(self.meshes.views) == 2:
+                found = (self.meshes.views[1], target)
+        else:
+            full = self.sets.full_name(self.sets.nsets, self.meshes.views[0], target)
+            if full:
+                if not len(self.mesh.node_sets.get(self.sets.spelled(self.sets.nsets, full), ())):
+                    self.deck.row_error(draft.card, row, 0, f"node set {target} is empty")
+                    return None
+                return self.sets.spelled(self.sets.nsets, full)
+            for name in self.mesh.node_sets:
+                if key(name) == key(target):
+                    return name
+            found = view_of(self.meshes.views, target)
+        if found and numerals.is_integer(found[1]) and len(found[1]) < 19:
+            node = found[0].nodes(np.array([int(found[1])]))
+            if node[0] >= 0:
+                return node
+            self.deck.row_error(draft.card, row, 0, f"node {target} is not defined")
+            return None
+        self.deck.row_error(
+            draft.card,
+            row,
+            0,
+            f"no node set named {numerals.shown(target)}",
+            nearest(target, self.mesh.node_sets),
+        )
+        return None
+
+    def _amplitude(self, draft: Draft) -> str | None:
+        if not draft.amplitude:
+            return ""
+        found = self.deck.amplitudes.get(key(draft.amplitude))
+        if found is None:
+            names = [a.name for a in self.deck.amplitudes.values()]
+            self.deck.error(
+                draft.card,
+                draft.card.at("AMPLITUDE"),
+                f"no amplitude named {draft.amplitude!r}",
+                hint=nearest(draft.amplitude, names),
+            )
+            draft.amplitude = ""
+            return None
+        return found.name
+
+    def _supports(self, drafts: list[Draft]) -> list[Fixed]:
+        found = []
+        for draft in drafts:
+            nodes, amplitude = self._nodes(draft), self._amplitude(draft)
+            if nodes is None or amplitude is None or draft.kind == "nothing":
+                continue
+            if draft.index == 2:
+                if not self._rotating(nodes).any():
+                    if draft.silent or draft.value[0] == 0.0:
+                        continue
+                    self._no_rotation(draft)
+                    continue
+                if not isinstance(nodes, str):
+                    nodes = nodes[self.rotating[nodes]]
+            found.append(Fixed(nodes, draft.index, draft.value[0], amplitude, draft.row.where))
+        return found
+
+    def _rotating(self, nodes: str | Ints) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+        indices = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
+        return cast("np.ndarray[tuple[int], np.dtype[np.bool_]]", self.rotating[indices])
+
+    def _no_rotation(self, draft: Draft) -> None:
+        self.deck.row_error(
+            draft.card,
+            draft.row,
+            1,
+            f"{draft.target}: its elements have no rotation (dof 6)",
+            "use elements Q4D or OPT, or map them: --element CPS4=Q4D",
+        )
+
+    def _load(self, draft: Draft) -> Load | None:
+        amplitude = self._amplitude(draft)
+        where = draft.row.where
+        if draft.kind == "force":
+            nodes = self._nodes(draft)
+            if nodes is None or amplitude is None:
+                return None
+            if draft.index == 2 and not self._rotating(nodes).all():
+                self._no_rotation(draft)
+                return None
+            return NodalForce(nodes, draft.index, draft.value[0], amplitude, where)
+        if draft.kind == "temperature":
+            nodes = self._nodes(draft)
+            if nodes is None or amplitude is None:
+                return None
+            return build_temperature(draft, nodes, amplitude)
+        if draft.kind in ("surface pressure", "surface traction"):
+            edges = self._edge_set(draft)
+            if edges is None or amplitude is None:
+                return None
+            kind = draft.kind.split()[1]
+            return EdgeLoad(
+                edges, cast("Literal['pressure', 'traction']", kind), draft.value, amplitude,
+                where=where,
+            )  # fmt: skip
+        return self._cell_load(draft, amplitude)
+
+    def _cell_load(self, draft: Draft, amplitude: str | None) -> Load | None:
+        where, root = draft.row.where, self.meshes.views[0]
+        if not draft.target and draft.kind != "pressure":
+            return None if amplitude is None else self._body(draft, "", amplitude)
+        if not self.deck.root.elements and len(self.meshes.views) == 2:
+            root = self.meshes.views[1] if numerals.is_integer(draft.target) else root
+        found = self.sets.elements(root, draft.target, draft.row.at(0), draft.card, draft.row.text)
+        if found is None or amplitude is None:
+            return None
+        if not len(found.cells):
+            # Lines of a meshing program are no elements here; a set of them alone is empty too.
+            self.deck.row_error(draft.card, draft.row, 0, f"element set {draft.target} is empty")
+            return None
+        if draft.kind == "pressure":
+            edges = self.sets.faces(
+                found.cells, draft.index, draft.card, draft.row.at(1), draft.row.text
+            )
+            if edges is None:
+                return None
+            return EdgeLoad(edges, "pressure", draft.value, amplitude, where=where)
+        full = self.sets.full_name(self.sets.elsets, root, draft.target)
+        name = self.sets.spelled(self.sets.elsets, full) if full else ""
+        return self._body(draft, name or found.cells, amplitude)
+
+    def _body(self, draft: Draft, cells: str | Ints, amplitude: str) -> BodyForce:
+        kind = cast("Literal['gravity', 'centrifugal']", draft.kind)
+        return BodyForce(cells, kind, draft.value, amplitude, draft.row.where)
+
+    def _edge_set(self, draft: Draft) -> str | None:
+        for name, edges in self.mesh.edge_sets.items():
+            if key(name) == key(draft.target):
+                if len(edges):
+                    return name
+                self.deck.row_error(draft.card, draft.row, 0, f"surface {name} has no edges")
+                return None
+        self.deck.row_error(
+            draft.card,
+            draft.row,
+            0,
+            f"no surface named {numerals.shown(draft.target)}",
+            nearest(draft.target, self.mesh.edge_sets),
+        )
+        return None
+
+    def _step(self, draft: StepDraft) -> Step | None:
+        deck = self.deck
+        if draft.procedure is None:
+            return None
+        supports = self._supports(draft.supports)
+        loads = [load for load in map(self._load, draft.loads) if load is not None]
+        for request in draft.outputs:
+            self._check_target(request.kind, request.where, draft)
+        first, period, least, most = draft.times
+        try:
+            make = draft.make or Static
+            options = draft.options or {"ramp": draft.ramp}
+            return make(
+                nlgeom=draft.nlgeom,
+                period=period,
+                first_increment=first,
+                smallest_increment=least,
+                largest_increment=most,
+                fixed_increments=draft.direct,
+                max_increments=draft.max_increments,
+                supports=supports,
+                loads=loads,
+                new_supports=draft.new_supports,
+                new_loads=draft.new_loads,
+                outputs=draft.outputs,
+                where=draft.card.where,
+                **options,
+            )
+        except InputError as error:
+            deck.error(draft.procedure, draft.procedure.where, error.message)
+            return None
+
+    def _check_target(self, kind: str, where: str, draft: StepDraft) -> None:
+        known: dict[str, Mapping[str, object]] = {
+            "node print": self.mesh.node_sets,
+            "el print": self.mesh.cell_sets,
+            "contact print": {pair.name: None for pair in self.model.contacts},
+        }
+        tables = known.get(kind, {**self.mesh.node_sets, **self.mesh.cell_sets})
+        request = next(o for o in draft.outputs if o.kind == kind and o.where == where)
+        if not where:
+            return
+        for name in tables:
+            if key(name) == key(where):
+                request.where = name
+                return
+        what = {
+            "node print": "node set", "el print": "element set", "contact print": "contact pair",
+        }.get(kind, "set")  # fmt: skip
+        self.deck.error(
+            None, request.source, f"no {what} named {where!r}", hint=nearest(where, tables)
+        )
+
+    def _move_supports(self) -> None:
+        """Supports before the first step end with the first ``OP=NEW``, as the others do."""
+        steps = self.model.steps
+        if any(step.new_supports for step in steps):
+            if not steps[0].new_supports:
+                steps[0].supports = self.model.supports + steps[0].supports
+            self.model.supports = []

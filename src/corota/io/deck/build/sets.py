@@ -1,0 +1,322 @@
+"""Sets and surfaces of a deck: names and numbers turned into indices."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.io.deck import numerals
+from corota.io.deck.build.mesh import view_of
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+from corota.mesh.data import EDGES
+
+if TYPE_CHECKING:
+    from corota.errors import Location
+    from corota.io.deck.build.mesh import MeshBuilder, View
+    from corota.io.deck.deck import NamedSet, Surface, SurfaceRow
+    from corota.io.deck.lexer import Card
+    from corota.mesh.data import Ints, Mesh
+
+_FACE = re.compile(r"S(\d{1,9})\Z", re.ASCII)
+_NONE: Ints = np.zeros(0, np.int64)
+
+
+@dataclass(slots=True)
+class Elements:
+    """What an element set holds: cells, and line elements of curves."""
+
+    cells: Ints
+    lines: Ints
+
+
+class Sets:
+    """Looks up sets, surfaces and single numbers by the names of the deck.
+
+    Parameters
+    ----------
+    builder : MeshBuilder
+        After :meth:`MeshBuilder.build`.
+    mesh : Mesh
+        Receives the sets.
+    """
+
+    def __init__(self, builder: MeshBuilder, mesh: Mesh) -> None:
+        self.deck, self.mesh, self.views = builder.deck, mesh, builder.views
+        self.turned, self.line_nodes = builder.turned, builder.line_nodes
+        self.twin = builder.twin
+        self.nsets: dict[str, tuple[View, NamedSet]] = {}
+        self.elsets: dict[str, tuple[View, NamedSet]] = {}
+        self.surfaces: dict[str, tuple[View, Surface]] = {}
+        for view in self.views:
+            prefix = key(view.prefix)
+            for mine, theirs in (
+                (self.nsets, view.scope.nsets),
+                (self.elsets, view.scope.elsets),
+                (self.surfaces, view.scope.surfaces),
+            ):
+                for name, found in theirs.items():
+                    mine[prefix + name] = (view, found)  # type: ignore[assignment]
+        #: Labels without nodes, by set: name, labels, place.
+        self.missing: list[tuple[str, Ints, Location]] = []
+        self._nodes: dict[str, Ints | None] = {}
+        self._elements: dict[str, Elements | None] = {}
+        self._edges: dict[str, Ints] = {}
+
+    def fill(self) -> None:
+        """Resolve every set and surface, and put them into the mesh."""
+        for full, (view, named) in self.nsets.items():
+            nodes = self.node_set(full)
+            if nodes is not None:
+                self.mesh.node_sets[view.prefix + named.name] = nodes
+        for full, (view, named) in self.elsets.items():
+            found = self.element_set(full)
+            if found is None:
+                continue
+            name = view.prefix + named.name
+            if len(found.cells) or not len(found.lines):
+                self.mesh.cell_sets[name] = found.cells
+            if len(found.lines):
+                edges = self._edges_of_lines(found.lines)
+                if len(edges):
+                    self.mesh.edge_sets.setdefault(name, edges)
+                self.mesh.node_sets.setdefault(
+                    name, _unique(np.concatenate([self.line_nodes[i] for i in found.lines]))
+                )
+        for full, (view, surface) in self.surfaces.items():
+            name = view.prefix + surface.name
+            if key(surface.card.value("TYPE")) == "SEGMENTS":
+                continue
+            if surface.nodes:
+                self.mesh.node_sets[name] = self._node_surface(view, surface)
+            else:
+                self.mesh.edge_sets[name] = self._edges[full] = self._surface(view, surface)
+
+    def spelled(self, table: dict[str, tuple[View, NamedSet]], full: str) -> str:
+        """Name under which a set is in the mesh."""
+        view, named = table[full]
+        return view.prefix + named.name
+
+    def full_name(self, table: dict[str, tuple[View, NamedSet]], view: View, name: str) -> str:
+        """Key of a set seen from a view, empty if there is none."""
+        for candidate in (key(view.prefix) + key(name), key(name)):
+            if candidate in table:
+                return candidate
+        return ""
+
+    def node_set(self, full: str) -> Ints | None:
+        """Node indices of a set; ``None`` after an error."""
+        if full not in self._nodes:
+            self._nodes[full] = None  # a set that is met again while it is open is circular
+            view, named = self.nsets[full]
+            self._nodes[full] = self._resolve_nodes(view, named)
+        return self._nodes[full]
+
+    def _resolve_nodes(self, view: View, named: NamedSet) -> Ints:
+        parts = [_NONE]
+        for entry in named.entries:
+            if entry.name.startswith("elset:"):
+                found = self._elset_nodes(view, entry.name[6:], entry.where)
+                if found is not None:
+                    parts.append(found)
+                continue
+            if entry.name and not entry.name.startswith("@"):
+                nodes = self._named_nodes(view, entry.name, entry.where)
+                if nodes is not None:
+                    parts.append(nodes)
+                continue
+            at = view_of(self.views, entry.name[1:] + "0") if entry.name else None
+            nodes = (at[0] if at else view).nodes(entry.labels)
+            # Programs leave such nodes out of a set; whether that is harmless depends on its use.
+            self.missing.append((named.name, entry.labels[nodes < 0], entry.where))
+            parts.append(nodes[nodes >= 0])
+        return _unique(np.concatenate(parts))
+
+    def _named_nodes(self, view: View, name: str, where: Location) -> Ints | None:
+        full = self.full_name(self.nsets, view, name)
+        if full:
+            if full in self._nodes and self._nodes[full] is None:
+                self.deck.error(None, where, f"node set {name} contains itself")
+            return self.node_set(full)
+        found = view_of(self.views, name)
+        if found and numerals.is_integer(found[1]):
+            nodes = found[0].nodes(np.array([int(found[1])]))
+            if nodes[0] >= 0:
+                return nodes
+        hint = nearest(name, [self.spelled(self.nsets, n) for n in self.nsets])
+        self.deck.error(None, where, f"no node set named {numerals.shown(name)}", hint=hint)
+        return None
+
+    def _elset_nodes(self, view: View, name: str, where: Location) -> Ints | None:
+        found = self.elements(view, name, where, None)
+        if found is None:
+            return None
+        parts = [self.line_nodes[i] for i in found.lines]
+        blocks, offsets = self.mesh.cells, self.mesh.offsets
+        for number, block in enumerate(blocks):
+            inside = (found.cells >= offsets[number]) & (found.cells < offsets[number + 1])
+            parts.append(block.nodes[found.cells[inside] - offsets[number]].ravel())
+        return np.unique(np.concatenate([_NONE, *parts]))
+
+    def element_set(self, full: str) -> Elements | None:
+        """Cells and lines of a set; ``None`` after an error."""
+        if full not in self._elements:
+            self._elements[full] = None
+            view, named = self.elsets[full]
+            self._elements[full] = self._resolve_elements(view, named)
+        return self._elements[full]
+
+    def _resolve_elements(self, view: View, named: NamedSet) -> Elements:
+        cells, lines = [_NONE], [_NONE]
+        for entry in named.entries:
+            if entry.name and not entry.name.startswith("@"):
+                found = self.elements(view, entry.name, entry.where, None)
+                if found is not None:
+                    cells.append(found.cells)
+                    lines.append(found.lines)
+                continue
+            at = view_of(self.views, entry.name[1:] + "0") if entry.name else None
+            place = at[0] if at else view
+            rows, curves = place.cells(entry.labels), place.lines(entry.labels)
+            known = np.where(rows >= 0, rows, curves)
+            self._undefined(known, entry.labels, entry.where, "element", named.name)
+            cells.append(rows[rows >= 0])
+            lines.append(curves[curves >= 0])
+        whole = self._with_halves(_unique(np.concatenate(cells)))
+        return Elements(whole, _unique(np.concatenate(lines)))
+
+    def _with_halves(self, cells: Ints) -> Ints:
+        """Cells with the second halves of beams of three nodes."""
+        twins = self.twin[cells] if len(self.twin) else _NONE
+        return _unique(np.concatenate([cells, twins[twins >= 0]]))
+
+    def elements(
+        self, view: View, target: str, where: Location, card: Card | None, text: str = ""
+    ) -> Elements | None:
+        """Cells and lines of a set name or an element number."""
+        if numerals.is_integer(target):
+            found: tuple[View, str] | None = (view, target)
+        else:
+            full = self.full_name(self.elsets, view, target)
+            if full:
+                if full in self._elements and self._elements[full] is None:
+                    self.deck.error(card, where, f"element set {target} contains itself")
+                return self.element_set(full)
+            found = view_of(self.views, target)
+        if found and numerals.is_integer(found[1]) and len(found[1]) < 19:
+            label = np.array([int(found[1])])
+            cells, lines = found[0].cells(label), found[0].lines(label)
+            if cells[0] >= 0 or lines[0] >= 0:
+                return Elements(self._with_halves(cells[cells >= 0]), lines[lines >= 0])
+            self.deck.error(card, where, f"element {target} is not defined", text=text)
+            return None
+        hint = nearest(target, [self.spelled(self.elsets, n) for n in self.elsets])
+        self.deck.error(
+            card, where, f"no element set named {numerals.shown(target)}", text=text, hint=hint
+        )
+        return None
+
+    def judge_missing(self, used: set[str]) -> None:
+        """Refuse undefined nodes in sets that supports, loads or constraints use.
+
+        Parameters
+        ----------
+        used : set of str
+            Keys of the names that they use.
+        """
+        for view in self.views:
+            for named in view.scope.nsets.values():
+                used = used | {key(entry.name) for entry in named.entries}
+        for name, labels, where in self.missing:
+            self._say_undefined(labels, where, "node", name, key(name) not in used)
+
+    def _undefined(
+        self, indices: Ints, labels: Ints, where: Location, what: str, name: str
+    ) -> None:
+        self._say_undefined(labels[indices < 0], where, what, name, False)
+
+    def _say_undefined(
+        self, bad: Ints, where: Location, what: str, name: str, harmless: bool
+    ) -> None:
+        if len(bad):
+            more = f" and {len(bad) - 1} others" if len(bad) > 1 else ""
+            say = self.deck.warning if self.deck.lenient or harmless else self.deck.error
+            say(None, where, f"{what} {bad[0]}{more} in set {name}: not defined in the deck")
+
+    def _node_surface(self, view: View, surface: Surface) -> Ints:
+        parts = [_NONE]
+        for row in surface.rows:
+            if numerals.is_integer(row.target) and len(row.target) < 19:
+                label = np.array([int(row.target)])
+                nodes = view.nodes(label)
+                self._undefined(nodes, label, row.where, "node", surface.name)
+                parts.append(nodes[nodes >= 0])
+            else:
+                found = self._named_nodes(view, row.target, row.where)
+                if found is not None:
+                    parts.append(found)
+        return _unique(np.concatenate(parts))
+
+    def _surface(self, view: View, surface: Surface) -> Ints:
+        parts = [np.zeros((0, 2), np.int64)]
+        for row in surface.rows:
+            found = self.elements(view, row.target, row.where, surface.card, row.text)
+            if found is None:
+                continue
+            if len(found.lines):
+                parts.append(self._edges_of_lines(found.lines))
+            edges = self._row_edges(surface, row, found.cells)
+            if edges is not None:
+                parts.append(edges)
+        edges = np.concatenate(parts)
+        _, first = np.unique(edges, axis=0, return_index=True)
+        return edges[np.sort(first)]
+
+    def _row_edges(self, surface: Surface, row: SurfaceRow, cells: Ints) -> Ints | None:
+        if not row.face:
+            free = self.mesh.boundary_edges()
+            return free[np.isin(free[:, 0], cells)]
+        match = _FACE.match(row.face)
+        if not match:
+            self.deck.error(
+                surface.card,
+                row.where,
+                f"unknown face {row.face!r}; expected S1, S2, S3 or S4",
+                text=row.text,
+            )
+            return None
+        return self.faces(cells, int(match.group(1)) - 1, surface.card, row.where, row.text)
+
+    def faces(self, cells: Ints, face: int, card: Card, where: Location, text: str) -> Ints | None:
+        """Edges (n, 2) of one face number (from 0, as the deck counts) of cells."""
+        edges = np.stack([cells, np.full(len(cells), face, np.int64)], axis=1)
+        offsets = self.mesh.offsets
+        for number, block in enumerate(self.mesh.cells):
+            inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
+            count = len(EDGES[block.kind])
+            if inside.any() and not 0 <= face < count:
+                label = self.mesh.cell_labels[cells[inside][0]]
+                self.deck.error(
+                    card, where, f"element {label} has {count} faces, not {face + 1}", text=text
+                )
+                return None
+            back = inside & self.turned[cells]
+            edges[back, 1] = count - 1 - face
+        return edges
+
+    def _edges_of_lines(self, lines: Ints) -> Ints:
+        """Cell edges on line elements; a line without a cell is left out."""
+        edges = self.mesh.edges_between([self.line_nodes[i][:2] for i in lines])
+        return np.asarray(edges[edges[:, 0] >= 0])
+
+
+def _unique(values: Ints) -> Ints:
+    """Values without repetition, in the order of their first occurrence."""
+    if (np.diff(values) > 0).all():
+        return values
+    _, first = np.unique(values, return_index=True)
+    return values[np.sort(first)]

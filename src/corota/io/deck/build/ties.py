@@ -1,0 +1,173 @@
+"""From the constraints of a deck to those of a model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Literal
+
+    from numpy.typing import NDArray
+
+    from corota.io.deck.build.sets import Elements
+    from corota.io.deck.cards.tie import TieDraft
+    from corota.io.deck.deck import Deck, Draft
+    from corota.mesh.data import Floats, Ints
+    from corota.model.model import Model
+
+    Find = Callable[[Draft], str | Ints | None]
+    FindCells = Callable[[TieDraft], Elements | None]
+
+
+def build_ties(
+    deck: Deck, model: Model, find: Find, cells: FindCells, rotating: NDArray[np.bool_]
+) -> None:
+    """Add the deck's constraints to the model; reference nodes get a rotation."""
+    for tie in deck.ties:
+        if not tie.ready:
+            deck.error(
+                tie.card, tie.where, "*KINEMATIC or *DISTRIBUTING is missing after this card"
+            )
+            continue
+        try:
+            _build(deck, model, find, cells, rotating, tie)
+        except InputError as error:
+            deck.error(tie.card, tie.where, error.message)
+
+
+def _build(
+    deck: Deck,
+    model: Model,
+    find: Find,
+    cells: FindCells,
+    rotating: NDArray[np.bool_],
+    tie: TieDraft,
+) -> None:
+    if tie.kind == "axes":
+        assert tie.target is not None
+        nodes = find(tie.target)
+        if nodes is not None:
+            model.axes.append(LocalAxes(nodes, tie.angle, tie.centre, tie.where))
+        return
+    if tie.kind == "straight":
+        _straight(deck, model, find, tie)
+        return
+    if tie.kind == "same":
+        _same(model, find, rotating, tie)
+        return
+    single = [single_node(deck, find, term) for term in tie.terms]
+    if None in single:
+        return
+    numbers = cast("list[int]", single)
+    if tie.kind == "equation":
+        terms = [(n, t.index, t.value[0]) for n, t in zip(numbers, tie.terms, strict=True)]
+        model.constraints.append(Equation(terms, 0.0, tie.where))
+        return
+    reference = numbers[0]
+    weights: Floats | None = None
+    chosen: str | Ints | None
+    if tie.surface:
+        chosen, weights = _surface(deck, model, tie)
+    elif tie.elset:
+        found = cells(tie)
+        chosen = None if found is None else _nodes_of(model, found.cells)
+    else:
+        assert tie.target is not None
+        chosen = find(tie.target)
+    if chosen is None:
+        return
+    if tie.kind == "kinematic":
+        weights = None
+    kind = cast("Literal['kinematic', 'distributing']", tie.kind)
+    name = "rigid body" if not tie.surface else ""
+    model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, name, tie.where))
+    rotating[reference] = True
+
+
+def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
+    """Nodes on the line through the first two."""
+    found = [find(term) for term in tie.terms]
+    if any(nodes is None for nodes in found):
+        return
+    parts = [model.mesh.nodes_of(n) if isinstance(n, str) else n for n in found if n is not None]
+    nodes = np.concatenate([np.zeros(0, np.int64), *parts])
+    if len(nodes) < 3:
+        deck.error(tie.card, tie.where, "three nodes at least are expected: the line's two first")
+        return
+    ends = int(nodes[0]), int(nodes[1])
+    model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
+
+
+def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) -> None:
+    """Equal displacements, and rotations where both have one, of pairs of nodes."""
+    assert tie.target is not None
+    pairs = []
+    for draft in (tie.target, tie.terms[0]):
+        found = find(draft)
+        if found is None:
+            return
+        pairs.append(model.mesh.nodes_of(found) if isinstance(found, str) else found)
+    first, second = pairs
+    if len(second) == 1:
+        second = np.broadcast_to(second, len(first))
+    if len(first) != len(second):
+        raise InputError(f"{len(first)} nodes cannot go with {len(second)} nodes", tie.where)
+    for a, b in zip(first.tolist(), second.tolist(), strict=True):
+        for dof in tie.dofs:
+            if a != b and (dof < 2 or (rotating[a] and rotating[b])):
+                terms = [(a, dof, 1.0), (b, dof, -1.0)]
+                model.constraints.append(Equation(terms, 0.0, tie.where))
+
+
+def single_node(deck: Deck, find: Find, draft: Draft) -> int | None:
+    """Index of the one node that a draft names; ``None`` after an error."""
+    nodes = find(draft)
+    if nodes is None:
+        return None
+    if isinstance(nodes, str) or len(nodes) != 1:
+        deck.row_error(draft.card, draft.row, 0, f"one node is expected, not the set {nodes}")
+        return None
+    return int(nodes[0])
+
+
+def _nodes_of(model: Model, cells: Ints) -> Ints:
+    parts = [np.zeros(0, np.int64)]
+    for cell in cells.tolist():
+        block, row = model.mesh.locate(cell)
+        parts.append(model.mesh.cells[block].nodes[row])
+    return np.unique(np.concatenate(parts))
+
+
+def _surface(deck: Deck, model: Model, tie: TieDraft) -> tuple[Ints | None, Floats | None]:
+    """Nodes of a surface, and their shares of its length."""
+    mesh = model.mesh
+    name = next((n for n in mesh.edge_sets if key(n) == key(tie.surface)), "")
+    if name:
+        share = np.zeros(mesh.n_nodes)
+        for ends in mesh.edge_nodes(mesh.edge_sets[name]):
+            length = float(np.hypot(*(mesh.points[ends[1]] - mesh.points[ends[0]])))
+            if len(ends) == 2:
+                share[ends] += 0.5 * length
+            else:
+                share[ends] += np.array([1.0, 1.0, 4.0]) / 6.0 * length
+        nodes = np.flatnonzero(share)
+        return nodes, share[nodes]
+    name = next((n for n in mesh.node_sets if key(n) == key(tie.surface)), "")
+    if name:
+        return np.asarray(mesh.node_sets[name], np.int64), None
+    deck.error(
+        tie.card,
+        tie.card.at("SURFACE"),
+        f"no surface named {tie.surface}",
+        hint=nearest(tie.surface, mesh.edge_sets),
+    )
+    return None, None

@@ -1,0 +1,3 @@
+"""One function for each keyword, grouped by subject."""
+
+# SPDX-License-Identifier: BSD-3-Clause

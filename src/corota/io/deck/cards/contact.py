@@ -1,0 +1,345 @@
+"""Cards of contact: pairs of surfaces, what happens between them, rigid curves, ties."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.io.deck import numerals
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+
+if TYPE_CHECKING:
+    from corota.errors import Location
+    from corota.io.deck.deck import Deck, Surface
+    from corota.io.deck.lexer import Card, Row
+
+#: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
+TYPES = {
+    "NODETOSURFACE": "node_to_segment", "SURFACETOSURFACE": "mortar", "MORTAR": "mortar",
+    "LINMORTAR": "mortar", "PGLINMORTAR": "mortar", "PETROVGALERKINMORTAR": "mortar",
+}  # fmt: skip
+#: Names of PRESSURE-OVERCLOSURE.
+LAWS = ("HARD", "LINEAR", "TABULAR", "EXPONENTIAL", "TIED")
+
+
+@dataclass(slots=True)
+class InteractionDraft:
+    """One ``*SURFACE INTERACTION`` with the cards below it.
+
+    ``law`` is a name of :data:`LAWS`; ``pressure`` and ``overclosure`` its numbers.
+    """
+
+    name: str
+    card: Card
+    law: str = "HARD"
+    law_where: Location | None = None
+    pressure: list[float] = field(default_factory=list)
+    overclosure: list[float] = field(default_factory=list)
+    friction: float = 0.0
+
+
+@dataclass(slots=True)
+class PairDraft:
+    """One line of ``*CONTACT PAIR`` or ``*TIE``: slave, master and options."""
+
+    card: Card
+    row: Row
+    slave: str
+    master: str
+    tied: bool = False
+    interaction: str = ""
+    method: str = "mortar"
+    start: str = "keep"
+    adjust: float = 0.0
+    clearance: float | None = None
+    stabilise: bool = False
+    name: str = ""
+
+    def joins(self, slave: str, master: str) -> bool:
+        """Whether these are its surfaces."""
+        return (key(self.slave), key(self.master)) == (key(slave), key(master))
+
+
+def profile(deck: Deck, card: Card, found: Surface) -> None:
+    """``*SURFACE, TYPE=SEGMENTS``: START, then LINE and CIRCL; the outward normal on the left."""
+    radius = deck.parameter_number(card, "FILLETRADIUS", 0.0, 0.0)
+    at: tuple[float, float] | None = None
+    rows: list[tuple[float, ...]] = []
+    for row in card.rows():
+        kind = key(row.get(0))
+        count = {"START": 2, "LINE": 2, "CIRCL": 4}.get(kind)
+        if count is None:
+            why = "parabolas are not offered: take arcs" if kind == "PARAB" else ""
+            text = f"expected START, LINE or CIRCL, found {row.get(0)!r}"
+            deck.row_error(card, row, 0, text, why)
+            return
+        deck.extra_fields(card, row, 1 + count)
+        names = ("x", "y", "x of the center", "y of the center")
+        numbers = [deck.real(card, row, 1 + i, names[i]) for i in range(count)]
+        if any(v is None for v in numbers):
+            return
+        x, y, *centre = (float(v or 0.0) for v in numbers)
+        if (at is None) != (kind == "START"):
+            text = "START, x, y comes first" if at is None else "START comes only once"
+            deck.row_error(card, row, 0, text)
+            return
+        if at is not None:
+            if math.dist(at, (x, y)) == 0.0:
+                deck.row_error(card, row, 1, "the segment has no length")
+                return
+            sweep = 0.0
+            if centre:
+                turn = _sweep(deck, card, row, at, (x, y), (centre[0], centre[1]))
+                if turn is None:
+                    return
+                sweep = turn
+            rows.append((*at, x, y, *(centre or (0.0, 0.0)), sweep))
+        at = (x, y)
+    if not rows:
+        deck.error(card, card.where, f"surface {found.name} needs START and one segment at least")
+        return
+    found.profile = np.array(rows)
+    if radius > 0.0:
+        if found.profile[:, 6].any():
+            text = "FILLET RADIUS rounds the corners of straight lines only: give the arcs by CIRCL"
+            deck.error(card, card.at("FILLETRADIUS"), text)
+        found.fillet = radius
+
+
+def _sweep(
+    deck: Deck,
+    card: Card,
+    row: Row,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    centre: tuple[float, float],
+) -> float | None:
+    """Angle of an arc of less than half a turn; ``None`` after an error."""
+    a, b = (complex(*p) - complex(*centre) for p in (start, end))
+    if abs(abs(a) - abs(b)) > 1e-4 * max(abs(a), abs(b)) or abs(a) == 0.0:
+        text = (
+            f"the ends of the arc are {abs(a):g} and {abs(b):g} away from its center; they must "
+            "be equally far"
+        )
+        deck.row_error(card, row, 3, text)
+        return None
+    turn = math.atan2((b * a.conjugate()).imag, (b * a.conjugate()).real)
+    if abs(turn) > math.pi * (1.0 - 1e-9):
+        deck.row_error(card, row, 1, "an arc must be less than 180 degrees: give it in two")
+        return None
+    return turn
+
+
+def contact_pair(deck: Deck, card: Card) -> None:
+    """``*CONTACT PAIR, INTERACTION=, TYPE=[, ADJUST=]``: slave, master."""
+    interaction = deck.required(card, "INTERACTION")
+    if not card.has("TYPE"):
+        deck.note(f"{card.where}: no TYPE: surface to surface (mortar) is taken")
+    method = TYPES.get(deck.choice(card, "TYPE", TYPES, "MORTAR"), "mortar")
+    if card.has("SMALLSLIDING"):
+        deck.note(f"{card.where}: SMALL SLIDING: sliding is always finite here")
+    start, adjust = "keep", 0.0
+    if card.has("ADJUST"):
+        try:
+            start, adjust = "adjust", numerals.real(card.value("ADJUST"))
+        except ValueError:
+            deck.error(
+                card,
+                card.at("ADJUST"),
+                f"ADJUST={card.value('ADJUST')}: a node set cannot be adjusted",
+                hint="give the distance up to which gaps are closed without strain",
+            )
+            return
+        if adjust < 0.0:
+            deck.error(card, card.at("ADJUST"), "ADJUST must be >= 0")
+            return
+    for row in _pair_rows(deck, card):
+        pair = PairDraft(card, row, row.get(0), row.get(1) or row.get(0))
+        pair.interaction, pair.method = interaction, method
+        pair.start, pair.adjust = start, adjust
+        deck.pairs.append(pair)
+
+
+def tie(deck: Deck, card: Card) -> None:
+    """``*TIE, NAME=[, POSITION TOLERANCE=][, ADJUST=NO]``: slave, master."""
+    tolerance = deck.parameter_number(card, "POSITIONTOLERANCE", 0.0, 0.0)
+    if deck.choice(card, "ADJUST", ("YES", "NO"), "YES") == "YES":
+        text = "nodes are not moved onto the master surface; the distance at the start is kept"
+        deck.note(f"{card.where}: {card.spelled}: {text}")
+    for row in _pair_rows(deck, card):
+        if not row.get(1):
+            deck.row_error(card, row, 1, "the master surface is missing")
+            continue
+        pair = PairDraft(card, row, row.get(0), row.get(1), tied=True, adjust=tolerance)
+        pair.name = card.value("NAME")
+        deck.pairs.append(pair)
+
+
+def _pair_rows(deck: Deck, card: Card) -> list[Row]:
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: slave surface, master surface")
+    for row in rows:
+        deck.extra_fields(card, row, 2)
+        if not row.get(0):
+            deck.row_error(card, row, 0, "the slave surface is missing")
+    return [row for row in rows if row.get(0)]
+
+
+def surface_interaction(deck: Deck, card: Card) -> None:
+    """``*SURFACE INTERACTION, NAME=``: opens an interaction; a data line is a thickness."""
+    name = deck.required(card, "NAME")
+    deck.interaction = None
+    if not name:
+        return
+    if key(name) in deck.interactions:
+        deck.error(card, card.at("NAME"), f"interaction {name} is already defined")
+        return
+    for row in card.rows():
+        deck.note(f"{row.where}: {card.spelled}: the thickness is that of the section")
+    deck.interaction = deck.interactions[key(name)] = InteractionDraft(name, card)
+
+
+def _open(deck: Deck, card: Card) -> InteractionDraft | None:
+    if deck.interaction is None:
+        deck.error(
+            card,
+            card.where,
+            "the card belongs under a *SURFACE INTERACTION, and none stands before it",
+        )
+    return deck.interaction
+
+
+def surface_behavior(deck: Deck, card: Card) -> None:
+    """``*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=``: pressure against overclosure."""
+    into = _open(deck, card)
+    law = deck.choice(card, "PRESSURE-OVERCLOSURE", LAWS, "HARD")
+    rows = list(card.rows())
+    if into is None:
+        return
+    into.law, into.law_where = law, card.where
+    if law in ("HARD", "TIED"):
+        if rows:
+            what = "nothing penetrates" if law == "HARD" else "the surfaces are joined exactly"
+            deck.note(f"{rows[0].where}: {card.spelled}: {what}, the numbers are not used")
+        return
+    if law != "TABULAR" and len(rows) != 1:
+        deck.error(card, card.where, f"one data line is expected with {law}, found {len(rows)}")
+        return
+    for row in rows:
+        if law == "LINEAR":
+            numbers = [deck.real(card, row, 0, "the stiffness")]
+            if any(row.fields[1:]):
+                text = "tension and the distance at which contact is looked for are not used"
+                deck.note(f"{row.where}: {card.spelled}: {text}")
+        elif law == "TABULAR":
+            deck.extra_fields(card, row, 3)
+            numbers = [
+                deck.real(card, row, 0, "the pressure"), deck.real(card, row, 1, "the overclosure")
+            ]  # fmt: skip
+        else:
+            deck.extra_fields(card, row, 3)
+            numbers = [
+                deck.real(card, row, 1, "the pressure at zero clearance"),
+                deck.real(card, row, 0, "the clearance at zero pressure"),
+            ]
+        if any(v is None for v in numbers):
+            return
+        into.pressure.append(float(numbers[0] or 0.0))
+        into.overclosure.append(float(numbers[1] or 0.0) if len(numbers) > 1 else 0.0)
+    if law == "EXPONENTIAL":
+        text = "the pressure is zero at the clearance c0, as in Abaqus (CalculiX: 1 % of p0)"
+        deck.note(f"{card.where}: {card.spelled}: {text}")
+
+
+def friction(deck: Deck, card: Card) -> None:
+    """``*FRICTION``: coefficient, stick slope."""
+    into = _open(deck, card)
+    rows = list(card.rows())
+    if into is None:
+        return
+    if len(rows) != 1:
+        deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
+        return
+    row = rows[0]
+    mu = deck.real(card, row, 0, "the friction coefficient")
+    if mu is None:
+        return
+    if mu < 0.0:
+        deck.row_error(card, row, 0, f"the friction coefficient must be >= 0, not {mu:g}")
+        return
+    into.friction = mu
+    if any(row.fields[1:]):
+        deck.note(f"{row.at(1)}: {card.spelled}: no stick slope is needed: sticking is exact")
+
+
+def clearance(deck: Deck, card: Card) -> None:
+    """``*CLEARANCE, SLAVE=, MASTER=, VALUE=``: gap at the start."""
+    deck.no_rows(card)
+    if not deck.required(card, "VALUE"):
+        return
+    value = deck.parameter_number(card, "VALUE", 0.0, -math.inf)
+    for pair in _named_pairs(deck, card, card.value("SLAVE"), card.value("MASTER"), True):
+        pair.clearance = value
+
+
+def contact_controls(deck: Deck, card: Card) -> None:
+    """``*CONTACT CONTROLS, STABILIZE[, SLAVE=, MASTER=]``: damp bodies that nothing else holds."""
+    if not card.has("STABILIZE"):
+        deck.note(f"{card.where}: {card.spelled} is ignored: contact needs no control")
+        return
+    if card.value("STABILIZE") or list(card.rows()):
+        deck.note(f"{card.where}: {card.spelled}: the factor is not used; the damping is chosen")
+    named = card.has("SLAVE") or card.has("MASTER")
+    for pair in _named_pairs(deck, card, card.value("SLAVE"), card.value("MASTER"), named):
+        pair.stabilise = True
+
+
+def contact_interference(deck: Deck, card: Card) -> None:
+    """``*CONTACT INTERFERENCE, SHRINK``: slave, master whose overlap is pushed out slowly."""
+    if not card.has("SHRINK"):
+        deck.error(card, card.where, "SHRINK is expected", hint="or use *CLEARANCE, VALUE=")
+        return
+    if len(deck.steps) != 1 or deck.step is None:
+        deck.error(card, card.where, "the card belongs into the first step")
+        return
+    for row in _pair_rows(deck, card):
+        slave, master = row.get(0), row.get(1) or row.get(0)
+        for pair in _named_pairs(deck, card, slave, master, True, row.where):
+            pair.start = "ramp"
+
+
+def _named_pairs(
+    deck: Deck, card: Card, slave: str, master: str, named: bool, where: Location | None = None
+) -> list[PairDraft]:
+    """Pairs with these surfaces, or all; an error if there are none."""
+    pairs = [p for p in deck.pairs if not p.tied]
+    found = [p for p in pairs if p.joins(slave, master)] if named else pairs
+    if not found:
+        known = ", ".join(f"{p.slave}, {p.master}" for p in pairs) or "none"
+        deck.error(
+            card,
+            where or card.where,
+            f"no *CONTACT PAIR of {slave or '?'} and {master or '?'} before this card",
+            hint=f"slave, master of the pairs: {known}",
+        )
+    return found
+
+
+def interaction_of(deck: Deck, pair: PairDraft) -> InteractionDraft | None:
+    """Interaction that a pair names; ``None`` after an error."""
+    found = deck.interactions.get(key(pair.interaction))
+    if found is None:
+        names = [i.name for i in deck.interactions.values()]
+        deck.error(
+            pair.card,
+            pair.card.at("INTERACTION"),
+            f"no *SURFACE INTERACTION named {numerals.shown(pair.interaction)}",
+            hint=nearest(pair.interaction, names),
+        )
+    return found

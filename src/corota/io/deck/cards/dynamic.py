@@ -1,0 +1,183 @@
+"""Cards of motion: procedures, damping, initial velocities."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from corota.io.deck.cards.step import open_step, step_times
+from corota.io.deck.cards.thermal import initial_stress, initial_temperature
+from corota.io.deck.deck import Draft
+from corota.io.deck.lexer import key
+from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
+
+if TYPE_CHECKING:
+    from corota.io.deck.deck import Deck, MaterialDraft, StepDraft
+    from corota.io.deck.lexer import Card
+
+
+def _procedure(deck: Deck, card: Card) -> StepDraft | None:
+    now = open_step(deck, card)
+    if now is not None and now.procedure is not None:
+        deck.error(card, card.where, "the step already has a procedure")
+        return None
+    if now is not None:
+        now.procedure = card
+    return now
+
+
+def dynamic(deck: Deck, card: Card) -> None:
+    """``*DYNAMIC[, ALPHA=][, DIRECT][, EXPLICIT]``: increment, period, smallest, largest."""
+    now = _procedure(deck, card)
+    if now is None:
+        return
+    now.direct = card.has("DIRECT")
+    alpha = deck.parameter_number(card, "ALPHA", -0.05, -1.0 / 3.0)
+    if alpha > 0.0:
+        deck.error(card, card.at("ALPHA"), f"ALPHA must lie in [-1/3, 0], not {alpha:g}")
+        return
+    explicit = card.has("EXPLICIT")
+    now.make = Dynamic
+    now.options = {
+        "alpha": alpha,
+        "scheme": "central_difference" if explicit else "hht",
+        "mass": "lumped" if explicit else "consistent",
+        # Loads act at once unless an amplitude says otherwise.
+        "ramp": card.has("AMPLITUDE") and now.ramp,
+        "rayleigh": deck.damping,
+    }
+    step_times(deck, card, now)
+    if explicit and not card.has("DIRECT"):
+        # The stable increment is found by the analysis.
+        first, period, least, most = now.times
+        now.times = (min(first, period), period, least, most)
+
+
+def frequency(deck: Deck, card: Card) -> None:
+    """``*FREQUENCY``: the number of modes."""
+    now = _procedure(deck, card)
+    if now is None:
+        return
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line with the number of modes is missing")
+        return
+    count = deck.integer(card, rows[0], 0, "the number of modes")
+    if count is None:
+        return
+    if count < 1:
+        deck.row_error(card, rows[0], 0, f"at least one mode is needed, not {count}")
+        return
+    if any(rows[0].get(i) for i in (1, 2)):
+        deck.notes.append(f"{card.where}: the range of frequencies of *FREQUENCY is ignored")
+    now.make, now.options = Frequency, {"modes": count}
+
+
+def modal_dynamic(deck: Deck, card: Card) -> None:
+    """``*MODAL DYNAMIC``: increment and period."""
+    now = _procedure(deck, card)
+    if now is None:
+        return
+    now.make = ModalDynamic
+    now.options = {"rayleigh": deck.damping, "ramp": False}
+    step_times(deck, card, now)
+
+
+def steady_state(deck: Deck, card: Card) -> None:
+    """``*STEADY STATE DYNAMICS``: lowest and highest frequency, points between modes."""
+    now = _procedure(deck, card)
+    if now is None:
+        return
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line with the range of frequencies is missing")
+        return
+    low = deck.real(card, rows[0], 0, "the lowest frequency", 0.0)
+    high = deck.real(card, rows[0], 1, "the highest frequency")
+    points = deck.integer(card, rows[0], 2, "the number of points", 20)
+    if low is None or high is None or points is None:
+        return
+    if not 0.0 <= low < high:
+        deck.row_error(card, rows[0], 1, f"the range must rise, not {low:g} to {high:g}")
+    elif points < 2:
+        deck.row_error(card, rows[0], 2, f"at least 2 points are needed, not {points}")
+    else:
+        now.make = SteadyState
+        now.options = {
+            "lowest": low, "highest": high, "points": points, "rayleigh": deck.damping,
+            "ramp": False,
+        }  # fmt: skip
+
+
+def modal_damping(deck: Deck, card: Card) -> None:
+    """``*MODAL DAMPING[, RAYLEIGH]``: share of critical damping, or alpha and beta."""
+    now = open_step(deck, card)
+    if now is None:
+        return
+    if now.make not in (ModalDynamic, SteadyState):
+        deck.error(
+            card, card.where,
+            "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step",
+            hint="*DAMPING, ALPHA=, BETA= damps the other procedures",
+        )  # fmt: skip
+        return
+    for row in card.rows():
+        if card.has("RAYLEIGH"):
+            alpha = deck.real(card, row, 2, "alpha", 0.0)
+            beta = deck.real(card, row, 3, "beta", 0.0)
+            if alpha is not None and beta is not None:
+                now.options["rayleigh"] = (alpha, beta)
+            continue
+        share = deck.real(card, row, 2, "the damping")
+        if share is None:
+            return
+        if now.options.get("damping", share) != share:
+            deck.row_error(card, row, 2, "one damping for all modes is expected")
+        elif share < 0.0:
+            deck.row_error(card, row, 2, f"the damping must be >= 0, not {share:g}")
+        else:
+            now.options["damping"] = share
+
+
+def damping(deck: Deck, card: Card) -> None:
+    """``*DAMPING, ALPHA=, BETA=``: Rayleigh damping of a material, or of the whole model."""
+    deck.no_rows(card)
+    value = (
+        deck.parameter_number(card, "ALPHA", 0.0, 0.0),
+        deck.parameter_number(card, "BETA", 0.0, 0.0),
+    )
+    owner: Deck | MaterialDraft = deck if deck.material is None else deck.material
+    if owner.damping not in ((0.0, 0.0), value):
+        what = "the model" if deck.material is None else f"material {deck.material.name}"
+        deck.error(card, card.where, f"damping differs from that given before for {what}")
+        return
+    owner.damping = value
+
+
+def initial_conditions(deck: Deck, card: Card) -> None:
+    """``*INITIAL CONDITIONS, TYPE=``: velocities, temperatures or stresses."""
+    if deck.choice(card, "TYPE", INITIAL, "") in INITIAL:
+        INITIAL[key(card.value("TYPE"))](deck, card)
+    elif not card.has("TYPE"):
+        deck.error(card, card.where, f"TYPE= is missing; there are {', '.join(INITIAL)}")
+
+
+def _velocity(deck: Deck, card: Card) -> None:
+    """Node or set, dof, velocity."""
+    for row in card.rows():
+        deck.extra_fields(card, row, 3)
+        dof = deck.integer(card, row, 1, "the degree of freedom")
+        value = deck.real(card, row, 2, "the velocity")
+        if not row.get(0):
+            deck.row_error(card, row, 0, "a node number or a set is missing")
+        elif dof is not None and dof not in (1, 2, 6):
+            deck.row_error(card, row, 1, f"expected 1, 2 or 6 (drilling rotation), found {dof}")
+        elif dof is not None and value is not None:
+            index = {1: 0, 2: 1, 6: 2}[dof]
+            deck.velocities.append(Draft("velocity", card, row, row.get(0), (value,), index))
+
+
+#: Readers of ``*INITIAL CONDITIONS`` by type.
+INITIAL = {
+    "VELOCITY": _velocity, "TEMPERATURE": initial_temperature, "STRESS": initial_stress,
+}  # fmt: skip

@@ -1,0 +1,298 @@
+"""Cards of trusses, beams and springs, and the sections that they become."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.deck.elements import COMPANIONS
+from corota.io.deck.lexer import Row, key
+from corota.model.materials import Elastic
+from corota.model.sections import Section
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from corota.io.deck.build.mesh import MeshBuilder
+    from corota.io.deck.build.sets import Sets
+    from corota.io.deck.deck import Deck, SectionDraft
+    from corota.io.deck.lexer import Card
+    from corota.mesh.data import Ints
+    from corota.model.materials import Material
+    from corota.model.model import Model
+
+#: Shear areas as shares of the area (Cowper 1966, Poisson's ratio left out).
+RECTANGLE, CIRCLE, TUBE = 5.0 / 6.0, 0.9, 0.5
+#: Degrees of freedom of decks in the plane, and their index here.
+PLANAR = {1: 0, 2: 1, 6: 2}
+
+
+@dataclass(slots=True)
+class LineDraft:
+    """A section of line elements: ``role`` is ``beam`` or ``spring``."""
+
+    role: str
+    card: Card
+    elset: str
+    material: str = ""
+    elastic: Elastic | None = None
+    profile: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rows: list[Row] = field(default_factory=list)
+
+
+def _numbers(deck: Deck, card: Card, row: Row, names: Iterable[str]) -> list[float] | None:
+    """Positive numbers of a row; ``None`` after an error."""
+    found = []
+    for index, name in enumerate(names):
+        value = deck.real(card, row, index, name)
+        if value is None:
+            return None
+        if value <= 0.0:
+            deck.row_error(card, row, index, f"{name} must be > 0, not {value:g}")
+            return None
+        found.append(value)
+    return found
+
+
+def _out_of_plane(deck: Deck, card: Card, rows: list[Row]) -> bool | None:
+    """Whether the first axis of the section is normal to the plane; ``None`` after an error."""
+    if len(rows) < 2:
+        return True
+    names = ("nx", "ny", "nz")
+    values = [deck.real(card, rows[1], i, name, 0.0) for i, name in enumerate(names)]
+    if None in values:
+        return None
+    x, y, z = (float(v or 0.0) for v in values)
+    flat, size = math.hypot(x, y), abs(z)
+    if min(flat, size) > 1e-6 * max(flat, size) or max(flat, size) == 0.0:
+        deck.row_error(card, rows[1], 0, "the first axis must lie in the plane or be normal to it")
+        return None
+    return size > flat
+
+
+def _common(deck: Deck, card: Card, most: int) -> list[Row] | None:
+    for name in ("OFFSET1", "OFFSET2"):
+        if deck.parameter_number(card, name, 0.0, -math.inf) != 0.0:
+            deck.error(card, card.at(name), "beams lie on their nodes; a rigid link (*MPC, BEAM) "
+                       "carries one beside them")  # fmt: skip
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the sizes of the cross-section")
+        return None
+    for row in rows[most:]:
+        deck.row_error(card, row, 0, f"at most {most} data lines are expected")
+    return rows
+
+
+def beam_section(deck: Deck, card: Card) -> None:
+    """``*BEAM SECTION, ELSET=, MATERIAL=, SECTION=RECT, CIRC or PIPE``: sizes; first axis."""
+    elset, material = deck.required(card, "ELSET"), deck.required(card, "MATERIAL")
+    kind = deck.choice(card, "SECTION", ("RECT", "CIRC", "PIPE"), "")
+    rows = _common(deck, card, 2)
+    if rows is None or not kind:
+        if not kind and not card.has("SECTION"):
+            deck.error(card, card.where, "SECTION= is missing: RECT, CIRC or PIPE")
+        return
+    normal = _out_of_plane(deck, card, rows)
+    if normal is None:
+        return
+    row = rows[0]
+    if kind == "CIRC" and not row.get(1):
+        deck.row_error(
+            card, row, 0, "one number is the radius in Abaqus and the diameter in CalculiX",
+            "give both diameters: d, d",
+        )  # fmt: skip
+        return
+    names = {
+        "RECT": ("the size along the first axis", "the size along the second axis"),
+        "CIRC": ("the first diameter", "the second diameter"),
+        "PIPE": ("the outer radius", "the thickness"),
+    }[kind]
+    deck.extra_fields(card, row, len(names))
+    sizes = _numbers(deck, card, row, names)
+    if sizes is None:
+        return
+    if kind == "PIPE":
+        outer, inner = sizes[0], sizes[0] - sizes[1]
+        if inner < 0.0:
+            deck.row_error(card, row, 1, "the thickness exceeds the radius")
+            return
+        area = math.pi * (outer**2 - inner**2)
+        profile = (area, 0.25 * math.pi * (outer**4 - inner**4), TUBE * area)
+    else:
+        across, depth = sizes if normal else sizes[::-1]
+        if kind == "RECT":
+            area = across * depth
+            profile = (area, area * depth**2 / 12.0, RECTANGLE * area)
+        else:
+            area = 0.25 * math.pi * across * depth
+            profile = (area, area * depth**2 / 16.0, CIRCLE * area)
+    if elset and material:
+        deck.scope.lines.append(LineDraft("beam", card, elset, material, profile=profile))
+
+
+def beam_general_section(deck: Deck, card: Card) -> None:
+    """``*BEAM GENERAL SECTION``: area, I11, I12, I22, J; first axis; E, G."""
+    elset = deck.required(card, "ELSET")
+    deck.choice(card, "SECTION", ("GENERAL",), "GENERAL")
+    rho = deck.parameter_number(card, "DENSITY", 0.0, 0.0)
+    rows = _common(deck, card, 3)
+    if rows is None:
+        return
+    if len(rows) < 3:
+        deck.error(card, card.where, "three lines are expected: area, I11, I12, I22, J; the first "
+                   "axis; E, G")  # fmt: skip
+        return
+    normal = _out_of_plane(deck, card, rows)
+    area = _numbers(deck, card, rows[0], ("the area",))
+    column = 1 if normal else 3
+    inertia = deck.real(card, rows[0], column, "the second moment of area")
+    moduli = _numbers(deck, card, rows[2], ("Young's modulus", "the shear modulus"))
+    if normal is None or area is None or inertia is None or moduli is None:
+        return
+    if inertia <= 0.0:
+        deck.row_error(card, rows[0], column, f"the second moment must be > 0, not {inertia:g}")
+        return
+    elastic = Elastic(moduli[0], rho=rho, where=card.where)
+    if elset:
+        # No shear deformation: the card gives no shear area.
+        draft = LineDraft("beam", card, elset, elastic=elastic, profile=(area[0], inertia, 0.0))
+        deck.scope.lines.append(draft)
+
+
+def spring(deck: Deck, card: Card) -> None:
+    """``*SPRING, ELSET=[, NONLINEAR]``: dofs (SPRING1, SPRING2); stiffness, or force and way."""
+    elset = deck.required(card, "ELSET")
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: the stiffness")
+    elif elset:
+        deck.scope.lines.append(LineDraft("spring", card, elset, rows=rows))
+
+
+def build_lines(
+    deck: Deck,
+    model: Model,
+    meshes: MeshBuilder,
+    sets: Sets,
+    materials: Mapping[str, Material | None],
+    rotating: np.ndarray[tuple[int], np.dtype[np.bool_]],
+    owner: Ints,
+) -> None:
+    """Add the sections of beams and springs; ``owner`` gets -2 at their cells."""
+    for view in meshes.views:
+        for draft in view.scope.lines:
+            card = draft.card
+            found = sets.elements(view, draft.elset, card.at("ELSET"), card)
+            if found is None:
+                continue
+            types = np.array([meshes.types[i] for i in meshes.cell_type[found.cells]], dtype=str)
+            for name in np.unique(types):
+                cells = found.cells[types == name]
+                if name not in COMPANIONS or COMPANIONS[name].role != draft.role:
+                    deck.error(
+                        card, card.at("ELSET"), f"elements of type {name} take another section"
+                    )
+                    continue
+                if (owner[cells] != -1).any():
+                    label = model.mesh.cell_labels[cells[np.argmax(owner[cells] != -1)]]
+                    deck.error(card, card.where, f"element {label} already has a section")
+                    continue
+                owner[cells] = -2
+                section = _section(deck, draft, name, cells, materials)
+                if section is None:
+                    continue
+                model.sections.append(section)
+                if section.element == "BEAM" or section.element.endswith("R"):
+                    for cell in cells.tolist():
+                        block, row = model.mesh.locate(cell)
+                        rotating[model.mesh.cells[block].nodes[row]] = True
+            if not len(found.cells):
+                deck.error(card, card.at("ELSET"), f"{draft.elset} holds no beams or springs")
+
+
+def truss_section(
+    deck: Deck, draft: SectionDraft, cells: Ints, material: Material
+) -> Section | None:
+    """Trusses of a ``*SOLID SECTION``, whose number is their area."""
+    if not isinstance(material, Elastic):
+        deck.error(
+            draft.card, draft.card.at("MATERIAL"), "trusses take isotropic *ELASTIC material only"
+        )
+        return None
+    area = draft.thickness
+    return Section(cells, "TRUSS", material, area, where=draft.card.where, profile=(area, 0.0, 0.0))
+
+
+def _section(
+    deck: Deck, draft: LineDraft, type_: str, cells: Ints, materials: Mapping[str, Material | None]
+) -> Section | None:
+    card = draft.card
+    if draft.role == "spring":
+        return _spring(deck, draft, type_, cells)
+    material: Material | None = draft.elastic
+    if material is None:
+        if key(draft.material) not in materials:
+            deck.error(card, card.at("MATERIAL"), f"no material named {draft.material!r}")
+            return None
+        material = materials[key(draft.material)]
+    if material is None:
+        return None
+    if not isinstance(material, Elastic):
+        deck.error(card, card.at("MATERIAL"), "beams take isotropic *ELASTIC material only")
+        return None
+    area, inertia, shear = draft.profile
+    if type_ in ("B23", "B33"):
+        shear = 0.0
+    profile = (area, inertia, shear)
+    return Section(cells, "BEAM", material, area, where=card.where, profile=profile)
+
+
+def _spring(deck: Deck, draft: LineDraft, type_: str, cells: Ints) -> Section | None:
+    card, rows = draft.card, draft.rows
+    element, ends = "SPRING", (0, 0)
+    if type_ != "SPRINGA":
+        count = 1 if type_ == "SPRING1" else 2
+        dofs = [deck.integer(card, rows[0], i, "the degree of freedom") for i in range(count)]
+        if None in dofs:
+            return None
+        for index, dof in enumerate(dofs):
+            if dof not in (1, 2, 3, 4, 5, 6):
+                deck.row_error(
+                    card, rows[0], index, f"expected a degree of freedom 1 to 6, found {dof}"
+                )
+                return None
+        if any(dof not in PLANAR for dof in dofs):
+            deck.note(f"{card.where}: springs in dofs {dofs} leave the plane and are left out")
+            return None
+        ends = (PLANAR[dofs[0] or 0], PLANAR[dofs[-1] or 0])
+        element = type_ + ("R" if 2 in ends else "")
+        rows = rows[1:]
+    nonlinear = card.has("NONLINEAR")
+    if not rows or (len(rows) > 1 and not nonlinear):
+        where = rows[1] if rows else draft.rows[-1]
+        deck.row_error(card, where, 0, "one line with the stiffness is expected after the dofs")
+        return None
+    names = ("the force", "the elongation") if nonlinear else ("the stiffness",)
+    pairs = []
+    for row in rows:
+        values = [deck.real(card, row, i, name) for i, name in enumerate(names)]
+        if None in values:
+            return None
+        pairs.append([float(v or 0.0) for v in values])
+    profile = (0.0 if nonlinear else pairs[0][0], float(ends[0]), float(ends[1]))
+    table = tuple((e, f) for f, e in pairs) if nonlinear else ()
+    try:
+        return Section(cells, element, Elastic(1.0), where=card.where, profile=profile, table=table)
+    except InputError as error:
+        deck.error(card, rows[0].where, error.message)
+        return None
+
+
+__all__ = ["LineDraft", "beam_general_section", "beam_section", "build_lines", "spring",
+           "truss_section"]  # fmt: skip

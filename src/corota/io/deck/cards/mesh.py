@@ -1,0 +1,340 @@
+"""Cards of nodes, elements, sets and surfaces."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota._core import parse_labels, parse_nodes, parse_table
+from corota.errors import Location
+from corota.io.deck import numerals
+from corota.io.deck.cards import attachments as attachments
+from corota.io.deck.cards.contact import profile
+from corota.io.deck.deck import (
+    Deck,
+    ElementBlock,
+    Entry,
+    NamedSet,
+    NodeBlock,
+    Surface,
+    SurfaceRow,
+    int_array,
+    nearest,
+)
+from corota.io.deck.elements import COMPANIONS, ELEMENTS, LINES, UNSUPPORTED_ELEMENTS
+from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
+from corota.mesh.data import N_NODES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from corota.mesh.data import Ints
+
+#: Bytes of a set from which it is read in bulk.
+LONG = 1 << 16
+#: Entries of one GENERATE line.
+MAX_GENERATE = 50_000_000
+
+
+def node(deck: Deck, card: Card) -> None:
+    """``*NODE``: label, x, y[, z]."""
+    labels_of_card = []
+    for chunk in card.chunks:
+        block = _node_block(deck, card, chunk)
+        if len(block.labels):
+            deck.scope.nodes.append(block)
+            labels_of_card.append(block.labels)
+    if card.has("NSET"):
+        _extend(deck, deck.scope.nsets, card, "NSET", labels_of_card)
+
+
+def _node_block(deck: Deck, card: Card, chunk: Chunk) -> NodeBlock:
+    source = chunk.source
+    labels, points, lines, odd = parse_nodes(source.data, chunk.start, chunk.stop, chunk.line)
+    points = points.reshape(-1, 3)
+    more_labels, more_points, more_lines = [], [], []
+    for row in _odd_rows(chunk, odd):
+        found = _node_row(deck, card, row)
+        if found is not None:
+            more_labels.append(found[0])
+            more_points.append(found[1])
+            more_lines.append(row.where.line)
+    if more_labels:
+        labels = np.concatenate([labels, int_array(more_labels)])
+        points = np.concatenate([points, np.array(more_points)])
+        lines = np.concatenate([lines, int_array(more_lines)])
+        order = np.argsort(lines, kind="stable")
+        labels, points, lines = labels[order], points[order], lines[order]
+    return NodeBlock(labels, points, source.name, lines)
+
+
+def _odd_rows(chunk: Chunk, odd: list[tuple[int, int]]) -> Iterator[Row]:
+    """Lines that the bulk reader handed back, cut by the rules of the lexer."""
+    for at, number in odd:
+        text, _ = chunk.source.line(chunk.start + at)
+        if text.strip():
+            yield split_row(text, Location(chunk.source.name, number))
+
+
+def _node_row(deck: Deck, card: Card, row: Row) -> tuple[int, tuple[float, float, float]] | None:
+    rest = [row.get(i) for i in range(4, len(row)) if row.get(i)]
+    if rest and (deck.lenient or all(_zero(text) for text in rest)):
+        deck.note(f"{row.where}: fields after z of a node are not used")
+    else:
+        deck.extra_fields(card, row, 4)
+    label = _label(deck, card, row, "the node number")
+    x = deck.real(card, row, 1, "x", 0.0)
+    y = deck.real(card, row, 2, "y", 0.0)
+    z = deck.real(card, row, 3, "z", 0.0)
+    if not any(row.get(i) for i in range(1, len(row))):
+        deck.note(f"{row.where}: a node without coordinates lies in the origin")
+    if label is not None and x is not None and y is not None and z is not None:
+        return label, (x, y, z)
+    return None
+
+
+def _zero(text: str) -> bool:
+    try:
+        return numerals.real(text) == 0.0
+    except ValueError:
+        return False
+
+
+def element(deck: Deck, card: Card) -> None:
+    """``*ELEMENT, TYPE=``: label, nodes."""
+    name = deck.required(card, "TYPE")
+    if not name:
+        return
+    type_ = key(name)
+    if type_ in attachments.TYPES:
+        attachments.elements(deck, card, type_)
+        return
+    if type_ in ELEMENTS:
+        size = N_NODES[ELEMENTS[type_].kind]
+    elif type_ in LINES:
+        size = LINES[type_]
+    elif type_ in COMPANIONS:
+        size = COMPANIONS[type_].n_nodes
+    elif type_ in UNSUPPORTED_ELEMENTS:
+        deck.error(
+            card,
+            card.at("TYPE"),
+            f"elements of type {name} are not supported: {UNSUPPORTED_ELEMENTS[type_]}",
+        )
+        return
+    else:
+        deck.error(
+            card,
+            card.at("TYPE"),
+            f"unknown element type {numerals.shown(name)}",
+            hint=nearest(type_, [*ELEMENTS, *COMPANIONS]) or "known: " + ", ".join(ELEMENTS),
+        )
+        return
+    labels_of_card = []
+    for chunk in card.chunks:
+        table, lines = _element_rows(deck, card, chunk, size)
+        if len(table):
+            block = ElementBlock(
+                card, type_, table[:, 0].copy(), table[:, 1:].copy(), chunk.source.name, lines
+            )
+            deck.scope.elements.append(block)
+            labels_of_card.append(block.labels)
+    if card.has("ELSET"):
+        _extend(deck, deck.scope.elsets, card, "ELSET", labels_of_card)
+
+
+def _element_rows(deck: Deck, card: Card, chunk: Chunk, size: int) -> tuple[Ints, Ints]:
+    source = chunk.source
+    values, numbers, odd = parse_table(source.data, chunk.start, chunk.stop, chunk.line, size + 1)
+    if not odd:
+        return values.reshape(-1, size + 1), numbers
+    # A line that goes on in the next one cannot be read alone: all are read again.
+    table, lines = [], []
+    part = Card(card.keyword, card.spelled, {}, card.where, card.text, [chunk])
+    for row in _joined(part.rows(), size + 1):
+        label = _label(deck, card, row, "the element number")
+        count = len(row) - 1
+        if count != size:
+            deck.row_error(
+                card,
+                row,
+                min(size + 1, len(row)),
+                f"{card.value('TYPE')} has {size} nodes, found {count}",
+            )
+            continue
+        nodes = [deck.integer(card, row, i, f"node {i}") for i in range(1, size + 1)]
+        if label is not None and None not in nodes:
+            table.append([label, *nodes])
+            lines.append(row.where.line)
+    return np.array(table, dtype=np.int64).reshape(-1, size + 1), int_array(lines)
+
+
+def _joined(rows: Iterator[Row], size: int) -> Iterator[Row]:
+    """Rows of at least ``size`` fields: a line that ends with a comma continues on the next."""
+    open_row: Row | None = None
+    for row in rows:
+        if open_row is not None:
+            row = Row(
+                open_row.where,
+                open_row.text,
+                open_row.fields + row.fields,
+                open_row.columns + [len(open_row.text)] * len(row.fields),
+            )
+            open_row = None
+            more = row.text
+        else:
+            more = row.text
+        if len(row) < size and more.rstrip().endswith(","):
+            open_row = row
+        else:
+            yield row
+    if open_row is not None:
+        yield open_row
+
+
+def nset(deck: Deck, card: Card) -> None:
+    """``*NSET, NSET=[, GENERATE][, ELSET=]``."""
+    if card.has("ELSET"):
+        _nodes_of_elset(deck, card)
+    else:
+        _set(deck, card, deck.scope.nsets, "NSET")
+
+
+def elset(deck: Deck, card: Card) -> None:
+    """``*ELSET, ELSET=[, GENERATE]``."""
+    _set(deck, card, deck.scope.elsets, "ELSET")
+
+
+def _nodes_of_elset(deck: Deck, card: Card) -> None:
+    name = deck.required(card, "NSET")
+    target = deck.required(card, "ELSET")
+    deck.no_rows(card)
+    if name and target:
+        found = deck.scope.nsets.setdefault(key(name), NamedSet(name, card.where))
+        found.entries.append(Entry(card.at("ELSET"), int_array(()), "elset:" + target))
+
+
+def _set(deck: Deck, card: Card, table: dict[str, NamedSet], parameter: str) -> None:
+    name = deck.required(card, parameter)
+    if not name:
+        return
+    prefix = ""
+    if card.has("INSTANCE"):
+        prefix = card.value("INSTANCE") + "."
+        if key(card.value("INSTANCE")) not in deck.instances:
+            deck.error(
+                card,
+                card.at("INSTANCE"),
+                f"no instance named {card.value('INSTANCE')}",
+                hint=nearest(card.value("INSTANCE"), deck.instances),
+            )
+    found = table.setdefault(key(name), NamedSet(name, card.where))
+    if card.has("GENERATE"):
+        for row in card.rows():
+            labels = _generated(deck, card, row)
+            if labels is not None:
+                found.entries.append(Entry(row.where, labels, prefix and "@" + prefix))
+        return
+    for row in _set_rows(card, found, prefix and "@" + prefix):
+        run: list[int] = []
+        for index, text in enumerate(row.fields):
+            if not text:
+                continue
+            if numerals.is_integer(text):
+                label = _label(deck, card, row, "the number", index)
+                if label is not None:
+                    run.append(label)
+            elif numerals.is_number(text):
+                deck.row_error(
+                    card, row, index, f"expected a whole number or a set name, found {text!r}"
+                )
+            else:
+                if run:
+                    found.entries.append(Entry(row.where, int_array(run), prefix and "@" + prefix))
+                    run = []
+                found.entries.append(Entry(row.at(index), int_array(()), prefix + text))
+        if run:
+            found.entries.append(Entry(row.where, int_array(run), prefix and "@" + prefix))
+
+
+def _set_rows(card: Card, found: NamedSet, name: str) -> Iterator[Row]:
+    """Rows of a set; long pieces with nothing but labels are taken at once."""
+    for chunk in card.chunks:
+        if chunk.stop - chunk.start > LONG:
+            labels = parse_labels(chunk.source.data, chunk.start, chunk.stop, chunk.line)
+            if labels is not None:
+                where = Location(chunk.source.name, chunk.line)
+                found.entries.append(Entry(where, labels, name))
+                continue
+        yield from Card(card.keyword, card.spelled, {}, card.where, card.text, [chunk]).rows()
+
+
+def _generated(deck: Deck, card: Card, row: Row) -> Ints | None:
+    deck.extra_fields(card, row, 3)
+    first = deck.integer(card, row, 0, "the first number")
+    last = deck.integer(card, row, 1, "the last number")
+    by = deck.integer(card, row, 2, "the increment", 1)
+    if first is None or last is None or by is None:
+        return None
+    if by <= 0 or last < first or first < 1:
+        deck.row_error(card, row, 0, "expected first <= last, both >= 1, and increment >= 1")
+        return None
+    if (last - first) % by:
+        deck.row_error(card, row, 1, f"{last} is not reached from {first} in steps of {by}")
+        return None
+    if (last - first) // by >= MAX_GENERATE:
+        deck.row_error(
+            card, row, 1, f"{(last - first) // by + 1} entries; at most {MAX_GENERATE} are taken"
+        )
+        return None
+    return np.arange(first, last + 1, by, dtype=np.int64)
+
+
+def surface(deck: Deck, card: Card) -> None:
+    """``*SURFACE, NAME=[, TYPE=ELEMENT|NODE|SEGMENTS]``: element or set, face; or nodes."""
+    name = deck.required(card, "NAME")
+    if not name:
+        return
+    kind = deck.choice(card, "TYPE", ("ELEMENT", "NODE", "SEGMENTS"), "ELEMENT")
+    found = deck.scope.surfaces.get(key(name))
+    if found is not None:
+        deck.error(
+            card,
+            card.at("NAME"),
+            f"surface {name} is already defined in {found.card.where}",
+            hint="put all its lines under one card",
+        )
+        return
+    found = deck.scope.surfaces[key(name)] = Surface(name, card, kind == "NODE")
+    if kind == "SEGMENTS":
+        profile(deck, card, found)
+        return
+    for row in card.rows():
+        deck.extra_fields(card, row, 2)
+        if not row.get(0):
+            deck.row_error(card, row, 0, "an element number or a set is missing")
+            continue
+        found.rows.append(SurfaceRow(row.where, row.text, row.get(0), key(row.get(1))))
+    if not found.rows:
+        deck.error(card, card.where, f"surface {name} is empty")
+
+
+def _label(deck: Deck, card: Card, row: Row, what: str, index: int = 0) -> int | None:
+    label = deck.integer(card, row, index, what)
+    if label is not None and label < 1:
+        deck.row_error(card, row, index, f"{what} must be >= 1, not {label}")
+        return None
+    return label
+
+
+def _extend(
+    deck: Deck, table: dict[str, NamedSet], card: Card, parameter: str, labels: list[Ints]
+) -> None:
+    name = card.value(parameter)
+    if not name:
+        deck.error(card, card.at(parameter), f"{parameter}= needs a name")
+        return
+    found = table.setdefault(key(name), NamedSet(name, card.where))
+    found.entries.extend(Entry(Location(card.where.file, card.where.line), part) for part in labels)

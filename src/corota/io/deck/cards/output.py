@@ -1,0 +1,158 @@
+"""Cards that ask for output."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, cast
+
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+from corota.model.steps import Output
+
+if TYPE_CHECKING:
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card
+
+Kind = Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
+
+#: Variables that are written, by the place where they live.
+WRITTEN = {
+    "node": ("U", "RF", "UR"),
+    "el": ("S", "E", "PEEQ", "ENER", "ELSE", "ELKE", "EVOL"),
+    "contact": ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS"),
+}
+#: Names of Abaqus for the same.
+ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
+#: Known to CalculiX or Abaqus, not written here.
+KNOWN = {
+    "node": (
+        "NT", "V", "A", "CF", "TF", "UT", "COORD", "PU", "MAXU", "RFL", "KEQ", "POT", "TSF", "TTF",
+        "TM", "RM",
+    ),
+    "el": (
+        "ME", "PE", "EMAS", "COORD", "SDV", "ERR", "ZZS",
+        "NOE", "LE", "EE", "MISES", "SP", "EP", "HFL", "HER", "MAXS", "MAXE", "PHS", "SF", "SVF",
+        "PEMAG", "SENER", "ELEN", "STH", "NE", "THE", "CEEQ", "DG", "CENT",
+    ),
+    "contact": (
+        "PCON", "CSTATUS", "CAREA", "CNAREA", "CENER", "CTRQ", "CFNM", "CFSM", "CFTM", "CFT", "CM",
+        "PPRESS", "CSTRESSETOS", "HFL", "HFLA",
+    ),
+}  # fmt: skip
+
+
+def node_print(deck: Deck, card: Card) -> None:
+    """``*NODE PRINT, NSET=``: table of nodal values in ``<job>.dat``."""
+    deck.required(card, "NSET")
+    _request(deck, card, "node print", card.value("NSET"))
+
+
+def el_print(deck: Deck, card: Card) -> None:
+    """``*EL PRINT, ELSET=``: table of values at integration points in ``<job>.dat``."""
+    deck.required(card, "ELSET")
+    _request(deck, card, "el print", card.value("ELSET"))
+
+
+def node_file(deck: Deck, card: Card) -> None:
+    """``*NODE FILE`` or ``*NODE OUTPUT``: nodal fields in the result file."""
+    _request(deck, card, "node file", card.value("NSET"))
+
+
+def el_file(deck: Deck, card: Card) -> None:
+    """``*EL FILE`` or ``*ELEMENT OUTPUT``: element fields in the result file."""
+    _request(deck, card, "el file", card.value("NSET") or card.value("ELSET"))
+
+
+def contact_print(deck: Deck, card: Card) -> None:
+    """``*CONTACT PRINT[, SLAVE=, MASTER=]``: tables of contact in ``<job>.dat``."""
+    slave, master = card.value("SLAVE"), card.value("MASTER")
+    if bool(slave) != bool(master):
+        deck.error(card, card.where, "SLAVE= and MASTER= belong together")
+        return
+    _request(deck, card, "contact print", f"{slave}-{master}" if slave else "")
+
+
+def contact_file(deck: Deck, card: Card) -> None:
+    """``*CONTACT FILE`` or ``*CONTACT OUTPUT``: contact fields, which are always written."""
+    _request(deck, card, "contact file", "")
+
+
+def output(deck: Deck, card: Card) -> None:
+    """``*OUTPUT``: frequency of the ``*... OUTPUT`` cards below it."""
+    if deck.step is None:
+        deck.error(card, card.where, "the card belongs inside a step")
+        return
+    deck.step.frequency = _frequency(deck, card)
+    if key(card.value("VARIABLE")) in ("PRESELECT", "ALL"):
+        into = deck.step.outputs
+        into.append(Output("node file", ("U", "RF"), frequency=deck.step.frequency))
+        into.append(Output("el file", ("S", "E"), frequency=deck.step.frequency))
+    deck.no_rows(card)
+
+
+def ignored(deck: Deck, card: Card) -> None:
+    """Read a card that has no meaning here."""
+    deck.note(f"{card.where}: {card.spelled} is ignored")
+
+
+def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
+    if deck.step is None:
+        deck.error(card, card.where, "the card belongs inside a step")
+        return
+    place = kind.split()[0]
+    variables: list[str] = []
+    for row in card.rows():
+        for index, text in enumerate(row.fields):
+            name = key(text)
+            name = ALIASES.get(name, name) if place == "contact" else name
+            if not name:
+                continue
+            if name in WRITTEN[place]:
+                if name not in variables:
+                    variables.append(name)
+            elif name in KNOWN[place] or (name[:1] in "SEUR" and name[1:].isdigit()):
+                deck.note(f"{row.at(index)}: {card.spelled}: {name} is not written")
+            else:
+                deck.row_error(
+                    card,
+                    row,
+                    index,
+                    f"unknown variable {text!r}; written are: {', '.join(WRITTEN[place])}",
+                    nearest(name, (*WRITTEN[place], *KNOWN[place])),
+                )
+    totals = deck.choice(card, "TOTALS", ("NO", "YES", "ONLY"), "NO").lower()
+    frequency = _frequency(deck, card)
+    points = card.value("TIMEPOINTS")
+    if card.has("TIMEPOINTS") and key(points) not in deck.time_points:
+        deck.error(
+            card,
+            card.at("TIMEPOINTS"),
+            f"no *TIME POINTS named {points!r} before this card",
+            hint=nearest(points, deck.time_points),
+        )
+        return
+    if frequency == 0:
+        deck.note(f"{card.where}: {card.spelled} with FREQUENCY=0 asks for nothing")
+    elif variables:
+        deck.step.outputs.append(
+            Output(
+                kind,
+                tuple(variables),
+                where,
+                frequency,
+                cast("Literal['no', 'yes', 'only']", totals),
+                key(points),
+                card.where,
+            )
+        )
+
+
+def _frequency(deck: Deck, card: Card) -> int:
+    under = deck.step is not None and card.keyword in (
+        "NODEOUTPUT",
+        "ELEMENTOUTPUT",
+        "CONTACTOUTPUT",
+    )
+    default = deck.step.frequency if under and deck.step is not None else 1
+    name = "FREQUENCYF" if card.has("FREQUENCYF") else "FREQUENCY"
+    return deck.parameter_integer(card, name, default, 0)

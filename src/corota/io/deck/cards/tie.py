@@ -1,0 +1,260 @@
+"""Cards of constraints: equations, rigid bodies, couplings, local axes at nodes."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from corota.io.deck.deck import Draft
+from corota.io.deck.lexer import key
+
+if TYPE_CHECKING:
+    from corota.errors import Location
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card, Row
+
+#: Degrees of freedom of decks in the plane, and their index here.
+PLANAR = {1: 0, 2: 1, 6: 2}
+
+
+@dataclass(slots=True)
+class TieDraft:
+    """One constraint as written.
+
+    ``kind`` is ``equation``, ``kinematic``, ``distributing``, ``same``, ``straight`` or ``axes``.
+    ``terms`` holds the terms of an equation, the nodes of a straight line; the first one the
+    reference node of a coupling.
+    """
+
+    kind: str
+    card: Card
+    where: Location
+    terms: list[Draft] = field(default_factory=list)
+    target: Draft | None = None
+    surface: str = ""
+    elset: str = ""
+    dofs: tuple[int, ...] = (0, 1, 2)
+    angle: float = 0.0
+    centre: tuple[float, float] | None = None
+    ready: bool = False
+
+
+def equation(deck: Deck, card: Card) -> None:
+    """``*EQUATION``: number of terms, then node, dof, coefficient for each term."""
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "data lines are missing: the number of terms, the terms")
+    fields = [(row, i) for row in rows for i in range(_used(row))]
+    at = 0
+    while at < len(fields):
+        row, index = fields[at]
+        count = deck.integer(card, row, index, "the number of terms")
+        if count is None:
+            return
+        if count < 1 or index != 0:
+            deck.row_error(card, row, index, "expected the number of terms, at least 1")
+            return
+        terms = fields[at + 1 : at + 1 + 3 * count]
+        if len(terms) < 3 * count:
+            deck.row_error(
+                card, row, index, f"{count} terms need {3 * count} numbers, {len(terms)} follow"
+            )
+            return
+        tie = TieDraft("equation", card, row.where, ready=True)
+        for k in range(0, 3 * count, 3):
+            (of_node, i), (of_dof, j), (of_value, c) = terms[k : k + 3]
+            dof = deck.integer(card, of_dof, j, "the degree of freedom")
+            value = deck.real(card, of_value, c, "the coefficient")
+            if dof is None or value is None:
+                return
+            if not 1 <= dof <= 6:
+                deck.row_error(card, of_dof, j, f"expected a degree of freedom 1 to 6, found {dof}")
+                return
+            if dof in PLANAR:
+                tie.terms.append(
+                    Draft("term", card, of_node, of_node.get(i), (value,), PLANAR[dof])
+                )
+        if tie.terms:  # what is zero in the plane says nothing
+            deck.ties.append(tie)
+        at += 1 + 3 * count
+
+
+def _used(row: Row) -> int:
+    """Fields up to the last that is not empty."""
+    return max((i + 1 for i in range(len(row)) if row.get(i)), default=0)
+
+
+def _reference(deck: Deck, card: Card, name: str) -> Draft | None:
+    text = deck.required(card, name)
+    if not text:
+        return None
+    return Draft("node", card, _parameter_row(card, name), text, (0.0,))
+
+
+def _parameter_row(card: Card, name: str) -> Row:
+    from corota.io.deck.lexer import Row
+
+    return Row(card.at(name), card.text, [card.value(name)], [card.at(name).column])
+
+
+def rigid_body(deck: Deck, card: Card) -> None:
+    """``*RIGID BODY, NSET= or ELSET= or ANALYTICAL SURFACE=, REF NODE=[, ROT NODE=]``."""
+    deck.no_rows(card)
+    reference = _reference(deck, card, "REFNODE")
+    if card.has("ANALYTICALSURFACE") and reference is not None:
+        if not deck.required(card, "ANALYTICALSURFACE"):
+            return
+        deck.carriers[key(card.value("ANALYTICALSURFACE"))] = (card, reference)
+        _rotation_node(deck, card, reference)
+        if not card.has("NSET") and not card.has("ELSET"):
+            return
+    if card.has("NSET") == card.has("ELSET"):
+        deck.error(card, card.where, "either NSET= or ELSET= is expected")
+        return
+    name = deck.required(card, "NSET" if card.has("NSET") else "ELSET")
+    if reference is None or not name:
+        return
+    tie = TieDraft("kinematic", card, card.where, [reference], ready=True)
+    if card.has("NSET"):
+        tie.target = Draft("set", card, _parameter_row(card, "NSET"), name, (0.0,))
+    else:
+        tie.elset = name
+    _rotation_node(deck, card, reference)
+    deck.ties.append(tie)
+
+
+def _rotation_node(deck: Deck, card: Card, reference: Draft) -> None:
+    if card.has("ROTNODE"):
+        # Its dof 3 is the rotation in the plane, its dofs 1 and 2 those out of it.
+        deck.rotation_nodes[key(card.value("ROTNODE"))] = reference.target
+
+
+def coupling(deck: Deck, card: Card) -> None:
+    """``*COUPLING, REF NODE=, SURFACE=, CONSTRAINT NAME=``; its kind is the card after it."""
+    deck.no_rows(card)
+    reference = _reference(deck, card, "REFNODE")
+    surface = deck.required(card, "SURFACE")
+    if reference is not None and surface:
+        tie = TieDraft("kinematic", card, card.where, [reference], surface=surface)
+        deck.ties.append(tie)
+
+
+def kinematic(deck: Deck, card: Card) -> None:
+    """``*KINEMATIC``: first and last dof that follow the reference node; by default all."""
+    _kind(deck, card, "kinematic")
+
+
+def distributing(deck: Deck, card: Card) -> None:
+    """``*DISTRIBUTING``: first and last dof of the reference node that follow the surface."""
+    _kind(deck, card, "distributing")
+
+
+def _kind(deck: Deck, card: Card, kind: str) -> None:
+    tie = deck.ties[-1] if deck.ties else None
+    if tie is None or tie.ready or not tie.surface:
+        deck.error(card, card.where, "the card belongs to a *COUPLING, and none stands before it")
+        return
+    tie.kind, tie.ready = kind, True
+    dofs: list[int] = []
+    for row in card.rows():
+        deck.extra_fields(card, row, 2)
+        first = deck.integer(card, row, 0, "the first dof")
+        last = deck.integer(card, row, 1, "the last dof", first)
+        if first is None or last is None:
+            return
+        if not 1 <= first <= last <= 6:
+            deck.row_error(card, row, 0, "expected 1 <= first dof <= last dof <= 6")
+            return
+        dofs += [PLANAR[d] for d in range(first, last + 1) if d in PLANAR]
+    if dofs:
+        tie.dofs = tuple(sorted(set(dofs)))
+    elif list(card.rows()):
+        deck.error(card, card.where, "no dof of the plane is coupled; 1 = x, 2 = y, 6 = rotation")
+
+
+def mpc(deck: Deck, card: Card) -> None:
+    """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
+
+    ``PLANE`` holds by itself. Rows that begin with a node go on with the one before.
+    """
+    line: TieDraft | None = None
+    for row in card.rows():
+        type_ = key(row.get(0))
+        if type_ == "STRAIGHT":
+            line = TieDraft("straight", card, row.where, ready=True)
+            _on_line(line, card, row, 1)
+            deck.ties.append(line)
+            continue
+        if line is not None and type_.isdecimal():
+            _on_line(line, card, row, 0)
+            continue
+        line = None
+        if type_ == "PLANE":
+            deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
+            continue
+        if type_ not in ("BEAM", "PIN", "TIE"):
+            deck.row_error(
+                card,
+                row,
+                0,
+                f"MPC type {row.get(0)!r} is not supported",
+                "BEAM, PIN, TIE, STRAIGHT, PLANE are; or write *EQUATION, *RIGID BODY, *COUPLING",
+            )
+            continue
+        deck.extra_fields(card, row, 3)
+        if not row.get(1) or not row.get(2):
+            deck.row_error(card, row, 1, "two nodes are expected")
+            continue
+        follows = Draft("set", card, row, row.get(1), (0.0,))
+        leads = Draft("node", card, row, row.get(2), (0.0,))
+        kind = "kinematic" if type_ == "BEAM" else "same"
+        tie = TieDraft(kind, card, row.where, [leads], follows, ready=True)
+        if type_ == "PIN":
+            tie.dofs = (0, 1)
+        deck.ties.append(tie)
+
+
+def _on_line(tie: TieDraft, card: Card, row: Row, start: int) -> None:
+    """Take the nodes of a row; zeros stand for none."""
+    for i in range(start, len(row)):
+        if row.get(i) not in ("", "0"):
+            tie.terms.append(Draft("node", card, row, row.get(i), (0.0,)))
+
+
+def transform(deck: Deck, card: Card) -> None:
+    """``*TRANSFORM, NSET=, TYPE=R or C``: two points that give the axes."""
+    name = deck.required(card, "NSET")
+    type_ = deck.choice(card, "TYPE", ("R", "C"), "R")
+    rows = list(card.rows())
+    if len(rows) != 1:
+        deck.error(card, card.where, "one data line is expected: ax, ay, az, bx, by, bz")
+        return
+    row = rows[0]
+    deck.extra_fields(card, row, 6)
+    numbers = [
+        deck.real(card, row, i, text, 0.0)
+        for i, text in enumerate(("ax", "ay", "az", "bx", "by", "bz"))
+    ]
+    if None in numbers or not name:
+        return
+    ax, ay, az, bx, by, bz = (float(v or 0.0) for v in numbers)
+    tie = TieDraft("axes", card, card.where, ready=True)
+    tie.target = Draft("set", card, _parameter_row(card, "NSET"), name, (0.0,))
+    if type_ == "C":
+        if math.hypot(bx - ax, by - ay) > 1e-9 * abs(bz - az) or bz <= az:
+            deck.row_error(
+                card, row, 0, "the axis from a to b must be normal to the plane and point to +z"
+            )
+            return
+        tie.centre = (ax, ay)
+    else:
+        cross = ax * by - ay * bx
+        if math.hypot(ax, ay) == 0.0 or az != 0.0 or bz != 0.0 or cross <= 0.0:
+            deck.row_error(
+                card, row, 0, "a lies on the first axis and b left of it, both in the plane"
+            )
+            return
+        tie.angle = math.atan2(ay, ax)
+    deck.ties.append(tie)

@@ -1,0 +1,422 @@
+"""What the cards of a deck said, before names and numbers are resolved."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from corota.errors import Diagnostic, Location
+from corota.io.deck import numerals
+from corota.io.deck.lexer import Card, Row, key
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from corota.io.deck.cards.attachments import AttachedDraft
+    from corota.io.deck.cards.contact import InteractionDraft, PairDraft
+    from corota.io.deck.cards.lines import LineDraft
+    from corota.io.deck.cards.tie import TieDraft
+    from corota.mesh.data import Floats, Ints
+    from corota.model.loads import Amplitude
+    from corota.model.materials import Expansion
+    from corota.model.steps import Output, Step
+
+Number = TypeVar("Number", int, float)
+
+#: Findings kept; the rest is counted only.
+MAX_DIAGNOSTICS = 200
+
+
+@dataclass(slots=True)
+class NodeBlock:
+    """Nodes of consecutive lines: labels (n,), coordinates (n, 3), line numbers (n,)."""
+
+    labels: Ints
+    points: Floats
+    file: str
+    lines: Ints
+
+
+@dataclass(slots=True)
+class ElementBlock:
+    """Elements of one type: labels (n,), node labels (n, k), line numbers (n,)."""
+
+    card: Card
+    type: str
+    labels: Ints
+    nodes: Ints
+    file: str
+    lines: Ints
+
+
+@dataclass(slots=True)
+class Entry:
+    """Labels, or the name of another set, in a set."""
+
+    where: Location
+    labels: Ints
+    name: str = ""
+
+
+@dataclass(slots=True)
+class NamedSet:
+    """A node or element set: entries in the user's order."""
+
+    name: str
+    where: Location
+    entries: list[Entry] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class SurfaceRow:
+    """One line of a surface: element label or set, and a face such as ``S2``."""
+
+    where: Location
+    text: str
+    target: str
+    face: str
+
+
+@dataclass(slots=True)
+class Surface:
+    """A surface of element edges, of nodes, or a rigid profile.
+
+    ``profile`` has rows x0, y0, x1, y1, cx, cy, sweep in the deck's order.
+    """
+
+    name: str
+    card: Card
+    nodes: bool
+    rows: list[SurfaceRow] = field(default_factory=list)
+    profile: Floats | None = None
+    fillet: float = 0.0
+
+
+@dataclass(slots=True)
+class SectionDraft:
+    """One ``*SOLID SECTION``."""
+
+    card: Card
+    elset: str
+    material: str
+    thickness: float
+    plane: str
+    local_strain: str
+    orientation: str
+    mean_dilatation: bool = False
+    beta0: float | None = None
+
+
+@dataclass(slots=True)
+class PlasticDraft:
+    """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING`` with the places of their rows.
+
+    ``ready`` is false after an error; ``voce`` holds Q and b where the cyclic hardening is
+    given by parameters.
+    """
+
+    card: Card | None = None
+    kind: str = "ISOTROPIC"
+    ready: bool = True
+    curve: list[tuple[float, float]] = field(default_factory=list)
+    rows: list[Location] = field(default_factory=list)
+    back: list[tuple[float, float]] = field(default_factory=list)
+    cyclic_card: Card | None = None
+    cyclic: tuple[list[tuple[float, float]], list[Location]] | None = None
+    voce: tuple[float, float] | None = None
+
+
+@dataclass(slots=True)
+class MaterialDraft:
+    """One ``*MATERIAL`` with the numbers of the cards below it."""
+
+    name: str
+    card: Card
+    law: str = ""
+    constants: list[float] = field(default_factory=list)
+    law_where: Location | None = None
+    law_card: Card | None = None
+    rho: float = 0.0
+    damping: tuple[float, float] = (0.0, 0.0)
+    plastic: PlasticDraft | None = None
+    expansion: float | Expansion = 0.0
+
+
+@dataclass(slots=True)
+class Draft:
+    """One data line of a support or a load, its target not yet looked up.
+
+    ``kind`` is ``fixed``, ``force``, ``pressure``, ``surface pressure``,
+    ``surface traction``, ``gravity`` or ``centrifugal``; ``index`` the degree of freedom
+    (from 0) or the face (from 0).
+    """
+
+    kind: str
+    card: Card
+    row: Row
+    target: str
+    value: tuple[float, ...]
+    index: int = -1
+    amplitude: str = ""
+    silent: bool = False
+
+
+@dataclass(slots=True)
+class InitialDraft:
+    """A line of initial temperature or stress; ``point`` from 1, 0 for all."""
+
+    draft: Draft
+    point: int = 0
+
+
+@dataclass(slots=True)
+class StepDraft:
+    """One step as written."""
+
+    card: Card
+    nlgeom: bool
+    max_increments: int
+    ramp: bool
+    procedure: Card | None = None
+    times: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
+    direct: bool = False
+    make: type[Step] | None = None
+    options: dict[str, Any] = field(default_factory=dict)
+    supports: list[Draft] = field(default_factory=list)
+    loads: list[Draft] = field(default_factory=list)
+    new_supports: bool = False
+    new_loads: bool = False
+    outputs: list[Output] = field(default_factory=list)
+    frequency: int = 1
+
+
+@dataclass(slots=True)
+class Instance:
+    """A part placed in the plane: shift, then turn by ``angle`` about ``centre``."""
+
+    name: str
+    part: str
+    card: Card
+    shift: tuple[float, float] = (0.0, 0.0)
+    angle: float = 0.0
+    centre: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(slots=True)
+class Scope:
+    """One name space: the flat model, a part, or an instance's own data."""
+
+    name: str = ""
+    nodes: list[NodeBlock] = field(default_factory=list)
+    elements: list[ElementBlock] = field(default_factory=list)
+    nsets: dict[str, NamedSet] = field(default_factory=dict)
+    elsets: dict[str, NamedSet] = field(default_factory=dict)
+    surfaces: dict[str, Surface] = field(default_factory=dict)
+    sections: list[SectionDraft] = field(default_factory=list)
+    lines: list[LineDraft] = field(default_factory=list)
+    orientations: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
+class Deck:
+    """Everything said so far, and every fault found."""
+
+    lenient: bool = False
+    element_map: dict[str, str] = field(default_factory=dict)
+    root: Scope = field(default_factory=Scope)
+    parts: dict[str, Scope] = field(default_factory=dict)
+    instances: dict[str, Instance] = field(default_factory=dict)
+    materials: dict[str, MaterialDraft] = field(default_factory=dict)
+    amplitudes: dict[str, Amplitude] = field(default_factory=dict)
+    time_points: dict[str, Floats] = field(default_factory=dict)
+    supports: list[Draft] = field(default_factory=list)
+    steps: list[StepDraft] = field(default_factory=list)
+    heading: list[str] = field(default_factory=list)
+    damping: tuple[float, float] = (0.0, 0.0)
+    controls: dict[str, float] = field(default_factory=dict)
+    velocities: list[Draft] = field(default_factory=list)
+    initial: list[InitialDraft] = field(default_factory=list)
+    ties: list[TieDraft] = field(default_factory=list)
+    attached: list[AttachedDraft] = field(default_factory=list)
+    rotation_nodes: dict[str, str] = field(default_factory=dict)
+    pairs: list[PairDraft] = field(default_factory=list)
+    interactions: dict[str, InteractionDraft] = field(default_factory=dict)
+    carriers: dict[str, tuple[Card, Draft]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    hidden: int = 0
+    scope: Scope = field(default_factory=Scope)
+    step: StepDraft | None = None
+    material: MaterialDraft | None = None
+    instance: Instance | None = None
+    interaction: InteractionDraft | None = None
+    in_assembly: bool = False
+
+    def __post_init__(self) -> None:
+        self.scope = self.root
+
+    @property
+    def n_errors(self) -> int:
+        """Number of errors found."""
+        return sum(d.severity == "error" for d in self.diagnostics)
+
+    def error(
+        self,
+        card: Card | None,
+        where: Location | None,
+        message: str,
+        *,
+        text: str | None = None,
+        hint: str = "",
+    ) -> None:
+        """Record an error; reading goes on."""
+        self._record("error", card, where, message, text, hint)
+
+    def warning(
+        self,
+        card: Card | None,
+        where: Location | None,
+        message: str,
+        *,
+        text: str | None = None,
+        hint: str = "",
+    ) -> None:
+        """Record a warning."""
+        self._record("warning", card, where, message, text, hint)
+
+    def _record(
+        self,
+        severity: str,
+        card: Card | None,
+        where: Location | None,
+        message: str,
+        text: str | None,
+        hint: str,
+    ) -> None:
+        if severity == "error" and len(self.diagnostics) >= MAX_DIAGNOSTICS:
+            self.hidden += 1
+            return
+        if text is None:
+            text = card.text if card and where and where.line == card.where.line else ""
+        if len(text) > 160:
+            text = text[:157] + "..." if not where or where.column <= 157 else ""
+        name = numerals.clipped(card.spelled, 60) if card else ""
+        message, hint = numerals.clipped(message), numerals.clipped(hint)
+        self.diagnostics.append(Diagnostic(severity, message, where, name, text, hint))
+
+    def row_error(self, card: Card, row: Row, index: int, message: str, hint: str = "") -> None:
+        """Record an error at a field of a data line."""
+        self.error(card, row.at(index), message, text=row.text, hint=hint)
+
+    def note(self, text: str) -> None:
+        """Tell what was ignored, repaired or assumed, once."""
+        text = numerals.clipped(text)
+        if text not in self.notes:
+            self.notes.append(text)
+
+    def real(
+        self, card: Card, row: Row, index: int, what: str, default: float | None = None
+    ) -> float | None:
+        """Value of a field; an empty one is the default; ``None`` after an error."""
+        return self._field(card, row, index, what, default, numerals.real)
+
+    def integer(
+        self, card: Card, row: Row, index: int, what: str, default: int | None = None
+    ) -> int | None:
+        """Value of a whole-number field; as :meth:`real`."""
+        return self._field(card, row, index, what, default, numerals.integer)
+
+    def _field(
+        self,
+        card: Card,
+        row: Row,
+        index: int,
+        what: str,
+        default: Number | None,
+        read: Callable[[str], Number],
+    ) -> Number | None:
+        text = row.get(index)
+        if not text and default is not None:
+            return default
+        if not text:
+            self.row_error(card, row, index, f"{what} is missing")
+            return None
+        try:
+            return read(text)
+        except ValueError as error:
+            self.row_error(card, row, index, f"{what}: {error}")
+            return None
+
+    def parameter_number(self, card: Card, name: str, default: float, least: float) -> float:
+        """Value of a numeric parameter, at least ``least``."""
+        return self._parameter(card, name, default, least, numerals.real)
+
+    def parameter_integer(self, card: Card, name: str, default: int, least: int) -> int:
+        """Value of a whole-number parameter, at least ``least``."""
+        return self._parameter(card, name, default, least, numerals.integer)
+
+    def _parameter(
+        self, card: Card, name: str, default: Number, least: Number, read: Callable[[str], Number]
+    ) -> Number:
+        if not card.has(name):
+            return default
+        try:
+            value = read(card.value(name))
+            if value < least:
+                raise ValueError(f"{value:g} is less than {least:g}")
+        except ValueError as error:
+            self.error(card, card.at(name), f"{card.parameters[name].name}: {error}")
+            return default
+        return value
+
+    def choice(self, card: Card, name: str, choices: Iterable[str], default: str) -> str:
+        """Value of a parameter out of a list (compared without case and blanks)."""
+        if not card.has(name):
+            return default
+        value, allowed = key(card.value(name)), list(choices)
+        if value in allowed:
+            return value
+        self.error(
+            card,
+            card.at(name),
+            f"{card.parameters[name].name}={card.value(name)} is not known; "
+            f"expected {', '.join(allowed)}",
+            hint=nearest(value, allowed),
+        )
+        return default
+
+    def required(self, card: Card, name: str, shown: str = "") -> str:
+        """Value of a parameter that must be there; empty after an error."""
+        value = card.value(name)
+        if not value:
+            self.error(card, card.where, f"{shown or name}= is missing")
+        return value
+
+    def no_rows(self, card: Card) -> None:
+        """Refuse data lines under a card that takes none."""
+        for row in card.rows():
+            self.row_error(card, row, 0, "no data line is expected here")
+            return
+
+    def extra_fields(self, card: Card, row: Row, most: int) -> None:
+        """Refuse non-empty fields after the last one that the card takes."""
+        for index in range(most, len(row)):
+            if row.fields[index]:
+                self.row_error(card, row, index, f"too many fields: at most {most} are expected")
+                return
+
+
+def nearest(word: str, words: Iterable[str], cutoff: float = 0.6) -> str:
+    """Question that names the nearest word, or an empty text."""
+    candidates = {key(w): w for w in words}
+    found = difflib.get_close_matches(key(word)[:80], list(candidates), 1, cutoff)
+    return f"did you mean {candidates[found[0]]}?" if found else ""
+
+
+def int_array(values: Iterable[int]) -> Ints:
+    """Array of whole numbers."""
+    return np.fromiter(values, dtype=np.int64)

@@ -1,0 +1,382 @@
+"""The table of keywords: one function and one entry each."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from corota.io.deck.cards import assembly as assembly
+from corota.io.deck.cards import attachments as attachments
+from corota.io.deck.cards import contact as contact
+from corota.io.deck.cards import dynamic as dynamic
+from corota.io.deck.cards import lines as lines
+from corota.io.deck.cards import material as material
+from corota.io.deck.cards import mesh as mesh
+from corota.io.deck.cards import output as output
+from corota.io.deck.cards import path as path
+from corota.io.deck.cards import plastic as plastic
+from corota.io.deck.cards import step as step
+from corota.io.deck.cards import thermal as thermal
+from corota.io.deck.cards import tie as tie
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card
+
+
+@dataclass(frozen=True, slots=True)
+class Keyword:
+    """What a keyword does, and the parameters that it knows.
+
+    Parameters
+    ----------
+    function : callable
+        Reads the card into the deck.
+    parameters : str
+        Names that are used, blank-separated, themselves without blanks.
+    ignored : str
+        Names that are accepted and have no effect here; each is noted.
+    place : {"model", "step", "any"}
+        Where the card may stand.
+    """
+
+    function: Callable[[Deck, Card], None]
+    parameters: str = ""
+    ignored: str = ""
+    place: str = "any"
+
+
+def heading(deck: Deck, card: Card) -> None:
+    """``*HEADING``: free text."""
+    deck.heading += [row.text.strip() for row in card.rows()]
+
+
+_PRINT = "NSET ELSET TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
+_FILE = "NSET ELSET FREQUENCY FREQUENCYF TIMEPOINTS"
+_FILE_IGNORED = (
+    "GLOBAL OUTPUT LASTITERATIONS CONTACTELEMENTS OUTPUTALL POSITION DIRECTIONS SECTIONFORCES "
+    "VARIABLE SUMMARY"
+)
+
+KEYWORDS: dict[str, Keyword] = {
+    "HEADING": Keyword(heading, ignored="UNITS"),
+    "NODE": Keyword(mesh.node, "NSET", place="model"),
+    "ELEMENT": Keyword(mesh.element, "TYPE ELSET", place="model"),
+    "NSET": Keyword(mesh.nset, "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"),
+    "ELSET": Keyword(mesh.elset, "ELSET GENERATE INSTANCE INTERNAL", place="model"),
+    "SURFACE": Keyword(mesh.surface, "NAME TYPE INTERNAL FILLETRADIUS", place="model"),
+    "MATERIAL": Keyword(material.material, "NAME", place="model"),
+    "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
+    "DENSITY": Keyword(material.density, place="model"),
+    "EXPANSION": Keyword(thermal.expansion, "TYPE ZERO", place="model"),
+    "PLASTIC": Keyword(
+        plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"
+    ),
+    "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
+    "SOLIDSECTION": Keyword(
+        material.solid_section, "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0",
+        "CONTROLS OFFSET", place="model",
+    ),
+    "SHELLSECTION": Keyword(
+        material.shell_section, "ELSET MATERIAL ORIENTATION LOCALSTRAIN", "OFFSET", place="model"
+    ),
+    "BEAMSECTION": Keyword(
+        lines.beam_section, "ELSET MATERIAL SECTION OFFSET1 OFFSET2", place="model"
+    ),
+    "BEAMGENERALSECTION": Keyword(
+        lines.beam_general_section, "ELSET SECTION DENSITY OFFSET1 OFFSET2", place="model"
+    ),
+    "SPRING": Keyword(lines.spring, "ELSET NONLINEAR", place="model"),
+    "ORIENTATION": Keyword(material.orientation, "NAME SYSTEM", "DEFINITION", place="model"),
+    "AMPLITUDE": Keyword(step.amplitude, "NAME TIME SHIFTX SHIFTY DEFINITION VALUE"),
+    "TIMEPOINTS": Keyword(step.time_points, "NAME TIME GENERATE"),
+    "STEP": Keyword(step.step, "NLGEOM INC AMPLITUDE PERTURBATION", "NAME UNSYMM"),
+    "ENDSTEP": Keyword(step.end_step),
+    "STATIC": Keyword(path.static, "DIRECT RIKS", "SOLVER TIMERESET"),
+    "BUCKLE": Keyword(path.buckle, "", "SOLVER EIGENSOLVER"),
+    "CONTROLS": Keyword(path.controls, "PARAMETERS RESET", "ANALYSIS TYPE"),
+    "DYNAMIC": Keyword(
+        dynamic.dynamic, "ALPHA DIRECT EXPLICIT", "SOLVER RELATIVETOABSOLUTE APPLICATION NOHAF"
+    ),
+    "FREQUENCY": Keyword(dynamic.frequency, "", "SOLVER STORAGE EIGENSOLVER NORMALIZATION"),
+    "MODALDYNAMIC": Keyword(dynamic.modal_dynamic, "", "SOLVER DIRECT"),
+    "STEADYSTATEDYNAMICS": Keyword(dynamic.steady_state, "", "SOLVER"),
+    "MODALDAMPING": Keyword(dynamic.modal_damping, "RAYLEIGH", "MODAL"),
+    "DAMPING": Keyword(dynamic.damping, "ALPHA BETA", place="model"),
+    "MASS": Keyword(attachments.mass, "ELSET", place="model"),
+    "DASHPOT": Keyword(attachments.dashpot, "ELSET", place="model"),
+    "INITIALCONDITIONS": Keyword(dynamic.initial_conditions, "TYPE", place="model"),
+    "EQUATION": Keyword(tie.equation, place="model"),
+    "MPC": Keyword(tie.mpc, place="model"),
+    "RIGIDBODY": Keyword(
+        tie.rigid_body, "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE", place="model"
+    ),
+    "COUPLING": Keyword(tie.coupling, "REFNODE SURFACE", "CONSTRAINTNAME", place="model"),
+    "KINEMATIC": Keyword(tie.kinematic, place="model"),
+    "DISTRIBUTING": Keyword(tie.distributing, place="model"),
+    "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
+    "CONTACTPAIR": Keyword(
+        contact.contact_pair, "INTERACTION TYPE ADJUST SMALLSLIDING",
+        "EXTENSIONZONE HCRIT SMOOTH TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS", place="model",
+    ),
+    "SURFACEINTERACTION": Keyword(
+        contact.surface_interaction, "NAME", "DEPVAR PROPERTIES UNSYMM", place="model"
+    ),
+    "SURFACEBEHAVIOR": Keyword(
+        contact.surface_behavior, "PRESSURE-OVERCLOSURE", "AUGMENTEDLAGRANGE DIRECT PENALTY",
+        place="model",
+    ),
+    "FRICTION": Keyword(contact.friction, "", "SLIPTOLERANCE LAGRANGE ELASTICSLIP", place="model"),
+    "CLEARANCE": Keyword(contact.clearance, "SLAVE MASTER VALUE", place="model"),
+    "TIE": Keyword(contact.tie, "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION", place="model"),
+    "CONTACTCONTROLS": Keyword(
+        contact.contact_controls, "STABILIZE SLAVE MASTER",
+        "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
+        "LAGRANGEMULTIPLIER",
+    ),
+    "CONTACTINTERFERENCE": Keyword(contact.contact_interference, "SHRINK", "TYPE OP"),
+    "CONTACTPRINT": Keyword(
+        output.contact_print, "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
+        "SUMMARY NSET",
+    ),
+    "CONTACTFILE": Keyword(
+        output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER", "NSET"
+    ),
+    "CONTACTOUTPUT": Keyword(
+        output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
+        "NSET VARIABLE CPSET SURFACE",
+    ),
+    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE", "LOADCASE"),
+    "CLOAD": Keyword(step.cload, "OP AMPLITUDE", "LOADCASE"),
+    "DLOAD": Keyword(step.dload, "OP AMPLITUDE", "LOADCASE"),
+    "DSLOAD": Keyword(step.dsload, "OP AMPLITUDE FOLLOWER", "LOADCASE"),
+    "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
+    "NODEPRINT": Keyword(output.node_print, _PRINT, "GLOBAL SUMMARY"),
+    "ELPRINT": Keyword(output.el_print, _PRINT, "GLOBAL POSITION SUMMARY"),
+    "NODEFILE": Keyword(output.node_file, _FILE, _FILE_IGNORED),
+    "NODEOUTPUT": Keyword(output.node_file, _FILE, _FILE_IGNORED),
+    "ELFILE": Keyword(output.el_file, _FILE, _FILE_IGNORED),
+    "ELEMENTOUTPUT": Keyword(output.el_file, _FILE, _FILE_IGNORED),
+    "OUTPUT": Keyword(
+        output.output, "FREQUENCY FREQUENCYF VARIABLE",
+        "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS",
+    ),
+    "PART": Keyword(assembly.part, "NAME", place="model"),
+    "ENDPART": Keyword(assembly.end_part, place="model"),
+    "ASSEMBLY": Keyword(assembly.assembly, "NAME", place="model"),
+    "ENDASSEMBLY": Keyword(assembly.end_assembly, place="model"),
+    "INSTANCE": Keyword(assembly.instance, "NAME PART", place="model"),
+    "ENDINSTANCE": Keyword(assembly.end_instance, place="model"),
+}  # fmt: skip
+
+#: Cards without effect here; each is listed in ``Model.notes``.
+IGNORED: dict[str, str] = {
+    "PREPRINT": "it controls the echo of the input",
+    "RESTART": "restart files are not written by this version",
+    "MONITOR": "progress shows every increment",
+    "ENERGYPRINT": "energies are in the history",
+    "ENERGYOUTPUT": "energies are in the history",
+    "ENERGYFILE": "energies are in the history",
+    "SECTIONCONTROLS": "no hourglass control is needed",
+    "NOANALYSIS": "use the command check",
+    "PRINT": "it controls the message file",
+    "FILEFORMAT": "it controls the result file of another program",
+    "USERSUBROUTINE": "no user subroutine is called",
+}
+
+_CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
+_CHANGE = "pairs and what happens between their surfaces stay over the steps"
+_MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
+_HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
+_PLASTIC = "the material laws are *ELASTIC and *PLASTIC; use these"
+_PROCEDURE = "this procedure is not part of this version"
+_LINE = "only planar solids, trusses, beams and springs are part of this version"
+
+#: Cards that change the answer and are refused by name.
+UNSUPPORTED: dict[str, str] = {
+    **dict.fromkeys(
+        (
+            "CONTACT", "CONTACTINCLUSIONS", "CONTACTEXCLUSIONS", "CONTACTPROPERTYASSIGNMENT",
+            "CONTACTINITIALIZATIONDATA", "CONTACTINITIALIZATIONASSIGNMENT", "GAP",
+        ),
+        _CONTACT,
+    ),
+    **dict.fromkeys(
+        ("CHANGEFRICTION", "CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR", "MODELCHANGE"), _CHANGE
+    ),
+    "CONTACTDAMPING": "contact has no damping of its own; damp the bodies by *DAMPING",
+    "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
+    "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
+    **dict.fromkeys(
+        (
+            "DISTRIBUTINGCOUPLING", "EMBEDDEDELEMENT", "CYCLICSYMMETRYMODEL",
+        ),
+        _MPC,
+    ),
+    **dict.fromkeys(
+        (
+            "CONDUCTIVITY", "SPECIFICHEAT", "HEATTRANSFER", "CFLUX",
+            "DFLUX", "FILM", "RADIATE", "COUPLEDTEMPERATURE-DISPLACEMENT", "PHYSICALCONSTANTS",
+            "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
+        ),
+        _HEAT,
+    ),
+    **dict.fromkeys(
+        (
+            "HYPERELASTIC", "HYPERFOAM", "CREEP", "RATEDEPENDENT",
+            "DEPVAR", "USERMATERIAL", "DEFORMATIONPLASTICITY", "MOHRCOULOMB", "CHANGEPLASTIC",
+            "VISCOELASTIC", "DAMAGEINITIATION",
+        ),
+        _PLASTIC,
+    ),
+    **dict.fromkeys(
+        (
+            "VISCO", "COMPLEXFREQUENCY", "GREEN", "SENSITIVITY", "CRACKPROPAGATION",
+        ),
+        _PROCEDURE,
+    ),
+    **dict.fromkeys(
+        (
+            "MEMBRANESECTION", "FLUIDSECTION", "USERELEMENT", "USERSECTION",
+            "ROTARYINERTIA", "TRUSSSECTION",
+        ),
+        _LINE,
+    ),
+    "NODALTHICKNESS": "give the thickness by *SOLID SECTION",
+    "SUBMODEL": "submodels are not part of this version",
+    "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
+    "SECTIONPRINT": "section forces are not part of this version; print RF on a node set",
+    "CHANGESOLIDSECTION": "sections cannot change between steps",
+    "CHANGEMATERIAL": "materials cannot change between steps",
+    "DISTRIBUTION": "values given by element are not part of this version",
+    "NCOPY": "give the nodes by *NODE",
+    "NGEN": "give the nodes by *NODE",
+    "NFILL": "give the nodes by *NODE",
+    "ELGEN": "give the elements by *ELEMENT",
+    "ELCOPY": "give the elements by *ELEMENT",
+    "SYSTEM": "give the coordinates in global axes",
+    "NORMAL": "planar elements have no normals of their own",
+    "PARAMETER": "write the numbers themselves",
+    "VALUESATINFINITY": "it belongs to fluid dynamics",
+}  # fmt: skip
+
+#: Parameters that change the answer and are refused by name.
+REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
+    ("STATIC", "STABILIZE"): "stabilisation changes the answer and is not offered",
+    ("STATIC", "TOTALTIMEATSTART"): "the total time starts at zero",
+    ("BOUNDARY", "FIXED"): "prescribe the value instead",
+    ("BOUNDARY", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("BOUNDARY", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("BOUNDARY", "SUBMODEL"): "submodels are not part of this version",
+    ("CLOAD", "FOLLOWER"): "nodal forces keep their direction",
+    ("CLOAD", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("CLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("CLOAD", "SUBMODEL"): "submodels are not part of this version",
+    ("TEMPERATURE", "FILE"): "give the temperatures on data lines",
+    ("TEMPERATURE", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("TEMPERATURE", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("TEMPERATURE", "SUBMODEL"): "submodels are not part of this version",
+    ("EXPANSION", "USER"): "no user subroutine is called; give a table",
+    ("INITIALCONDITIONS", "USER"): "no user subroutine is called; write the values",
+    ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
+    ("AMPLITUDE", "SMOOTH"): "give more points in the table",
+    ("NODE", "SYSTEM"): "give the coordinates in global axes",
+    ("SOLIDSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
+    ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
+    ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
+    ("SHELLSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
+    ("SPRING", "ORIENTATION"): "give the springs global directions",
+    ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
+    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces that touch may part; join them by *TIE",
+    ("FRICTION", "ROUGH"): "give a large friction coefficient",
+    ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
+    ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
+    ("FRICTION", "TAUMAX"): "the shear traction has no bound of its own",
+    ("FRICTION", "USER"): "no user subroutine is called",
+    ("CLEARANCE", "TABULAR"): "give one VALUE",
+    ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
+    ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
+    ("ELASTIC", "DEPENDENCIES"): "constants that depend on fields are not part of this version",
+}
+
+
+def interpret(deck: Deck, card: Card) -> None:
+    """Read one card into the deck."""
+    entry = KEYWORDS.get(card.keyword)
+    if entry is None:
+        _unknown(deck, card)
+        return
+    known = set(entry.parameters.split())
+    ignored = set(entry.ignored.split())
+    for name, parameter in card.parameters.items():
+        if name in known:
+            continue
+        if name in ignored:
+            deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
+            continue
+        place = type(card.where)(card.where.file, card.where.line, parameter.column)
+        reason = REFUSED_PARAMETERS.get((card.keyword, name))
+        if reason:
+            deck.error(card, place, f"{parameter.name} is not supported", hint=reason)
+        elif deck.lenient:
+            deck.warning(card, place, f"unknown parameter {parameter.name} is ignored")
+        else:
+            hint = nearest(name, known | ignored)
+            deck.error(card, place, f"unknown parameter {parameter.name}", hint=hint)
+    if entry.place == "model" and deck.step is not None:
+        deck.error(
+            card,
+            card.where,
+            f"{card.spelled} inside a step",
+            hint="model data stand before the first *STEP",
+        )
+        return
+    if deck.instance is not None and card.keyword != "ENDINSTANCE":
+        deck.error(
+            card,
+            card.where,
+            f"{card.spelled} inside an instance",
+            hint="put the data into the part; sections and sets stand there too",
+        )
+        return
+    entry.function(deck, card)
+
+
+def _unknown(deck: Deck, card: Card) -> None:
+    if card.keyword in IGNORED:
+        deck.note(f"{card.where}: {card.spelled} is ignored: {IGNORED[card.keyword]}")
+        return
+    if card.keyword in UNSUPPORTED:
+        deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
+        return
+    hint = nearest(card.keyword, [*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"])
+    if deck.lenient:
+        deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
+    else:
+        deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
+
+
+def _pretty(hint: str) -> str:
+    """Hint with the usual spelling: ``*END STEP`` for ``ENDSTEP``."""
+    for plain in (*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"):
+        if hint == f"did you mean {plain}?":
+            return f"did you mean *{SPELLED.get(plain, plain)}?"
+    return hint
+
+
+SPELLED = {
+    key(name): name
+    for name in (
+        "SOLID SECTION", "SHELL SECTION", "TIME POINTS", "END STEP", "NODE PRINT", "EL PRINT",
+        "NODE FILE", "NODE OUTPUT", "EL FILE", "ELEMENT OUTPUT", "END PART", "END ASSEMBLY",
+        "END INSTANCE", "CONTACT PAIR", "BEAM SECTION", "RIGID BODY", "SURFACE INTERACTION",
+        "SURFACE BEHAVIOR", "CONTACT PRINT", "CONTACT FILE", "CONTACT OUTPUT", "CONTACT CONTROLS",
+        "CONTACT INTERFERENCE", "INITIAL CONDITIONS", "SECTION PRINT", "NODAL THICKNESS",
+    )
+}  # fmt: skip

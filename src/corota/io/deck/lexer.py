@@ -1,0 +1,401 @@
+"""Cards of a deck with file, line and column; includes resolved, nothing interpreted."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import os
+import re
+import stat
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from corota import _core
+from corota.errors import Diagnostic, FileError, Location
+from corota.io.deck import numerals
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: Files inside files.
+MAX_DEPTH = 16
+#: Bytes of a deck with everything that it includes.
+MAX_BYTES = 8 << 30
+#: Bytes of memory that a deck or mesh takes for each of its own (measured on a million nodes).
+READ = 8.0
+
+_QUOTED = re.compile(r'^"(.*)"$')
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Bytes of one file and the name shown in messages."""
+
+    name: str
+    data: bytes
+
+    def line(self, start: int) -> tuple[str, int]:
+        """Text of the line that starts at a byte, and the byte after it."""
+        end = self.data.find(b"\n", start)
+        stop = len(self.data) if end < 0 else end
+        text = decode(self.data[start:stop]).rstrip("\r")
+        return text, len(self.data) if end < 0 else end + 1
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Consecutive data lines of one file: bytes ``start:stop``, first line number."""
+
+    source: Source
+    start: int
+    stop: int
+    line: int
+
+    def data(self) -> bytes:
+        """Bytes of the lines."""
+        return self.source.data[self.start : self.stop]
+
+
+@dataclass(slots=True)
+class Row:
+    """One data line as fields with their columns (from 1)."""
+
+    where: Location
+    text: str
+    fields: list[str]
+    columns: list[int]
+
+    def __len__(self) -> int:
+        return len(self.fields)
+
+    def at(self, index: int) -> Location:
+        """Place of a field, or the end of the line."""
+        end = len(self.text.rstrip()) + 1
+        column = self.columns[index] if index < len(self.columns) else end
+        return Location(self.where.file, self.where.line, column)
+
+    def get(self, index: int) -> str:
+        """Text of a field, empty if it is not there."""
+        return self.fields[index] if index < len(self.fields) else ""
+
+
+@dataclass(slots=True)
+class Parameter:
+    """One parameter of a keyword line; ``value`` is empty if none was given."""
+
+    name: str
+    value: str
+    column: int
+    value_column: int
+
+
+@dataclass(slots=True)
+class Card:
+    """One keyword line with its data lines.
+
+    Attributes
+    ----------
+    keyword : str
+        Upper case without blanks, without the star: ``SOLIDSECTION``.
+    spelled : str
+        As in the file: ``*Solid Section``.
+    parameters : dict of str to Parameter
+        By name, upper case without blanks.
+    """
+
+    keyword: str
+    spelled: str
+    parameters: dict[str, Parameter]
+    where: Location
+    text: str
+    chunks: list[Chunk] = field(default_factory=list)
+
+    def rows(self) -> Iterator[Row]:
+        """Iterate over the data lines, without comments and empty ones."""
+        for chunk in self.chunks:
+            start, number = chunk.start, chunk.line
+            while start < chunk.stop:
+                text, start = chunk.source.line(start)
+                stripped = text.strip()
+                if stripped and not stripped.startswith("**"):
+                    yield split_row(text, Location(chunk.source.name, number))
+                number += 1
+
+    def value(self, name: str) -> str:
+        """Value of a parameter, empty if it is absent."""
+        found = self.parameters.get(name)
+        return found.value if found else ""
+
+    def has(self, name: str) -> bool:
+        """Whether a parameter is given."""
+        return name in self.parameters
+
+    def at(self, name: str) -> Location:
+        """Place of a parameter's value, or of the card."""
+        found = self.parameters.get(name)
+        if found is None:
+            return self.where
+        column = found.value_column or found.column
+        return Location(self.where.file, self.where.line, column)
+
+
+def decode(data: bytes) -> str:
+    """Text of bytes: UTF-8, else Latin-1 (which takes every byte)."""
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def key(name: str) -> str:
+    """Form in which names are compared: upper case, no blanks, no quotes."""
+    match = _QUOTED.match(name.strip())
+    return re.sub(r"\s+", "", match.group(1) if match else name).upper()
+
+
+def split_row(text: str, where: Location) -> Row:
+    """Cut a data line at its commas; one trailing comma adds no field."""
+    fields, columns, column = [], [], 1
+    for part in text.split(","):
+        body = part.strip()
+        fields.append(body)
+        columns.append(column + len(part) - len(part.lstrip()) if body else column)
+        column += len(part) + 1
+    if len(fields) > 1 and not fields[-1]:
+        fields.pop()
+        columns.pop()
+    return Row(where, text, fields, columns)
+
+
+class Lexer:
+    """Reads a deck and what it includes into cards.
+
+    Parameters
+    ----------
+    path : Path
+        The deck.
+    allow_include : bool
+        Whether includes may leave the deck's folder.
+
+    Attributes
+    ----------
+    cards : list of Card
+    diagnostics : list of Diagnostic
+    """
+
+    def __init__(self, path: Path, allow_include: bool = False) -> None:
+        self.path = path
+        self.allow_include = allow_include
+        self.cards: list[Card] = []
+        self.diagnostics: list[Diagnostic] = []
+        self._root = path.resolve().parent
+        self._bytes = 0
+
+    def read(self) -> list[Card]:
+        """Read everything.
+
+        Raises
+        ------
+        FileError
+            If the deck itself cannot be read.
+        """
+        try:
+            data = self._load(self.path)
+        except (OSError, ValueError) as error:
+            raise FileError(f"{self.path}: {_why(error)}") from error
+        self.scan(Source(str(self.path), data), [self.path.resolve()])
+        return self.cards
+
+    def scan(self, source: Source, stack: list[Path]) -> None:
+        """Cut one file into cards; lines before its first card continue the last one."""
+        data = source.data
+        if b"\0" in data:
+            number = data.count(b"\n", 0, data.index(b"\0")) + 1
+            self._error(Location(source.name, number), "the file is binary, not a text deck")
+            return
+        start, number = 0, 1
+        while start < len(data):
+            stop = _next_keyword(data, start)
+            if stop > start:
+                self._data(Chunk(source, start, stop, number))
+                number += data.count(b"\n", start, stop)
+            if stop == len(data):
+                return
+            start, number = self._keyword(source, stop, number, stack)
+
+    def _data(self, chunk: Chunk) -> None:
+        if self.cards:
+            self.cards[-1].chunks.append(chunk)
+            return
+        lost = Card("", "", {}, Location(chunk.source.name, chunk.line), "", [chunk])
+        for row in lost.rows():
+            self._error(
+                row.where,
+                "a data line before the first keyword",
+                text=row.text,
+                hint="a deck starts with a keyword such as *NODE",
+            )
+            return
+
+    def _keyword(
+        self, source: Source, start: int, number: int, stack: list[Path]
+    ) -> tuple[int, int]:
+        text, after = source.line(start)
+        where = Location(source.name, number)
+        number += 1
+        while text.rstrip().endswith(",") and after < len(source.data):
+            more, next_after = source.line(after)
+            first = more.split(",")[0].strip()
+            if not first or first.startswith("*") or not _continues(first):
+                break
+            text, after, number = text.rstrip() + more, next_after, number + 1
+        card = self._card(text, where)
+        if card.keyword == "INCLUDE":
+            self._include(card, stack)
+        else:
+            self.cards.append(card)
+        return after, number
+
+    def _card(self, text: str, where: Location) -> Card:
+        column = len(text) - len(text.lstrip()) + 1
+        where = Location(where.file, where.line, column)
+        parts = _split_keyword(text)
+        spelled = parts[0].strip()
+        parameters: dict[str, Parameter] = {}
+        at = len(parts[0]) + 2
+        card = Card(key(spelled)[1:], spelled, parameters, where, text)
+        for part in parts[1:]:
+            name, equals, value = part.partition("=")
+            place = at + len(part) - len(part.lstrip())
+            value_at = at + len(name) + 1 + len(value) - len(value.lstrip()) if equals else 0
+            at += len(part) + 1
+            if not name.strip():
+                if equals:
+                    self._error(
+                        Location(where.file, where.line, place),
+                        "a parameter without a name",
+                        card,
+                    )
+                continue
+            match = _QUOTED.match(value.strip())
+            found = Parameter(
+                name.strip(), match.group(1) if match else value.strip(), place, value_at
+            )
+            if key(name) in parameters:
+                self._error(
+                    Location(where.file, where.line, place),
+                    f"parameter {name.strip()} is given twice",
+                    card,
+                )
+            parameters[key(name)] = found
+        return card
+
+    def _include(self, card: Card, stack: list[Path]) -> None:
+        name = card.value("INPUT")
+        for parameter in card.parameters.values():
+            if key(parameter.name) != "INPUT":
+                self._error(
+                    Location(card.where.file, card.where.line, parameter.column),
+                    f"unknown parameter {parameter.name}",
+                    card,
+                    hint="*INCLUDE takes INPUT=file",
+                )
+        if not name:
+            self._error(card.where, "INPUT=file is missing", card)
+            return
+        where = card.at("INPUT")
+        path = Path(os.path.normpath(stack[-1].parent / name))
+        if len(stack) > MAX_DEPTH:
+            self._error(where, f"files are included more than {MAX_DEPTH} deep", card)
+            return
+        try:
+            target = path.resolve()
+            if not self.allow_include and not target.is_relative_to(self._root):
+                self._error(
+                    where,
+                    f"{numerals.shown(name)} is outside the folder of the deck",
+                    card,
+                    hint="allow it with --allow-include (Python: allow_include=True)",
+                )
+                return
+            if target in stack:
+                names = " -> ".join(p.name for p in [*stack[stack.index(target) :], target])
+                self._error(where, f"the file includes itself: {names}", card)
+                return
+            data = self._load(target)
+        except (OSError, ValueError, RuntimeError) as error:
+            self._error(where, f"{numerals.shown(name)} cannot be read: {_why(error)}", card)
+            return
+        shown = os.path.join(os.path.dirname(card.where.file), name)
+        self.scan(Source(shown, data), [*stack, target])
+
+    def _load(self, path: Path) -> bytes:
+        status = path.stat()
+        if stat.S_ISDIR(status.st_mode):
+            raise ValueError("it is a folder")
+        if not stat.S_ISREG(status.st_mode):
+            raise ValueError("it is not a regular file")
+        self._bytes += status.st_size
+        if self._bytes > MAX_BYTES:
+            raise ValueError(f"the deck and its files exceed {MAX_BYTES >> 30} GB")
+        _core.require_memory(READ * status.st_size, f"reading {path.name}")
+        with open(path, "rb") as file:
+            # Python reserves what may be read: no more than is there.
+            data = file.read(status.st_size)
+        data = data.removeprefix(b"\xef\xbb\xbf")
+        if b"\n" not in data:
+            data = data.replace(b"\r", b"\n")
+        return data if data.endswith(b"\n") or not data else data + b"\n"
+
+    def _error(
+        self,
+        where: Location,
+        message: str,
+        card: Card | None = None,
+        *,
+        text: str = "",
+        hint: str = "",
+    ) -> None:
+        keyword = numerals.clipped(card.spelled, 60) if card else ""
+        line = card.text if card else text
+        line = line if len(line) <= 160 else ""
+        message = numerals.clipped(message)
+        self.diagnostics.append(Diagnostic("error", message, where, keyword, line, hint))
+
+
+def _next_keyword(data: bytes, start: int) -> int:
+    """First byte of the next keyword line, from the first byte of a line on."""
+    while True:
+        star = data.find(b"*", start)
+        if star < 0:
+            return len(data)
+        line = max(data.rfind(b"\n", start, star) + 1, start)
+        if data[star + 1 : star + 2] != b"*" and not data[line:star].strip(b" \t"):
+            return line
+        end = data.find(b"\n", star)
+        if end < 0:
+            return len(data)
+        start = end + 1
+
+
+def _split_keyword(text: str) -> list[str]:
+    """Cut a keyword line at commas outside quotes."""
+    parts, quoted, start = [], False, 0
+    for at, character in enumerate(text):
+        if character == '"':
+            quoted = not quoted
+        elif character == "," and not quoted:
+            parts.append(text[start:at])
+            start = at + 1
+    return [*parts, text[start:]]
+
+
+def _continues(first: str) -> bool:
+    """Whether the first field of a line can only be a parameter of the line before."""
+    return not numerals.is_number(first) and "=" in first
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, OSError):
+        return error.strerror or str(error)
+    return str(error)

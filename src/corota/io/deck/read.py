@@ -1,0 +1,98 @@
+"""Reading a deck: lexer, keywords, model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from corota.errors import DeckError, Diagnostic, InputError
+from corota.io.deck.build.model import ModelBuilder
+from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.elements import ELEMENTS, OWN
+from corota.io.deck.keywords import interpret
+from corota.io.deck.lexer import Lexer, key
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    from corota.model.model import Model
+
+
+def read_deck(
+    path: str | os.PathLike[str],
+    element_map: Mapping[str, str] | None = None,
+    lenient: bool = False,
+    allow_include: bool = False,
+) -> Model:
+    """Read a CalculiX or Abaqus deck.
+
+    Parameters
+    ----------
+    path : path-like
+    element_map : mapping of str to str, optional
+        Element names to replace, such as ``{"CPS4": "Q4D"}``; the plane state stays.
+    lenient : bool, optional
+        Whether unknown keywords and parameters are warned about instead of refused.
+    allow_include : bool, optional
+        Whether ``*INCLUDE`` may leave the deck's folder.
+
+    Returns
+    -------
+    Model
+        With what was ignored or repaired in ``Model.notes``.
+
+    Raises
+    ------
+    DeckError
+        With all the faults of the deck.
+    FileError
+        If the file cannot be read.
+    """
+    lexer = Lexer(Path(path), allow_include)
+    cards = lexer.read()
+    deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}))
+    deck.diagnostics = lexer.diagnostics
+    for card in cards:
+        interpret(deck, card)
+    if not cards and not deck.n_errors:
+        deck.error(None, None, f"{path} has no keyword; a deck starts with one such as *NODE")
+    _open_ends(deck)
+    model = None
+    try:
+        model = ModelBuilder(deck, Path(path).stem).build()
+    except InputError as error:
+        deck.error(None, error.where, error.message)
+    if deck.hidden:
+        deck.diagnostics.append(Diagnostic("error", f"{deck.hidden} more errors are not listed"))
+    if deck.n_errors or model is None:
+        raise DeckError(deck.diagnostics)
+    for finding in deck.diagnostics:
+        warnings.warn(str(finding), stacklevel=2)
+    return model
+
+
+def _open_ends(deck: Deck) -> None:
+    if deck.step is not None:
+        deck.error(deck.step.card, deck.step.card.where, "the step has no *END STEP")
+    if deck.scope is not deck.root:
+        deck.error(None, None, f"part {deck.scope.name} has no *END PART")
+    elif deck.in_assembly:
+        deck.error(None, None, "the assembly has no *END ASSEMBLY")
+
+
+def _checked_map(element_map: Mapping[str, str]) -> dict[str, str]:
+    found = {}
+    for given, wanted in element_map.items():
+        old, new = key(given), key(wanted)
+        if old not in ELEMENTS:
+            hint = nearest(old, ELEMENTS)
+            raise InputError(f"unknown element {given!r} to replace; {hint or 'see the table'}")
+        if new not in ELEMENTS:
+            raise InputError(f"unknown element {wanted!r} for {given}; known: {', '.join(OWN)}")
+        if ELEMENTS[old].kind != ELEMENTS[new].kind:
+            raise InputError(f"{wanted} cannot replace {given}: it has another shape")
+        found[old] = ELEMENTS[new].element
+    return found

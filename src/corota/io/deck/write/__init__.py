@@ -1,0 +1,3 @@
+"""From a model to the cards of a deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,142 @@
+"""Contact pairs, rigid curves and ties of a model as cards."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from corota.errors import UnsupportedError
+from corota.model.contact import RigidCurve
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from corota.mesh.data import Floats, Ints
+    from corota.model.contact import ContactPair, PressureLaw
+    from corota.model.model import Model
+
+#: Arcs are cut into pieces of at most this angle [rad]; a deck's are less than half a turn.
+PIECE = math.radians(120.0)
+_TYPES = {"mortar": "SURFACE TO SURFACE", "node_to_segment": "NODE TO SURFACE"}
+
+
+class Writer(Protocol):
+    """What is used of the writer of decks."""
+
+    model: Model
+
+    def edge_set(self, where: str | Ints) -> str: ...
+
+
+def contact_cards(writer: Writer) -> Iterator[str]:
+    """Cards of contact pairs and ties.
+
+    Raises
+    ------
+    UnsupportedError
+        If a deck cannot hold them.
+    """
+    model = writer.model
+    for tie in model.ties:
+        tolerance = f", POSITION TOLERANCE={tie.tolerance!r}" if tie.tolerance else ""
+        slave, master = writer.edge_set(tie.slave), writer.edge_set(tie.master)
+        yield f"*TIE, NAME={_word(tie.name)}, ADJUST=NO{tolerance}\n{slave}, {master}\n"
+    known: list[str] = []
+    for number, pair in enumerate(model.contacts, start=1):
+        if pair.reach:
+            raise UnsupportedError(
+                f"contact pair {pair.name!r}: reach cannot be written to a deck: leave it out, or "
+                "keep the model in Python"
+            )
+        yield f"*SURFACE INTERACTION, NAME=INTERACTION{number}\n"
+        if pair.law is not None:
+            yield _behavior(pair.law)
+        if pair.friction:
+            yield f"*FRICTION\n{float(pair.friction)!r}\n"
+        slave, master = surfaces(writer, pair)
+        if isinstance(pair.master, RigidCurve) and master not in known:
+            known.append(master)
+            yield _profile(model, pair.master, master)
+        adjust = f", ADJUST={float(pair.adjust)!r}" if pair.start == "adjust" else ""
+        yield f"*CONTACT PAIR, INTERACTION=INTERACTION{number}, TYPE={_TYPES[pair.method]}"
+        yield f"{adjust}\n{slave}, {master}\n"
+        if pair.clearance is not None:
+            yield f"*CLEARANCE, SLAVE={slave}, MASTER={master}, VALUE={float(pair.clearance)!r}\n"
+
+
+def step_cards(writer: Writer) -> Iterator[str]:
+    """Cards of contact that stand in the first step."""
+    for pair in writer.model.contacts:
+        slave, master = surfaces(writer, pair)
+        if pair.start == "ramp":
+            yield f"*CONTACT INTERFERENCE, SHRINK\n{slave}, {master}\n"
+        if pair.stabilise:
+            yield f"*CONTACT CONTROLS, STABILIZE, SLAVE={slave}, MASTER={master}\n"
+
+
+def surfaces(writer: Writer, pair: ContactPair) -> tuple[str, str]:
+    """Names of the slave and the master surface in the deck."""
+    slave = writer.edge_set(pair.slave)
+    if not isinstance(pair.master, RigidCurve):
+        return slave, writer.edge_set(pair.master)
+    curves = [p.master for p in writer.model.contacts if isinstance(p.master, RigidCurve)]
+    return slave, f"RIGID{1 + next(i for i, c in enumerate(curves) if c is pair.master)}"
+
+
+def _behavior(law: PressureLaw) -> str:
+    rows = f"{float(law.pressure[0])!r}\n"
+    if law.kind == "exponential":
+        rows = f"{float(law.overclosure[0])!r}, {rows}"
+    elif law.kind == "tabular":
+        pairs = zip(law.pressure.tolist(), law.overclosure.tolist(), strict=True)
+        rows = "".join(f"{p!r}, {w!r}\n" for p, w in pairs)
+    return f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={law.kind.upper()}\n{rows}"
+
+
+def _profile(model: Model, curve: RigidCurve, name: str) -> str:
+    """A rigid curve as profile; in both the outward normal is on the left."""
+    text, last = "", None
+    for row in curve.segments:
+        points, centre = _pieces(row)
+        if last is None:
+            text += f"START, {_point(points[0])}\n"
+        elif math.dist(last, points[0]) > 1e-9 * float(np.ptp(curve.segments[:, :4])):
+            raise UnsupportedError(
+                "a rigid curve of separate pieces cannot be written to a deck: make each piece a "
+                "curve with a contact pair of its own"
+            )
+        for point in points[1:]:
+            tail = f", {_point(centre)}" if centre is not None else ""
+            text += f"{'CIRCL' if tail else 'LINE'}, {_point(point)}{tail}\n"
+        last = points[-1]
+    text = f"*SURFACE, TYPE=SEGMENTS, NAME={name}\n{text}"
+    if isinstance(curve.reference, int | np.integer):
+        label = model.mesh.node_labels[curve.reference]
+        text += f"*RIGID BODY, ANALYTICAL SURFACE={name}, REF NODE={label}\n"
+    return text
+
+
+def _pieces(row: Floats) -> tuple[Floats, Floats | None]:
+    """Points along a segment from its start to its end, and the center of an arc."""
+    start, end, centre, sweep = row[:2], row[2:4], row[4:6], float(row[6])
+    if sweep == 0.0:
+        return np.array([start, end]), None
+    count = math.ceil(abs(sweep) / PIECE)
+    angle = sweep * np.arange(count + 1) / count
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = start - centre
+    return centre + np.column_stack([c * x - s * y, s * x + c * y]), centre
+
+
+def _point(at: Floats) -> str:
+    return f"{float(at[0])!r}, {float(at[1])!r}"
+
+
+def _word(name: str) -> str:
+    return "_".join(name.replace(",", " ").split()) or "TIE"
+
+
+__all__ = ["contact_cards", "step_cards", "surfaces"]

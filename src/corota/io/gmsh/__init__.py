@@ -1,0 +1,3 @@
+"""Meshes of Gmsh."""
+
+# SPDX-License-Identifier: BSD-3-Clause

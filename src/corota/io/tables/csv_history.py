@@ -1,0 +1,189 @@
+"""Histories as CSV: one row an increment, one column a quantity."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.atomic_file import TextFile, replace_text
+from corota.results.variables import NODAL, mises, nodal_value
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.results import Frame
+
+    Ints = NDArray[np.int64]
+
+#: Scalars of a frame that always have a column.
+ALWAYS = ("iterations", "strain energy", "external work", "kinetic energy")
+#: Print requests of at most so many nodes get a column for each of them.
+FEW_NODES = 10
+
+
+def support_sets(model: Model, steps: Sequence[Step]) -> dict[str, Ints]:
+    """Nodes of each named support, and of all supports together under ``all supports``."""
+    found: dict[str, Ints] = {}
+    every: list[Ints] = []
+    for support in [*model.supports, *(s for step in steps for s in step.supports)]:
+        where = support.nodes
+        nodes = model.mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
+        every.append(nodes)
+        if isinstance(where, str):
+            found[where] = np.unique(nodes)
+    if every:
+        found["all supports"] = np.unique(np.concatenate(every))
+    return found
+
+
+def requested_nodes(
+    model: Model, steps: Sequence[Step], extra: Sequence[str] = ()
+) -> list[tuple[str, str, Ints]]:
+    """Columns for nodes: (heading, variable, nodes to sum or average).
+
+    Parameters
+    ----------
+    extra : sequence of str
+        ``VARIABLE@SET`` or ``VARIABLE@node number``, such as ``U2@TIP``.
+    """
+    mesh, found = model.mesh, []
+    for request in extra:
+        name, _, where = request.partition("@")
+        name = name.strip().upper()
+        if name not in NODAL or not where:
+            raise InputError(
+                f"history {request!r}: write VARIABLE@SET or VARIABLE@NODE with one of "
+                + ", ".join(NODAL)
+            )
+        if where.isdigit() and where not in mesh.node_sets:
+            nodes = np.flatnonzero(mesh.node_labels == int(where))
+            if not len(nodes):
+                raise InputError(f"history {request!r}: there is no node {where}")
+        else:
+            nodes = mesh.nodes_of(where)
+        found.append((f"{name} {where}", name, nodes))
+    for output in (o for step in steps for o in step.outputs):
+        if output.kind != "node print" or not output.where:
+            continue
+        nodes = mesh.nodes_of(output.where)
+        if len(nodes) > FEW_NODES:
+            continue
+        for node in nodes:
+            label = int(mesh.node_labels[node])
+            for name in (v.upper() for v in output.variables):
+                parts = {"U": ("U1", "U2"), "RF": ("RF1", "RF2")}.get(name, ())
+                found += [(f"{part} node {label}", part, np.array([node])) for part in parts]
+    unique = {heading: (heading, name, nodes) for heading, name, nodes in found}
+    return list(unique.values())
+
+
+def balance_error(scalars: dict[str, float]) -> float:
+    """Energy that appeared from nowhere, as a share of the largest term; 0 at the start."""
+    stored = [v for k, v in scalars.items() if k.endswith("energy") or k.endswith("dissipation")]
+    work = scalars.get("external work", 0.0)
+    scale = max([abs(work), *map(abs, stored)], default=0.0)
+    missing = scalars.get("energy balance", sum(stored) - work)
+    return missing / scale if scale > 0.0 else 0.0
+
+
+class Histories:
+    """Collects one row of numbers from each frame.
+
+    Parameters
+    ----------
+    model : Model
+    steps : sequence of Step
+    extra : sequence of str
+        See :func:`requested_nodes`.
+    """
+
+    def __init__(self, model: Model, steps: Sequence[Step], extra: Sequence[str] = ()) -> None:
+        self._supports = support_sets(model, steps)
+        self._nodes = requested_nodes(model, steps, extra)
+        self._before: tuple[int, float] = (0, 0.0)
+
+    def row(self, frame: Frame, attempts: int = 1) -> dict[str, float]:
+        """Headings and numbers of a frame."""
+        step, time = self._before
+        dt = frame.step_time - (time if frame.step == step else 0.0)
+        self._before = (frame.step, frame.step_time)
+        row: dict[str, float] = {
+            "step": frame.step, "increment": frame.increment, "time": frame.time,
+            "step time": frame.step_time, "dt": dt, "load factor": frame.factor,
+            "attempts": attempts if frame.increment else 0,
+        }  # fmt: skip
+        row |= {name: frame.scalars.get(name, 0.0) for name in ALWAYS}
+        row |= frame.scalars
+        row["energy balance error"] = balance_error(frame.scalars)
+        row["largest U"] = float(nodal_value(frame, "U").max(initial=0.0))
+        stressed = [mises(b.values["S"]) for b in frame.fields if "S" in b.values]
+        row["largest MISES"] = max((float(m.max(initial=0.0)) for m in stressed), default=0.0)
+        for name, nodes in self._supports.items():
+            total = frame.RF[nodes].sum(axis=0)
+            for part, value in zip(("RF1", "RF2", "RM3"), total.tolist(), strict=True):
+                row[f"{part} {name}"] = value
+        for heading, name, nodes in self._nodes:
+            values = nodal_value(frame, name)[nodes]
+            row[heading] = float(values.sum() if name[0] in "RFM" else values.mean())
+        return row
+
+
+def csv_text(rows: Sequence[dict[str, float]]) -> str:
+    """Table of rows; a quantity that a row lacks is 0."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return _line(names) + "".join(_values(row, names) for row in rows)
+
+
+def _line(names: Sequence[str]) -> str:
+    quoted = (f'"{n.replace(chr(34), chr(39))}"' if "," in n else n for n in names)
+    return ",".join(quoted) + "\n"
+
+
+def _values(row: dict[str, float], names: Sequence[str]) -> str:
+    return ",".join(f"{row.get(name, 0.0):.12g}" for name in names) + "\n"
+
+
+class CsvWriter:
+    """Grows a CSV file by a row a frame; a new column rewrites it at once.
+
+    Parameters
+    ----------
+    path : Path
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._rows: list[dict[str, float]] = []
+        self._names: list[str] = []
+        self._file: TextFile | None = None
+
+    def add(self, row: dict[str, float]) -> None:
+        """Append a row.
+
+        Raises
+        ------
+        FileError
+            If the disk refuses.
+        """
+        self._rows.append(row)
+        if self._file is None or any(name not in self._names for name in row):
+            self.close()
+            text = csv_text(self._rows)
+            self._names = list(dict.fromkeys(n for r in self._rows for n in r))
+            replace_text(self.path, text)
+            self._file = TextFile(self.path, keep=True)
+            return
+        self._file.append(_values(row, self._names))
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()

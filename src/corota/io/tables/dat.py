@@ -1,0 +1,230 @@
+"""Print requests in the layout of CalculiX's ``.dat`` file.
+
+Source: CalculiX 2.20, ``printout.f`` and the files it writes (compared byte by byte in the tests).
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
+from corota.io.tables.dat_contact import contact_tables
+from corota.io.tables.dat_numbers import fortran, rows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.model.model import Model
+    from corota.model.steps import Output, Step
+    from corota.results.results import Frame, PointFields
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Node tables: variable to (title, title of the sum or "").
+NODE_TITLES = {
+    "U": ("displacements (vx,vy,vz)", ""),
+    "UR": ("rotations (rx,ry,rz)", ""),
+    "V": ("velocities (vx,vy,vz)", ""),
+    "RF": ("forces (fx,fy,fz)", "total force (fx,fy,fz)"),
+}
+
+#: Tables of values at points: variable to (title with its own spacing, stored name).
+POINT_TITLES = {
+    "S": ("stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) ", "S"),
+    "E": ("strains (elem, integ.pnt.,exx,eyy,ezz,exy,exz,eyz) ", "E"),
+    "PEEQ": ("equivalent plastic strain (elem, integ.pnt.,pe)", "PEEQ"),
+    "ENER": ("internal energy density (elem, integ.pnt.,energy) ", "ENER"),
+}
+
+#: Tables of one number an element: variable to (title, title of the sum).
+ELEMENT_TITLES = {
+    "ELSE": ("internal energy (element, energy)", "total internal energy"),
+    "ELKE": ("kinetic energy (elem, energy)", "total kinetic energy"),
+    "EVOL": ("volume (element, volume)", "total volume"),
+}
+
+#: Energies per volume of which these are the sums.
+DENSITY = {"ELSE": "ENER", "ELKE": "EKEDEN"}
+
+
+def check_requests(steps: list[Step]) -> None:
+    """Refuse print requests for variables that are not printed.
+
+    Raises
+    ------
+    InputError
+        Names the variable, the card and the valid ones.
+    """
+    for step in steps:
+        for output in step.outputs:
+            if not output.kind.endswith("print"):
+                continue
+            valid = {
+                "node print": [*NODE_TITLES],
+                "el print": [*POINT_TITLES, *ELEMENT_TITLES],
+                "contact print": [*CONTACT_VARIABLES],
+            }[output.kind]
+            for name in output.variables:
+                if name.upper() not in valid:
+                    known = ", ".join(valid)
+                    raise InputError(
+                        f"*{output.kind.upper()}: no variable {name}; there are: {known}",
+                        output.source,
+                    )
+
+
+def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
+    """Text that a frame adds to the ``.dat`` file in answer to print requests.
+
+    Parameters
+    ----------
+    model : Model
+    outputs : sequence of Output
+        Others than print requests are passed over.
+    frame : Frame
+    """
+    tables = {
+        "node print": _node_tables, "el print": _element_tables, "contact print": contact_tables,
+    }  # fmt: skip
+    asked = (o for o in outputs if o.kind in tables)
+    return "".join(text for o in asked for text in tables[o.kind](model, o, frame))
+
+
+def _head(title: str, output: Output, frame: Frame) -> str:
+    name = output.where.upper() or "ALL"
+    return f"\n {title}for set {name} and time {fortran(frame.time, 7):>14}\n\n"
+
+
+def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
+    mesh = model.mesh
+    nodes = mesh.nodes_of(output.where) if output.where else np.arange(mesh.n_nodes)
+    labels = mesh.node_labels[nodes]
+    for name in (v.upper() for v in output.variables):
+        title, total = NODE_TITLES[name]
+        values = _node_values(frame, name)[nodes] + 0.0  # no negative zeros
+        only = output.totals == "only" and total
+        if not only:
+            yield _head(title + " ", output, frame)
+            yield rows("%10d %13.6E %13.6E %13.6E\n", labels, *values.T)
+        if total and output.totals != "no":
+            fx, fy = (math.fsum(values[:, i].tolist()) for i in range(2))
+            yield _head(total + " ", output, frame)
+            yield f"       {fx:13.6E} {fy:13.6E}  0.000000E+00\n"
+
+
+def _node_values(frame: Frame, name: str) -> Floats:
+    """Rows of three numbers, shape (n_nodes, 3); RF is the internal force, as in CalculiX."""
+    zero = np.zeros(len(frame.U))
+    if name == "UR":
+        return np.column_stack([zero, zero, frame.UR])
+    if name == "V":
+        values = np.zeros_like(frame.U) if frame.V is None else frame.V[:, :2]
+    else:
+        values = frame.U if name == "U" else (frame.RF + frame.F)[:, :2]
+    return np.column_stack([values, zero])
+
+
+def _element_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
+    mesh = model.mesh
+    cells = mesh.cell_sets.get(output.where)
+    for name in (v.upper() for v in output.variables):
+        if name in POINT_TITLES:
+            title, stored = POINT_TITLES[name]
+            owner, point, values = _at_points(frame, cells, stored)
+            yield _head(title, output, frame)
+            if not len(owner):
+                continue
+            columns = [mesh.cell_labels[owner], point]
+            if values.ndim == 1:
+                yield rows("%10d %3d %13.6E\n", *columns, values)
+                continue
+            values = values.copy()
+            if name == "E":
+                values[:, 3] *= 0.5  # CalculiX prints tensor components
+            form = "%10d %3d" + 4 * " %13.6E" + 2 * "  0.000000E+00" + "\n"
+            yield rows(form, *columns, *values.T)
+            continue
+        title, total = ELEMENT_TITLES[name]
+        owner, sums = _per_element(frame, cells, name)
+        if output.totals != "only":
+            yield _head(title + " ", output, frame)
+            if len(owner):
+                yield rows("%10d %13.6E\n", mesh.cell_labels[owner], sums)
+        if output.totals != "no":
+            yield _head(total + " ", output, frame)
+            yield f"       {math.fsum(sums.tolist()):13.6E}\n"
+
+
+def _picked(
+    frame: Frame, cells: Ints | None, take: Callable[[PointFields], Floats | None]
+) -> tuple[Ints, list[Ints], list[Floats]]:
+    """Rows of the blocks that belong to a set, and the place of each cell in the set's order."""
+    places, owners, values = [], [], []
+    for block in frame.fields:
+        data = take(block)
+        if data is None:
+            continue
+        if cells is None:
+            place = block.cells
+            pick = np.ones(len(block.cells), dtype=bool)
+        else:
+            order = np.argsort(cells, kind="stable")
+            at = np.searchsorted(cells[order], block.cells)
+            at = np.minimum(at, max(len(cells) - 1, 0))
+            pick = cells[order][at] == block.cells if len(cells) else np.zeros(0, bool)
+            place = order[at] if len(cells) else at
+        if not pick.any():
+            continue
+        places.append(place[pick])
+        owners.append(block.cells[pick])
+        values.append(data[pick])
+    place = np.concatenate(places) if places else np.zeros(0, np.int64)
+    return place, owners, values
+
+
+def _at_points(frame: Frame, cells: Ints | None, name: str) -> tuple[Ints, Ints, Floats]:
+    """Cell, point number (from 1) and value of every point of a set, in the set's order."""
+
+    def take(block: PointFields) -> Floats | None:
+        # What a material does not have, such as plastic strain, is zero in it.
+        return block.values.get(name, np.zeros_like(block.volume))
+
+    place, owners, values = _picked(frame, cells, take)
+    if not owners:
+        return np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
+    rank, owner, point, flat, start = [], [], [], [], 0
+    for own, data in zip(owners, values, strict=True):
+        n, p = data.shape[:2]
+        rank.append(np.repeat(place[start : start + n], p))
+        owner.append(np.repeat(own, p))
+        point.append(np.tile(np.arange(1, p + 1), n))
+        flat.append(data.reshape(n * p, *data.shape[2:]))
+        start += n
+    order = np.argsort(np.concatenate(rank), kind="stable")
+    joined = [np.concatenate(x)[order] for x in (owner, point)]
+    return joined[0], joined[1], np.concatenate(flat)[order]
+
+
+def _per_element(frame: Frame, cells: Ints | None, name: str) -> tuple[Ints, Floats]:
+    """Cell and its volume or energy, in the set's order."""
+
+    def take(block: PointFields) -> Floats | None:
+        if name == "EVOL":
+            return np.asarray(block.volume.sum(axis=1))
+        # At rest there is no kinetic energy.
+        density = block.values.get(DENSITY[name], np.zeros_like(block.volume))
+        return np.asarray((density * block.volume).sum(axis=1))
+
+    place, owners, values = _picked(frame, cells, take)
+    if not owners:
+        return np.zeros(0, np.int64), np.zeros(0)
+    order = np.argsort(place, kind="stable")
+    return np.concatenate(owners)[order], np.concatenate(values)[order]

@@ -1,0 +1,134 @@
+"""Tables of ``*CONTACT PRINT`` in the layout of CalculiX's ``.dat`` file.
+
+Source: CalculiX 2.20, contact of type node to surface and the statistics of pairs. Values belong
+to slave nodes here in every type of contact; nodes that do not touch have no row.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.check.parts import cells_of
+from corota.io.tables.dat_numbers import fortran, rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from corota.model.contact import ContactPair
+    from corota.model.model import Model
+    from corota.model.steps import Output
+    from corota.results.results import Frame
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Variables of contact that are printed.
+VARIABLES = ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS")
+#: Resultant of each variable as scalars of a frame: added, taken off.
+_PARTS = {"CF": ("", None), "CFN": ("", "friction "), "CFS": ("friction ", None)}
+
+
+def contact_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
+    """Text of one request at a frame."""
+    if frame.C is None:
+        return
+    pairs = [p for p in model.contacts if output.where in ("", p.name)]
+    slaves = [_slave_nodes(model, p) for p in pairs]
+    nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *slaves]))
+    nodes = nodes[frame.C[nodes, 4] > 0.0]
+    labels = model.mesh.node_labels[nodes]
+    pressure, shear, gap, slip, _ = frame.C[nodes].T + 0.0
+    now = f"time{fortran(frame.time, 7):>14}\n\n"
+    row = "%10d %13.6E %13.6E  0.000000E+00\n"
+    for name in (v.upper() for v in output.variables):
+        if name == "CDIS":
+            yield "\n relative contact displacement (slave node,normal,tang1,tang2) for all "
+            yield f"contact elements and {now}"
+            yield rows(row, labels, gap, slip)
+        elif name == "CSTR":
+            yield "\n contact stress (slave node,press,tang1,tang2) for all contact elements and "
+            yield now + rows(row, labels, pressure, shear)
+        elif name == "CNUM":
+            yield f"\n total number of contact elements for time {fortran(frame.time, 7):>14}\n\n"
+            yield f" {len(nodes):16d}\n"
+        elif name == "CELS":
+            yield f"\n total contact spring energy for time {fortran(frame.time, 7):>14}\n\n"
+            yield f"       {frame.scalars.get('contact energy', 0.0):13.6E}\n"
+        else:
+            for pair in pairs:
+                yield _statistics(model, pair, frame, name)
+
+
+def _slave(model: Model, pair: ContactPair) -> Ints:
+    """Cells and local edges of the slave surface, shape (n, 2)."""
+    return model.mesh.edge_sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
+
+
+def _slave_nodes(model: Model, pair: ContactPair) -> Ints:
+    return np.unique(np.concatenate(model.mesh.edge_nodes(_slave(model, pair))))
+
+
+def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str:
+    """Resultant on the slave surface, where it touches and how it is turned there."""
+    plus, minus = _PARTS[name]
+    force = _resultant(frame, pair, plus)
+    if minus is not None:
+        force = force - _resultant(frame, pair, minus)
+    area, centre, normal = _touching(model, pair, frame)
+    moment = force[2] - (centre[0] * force[1] - centre[1] * force[0])
+    along = float(force[:2] @ normal)
+    across = math.hypot(*(force[:2] - along * normal))
+
+    def line(*values: Any) -> str:
+        return "    " + " ".join(f"{float(v) + 0.0:13.6E}" for v in values) + "\n"
+
+    master = pair.master if isinstance(pair.master, str) else getattr(pair.master, "name", "")
+    slave = pair.slave if isinstance(pair.slave, str) else pair.name
+    return (
+        f"\n statistics for slave set {slave.upper()}, master set {str(master).upper()} and time "
+        f"{fortran(frame.time, 7):>14}\n\n"
+        "   total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)\n\n"
+        + line(force[0], force[1], 0.0, 0.0, 0.0, force[2])
+        + "\n   center of gravity and mean normal\n\n"
+        + line(*centre, 0.0, *normal, 0.0)
+        + "\n   moment about the center of gravity(mx,my,mz)\n\n"
+        + line(0.0, 0.0, moment)
+        + "\n   area,  normal force (+ = tension) and shear force (size)\n\n"
+        + line(area, along, across)
+    )
+
+
+def _resultant(frame: Frame, pair: ContactPair, what: str) -> Floats:
+    """Force x, y and moment about the origin from the scalars of a frame."""
+    names = ("force x", "force y", "moment") if not what else ("x", "y", "moment")
+    get = frame.scalars.get
+    return np.array([get(f"{pair.name}: {what}{name}", 0.0) for name in names])
+
+
+def _touching(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, Floats, Floats]:
+    """Area that touches, its center and its mean outward normal, in the current state."""
+    assert frame.C is not None
+    x = model.mesh.points + frame.U
+    ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(_slave(model, pair))])
+    thickness = np.ones(model.mesh.n_cells)
+    for section in model.sections:
+        thickness[cells_of(model.mesh, section.cells)] = section.thickness
+    chord = x[ends[:, 1]] - x[ends[:, 0]]
+    share = 0.5 * thickness[_slave(model, pair)[:, 0]]
+    closed = (frame.C[ends, 4] > 0.0) * share[:, None]
+    weight = closed * np.hypot(*chord.T)[:, None]
+    area = float(weight.sum())
+    if area == 0.0:
+        return 0.0, np.zeros(2), np.zeros(2)
+    centre = np.einsum("ij,ijk->k", weight, x[ends]) / area
+    normal = np.array([chord[:, 1], -chord[:, 0]]) @ closed.sum(axis=1)
+    return area, centre, normal / (math.hypot(*normal) or 1.0)
+
+
+__all__ = ["VARIABLES", "contact_tables"]

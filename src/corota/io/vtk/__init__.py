@@ -1,0 +1,3 @@
+"""Result files for ParaView and PyVista."""
+
+# SPDX-License-Identifier: BSD-3-Clause

@@ -1,0 +1,149 @@
+"""XML VTK files: one ``.vtu`` a frame and a ``.pvd`` that names them with their times.
+
+The fall-back for programs that do not read VTKHDF. Source: VTK file formats, "XML formats",
+appended raw data with 64-bit headers.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import contextlib
+import os
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.io.atomic_file import full, replace_text
+from corota.io.finite import check_frame
+from corota.io.vtk.vtkhdf import cell_data, point_data, topology
+from corota.results import variables as vf
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from corota.model.model import Model
+    from corota.results.results import Frame, Results
+
+_NAMES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
+
+
+def vtu_bytes(model: Model, frame: Frame, averaging: vf.Averaging) -> bytes:
+    """Bytes of one ``.vtu`` file.
+
+    Parameters
+    ----------
+    model : Model
+    frame : Frame
+    averaging : Averaging
+    """
+    check_frame(frame)
+    mesh = model.mesh
+    chain, ends, types, index = topology(mesh)
+    blobs: list[bytes] = []
+    at = 0
+
+    def array(name: str, values: np.ndarray) -> str:
+        nonlocal at
+        raw = np.ascontiguousarray(values).tobytes()
+        width = values.shape[1] if values.ndim == 2 else 1
+        tag = (
+            f'<DataArray type="{_NAMES[str(values.dtype)]}" Name="{escape(name)}" '
+            f'NumberOfComponents="{width}" format="appended" offset="{at}"/>\n'
+        )
+        blobs.append(np.uint64(len(raw)).tobytes() + raw)
+        at += 8 + len(raw)
+        return tag
+
+    points = array("Points", np.column_stack([mesh.points, np.zeros(mesh.n_nodes)]))
+    cells = "".join(
+        array(n, v) for n, v in (("connectivity", chain), ("offsets", ends[1:]), ("types", types))
+    )
+    at_points = "".join(array(n, v) for n, v in point_data(frame, averaging).items())
+    still = {
+        "section": vf.section_of_cells(model)[index],
+        "element label": mesh.cell_labels[index],
+    }
+    moving = {n: v[index] for n, v in cell_data(frame, mesh.n_cells).items()}
+    at_cells = "".join(array(n, v) for n, v in (still | moving).items())
+    time = array("TimeValue", np.array([frame.time]))
+    head = (
+        '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
+        'byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n<FieldData>\n'
+        + time.replace("NumberOfComponents", 'NumberOfTuples="1" NumberOfComponents')
+        + f'</FieldData>\n<Piece NumberOfPoints="{mesh.n_nodes}" NumberOfCells="{len(index)}">\n'
+        f"<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n"
+        f"<PointData>\n{at_points}</PointData>\n<CellData>\n{at_cells}</CellData>\n"
+        '</Piece>\n</UnstructuredGrid>\n<AppendedData encoding="raw">\n_'
+    )
+    return head.encode() + b"".join(blobs) + b"\n</AppendedData>\n</VTKFile>\n"
+
+
+def replace_bytes(path: Path, data: bytes) -> None:
+    """Write a file at once: temporary name, then renaming.
+
+    Raises
+    ------
+    FileError
+        If the disk refuses.
+    """
+    hidden = path.with_name(f".{path.name}.next")
+    try:
+        hidden.write_bytes(data)
+        os.replace(hidden, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            hidden.unlink(missing_ok=True)
+        raise full(error, path) from None
+
+
+def write_vtu(results: Results, path: Path) -> None:
+    """Write the last frame as one ``.vtu`` file."""
+    replace_bytes(path, vtu_bytes(results.model, results.frame(), results.averaging))
+
+
+class PvdWriter:
+    """A ``.vtu`` for each frame beside a ``.pvd`` that is rewritten after each.
+
+    Parameters
+    ----------
+    path : Path
+        The ``.pvd``; its stem names the others.
+    model : Model
+    """
+
+    def __init__(self, path: Path, model: Model) -> None:
+        self.path, self.model = path, model
+        self._averaging = vf.Averaging(model.mesh)
+        self._entries: list[str] = []
+
+    def add(self, frame: Frame) -> None:
+        """Write a frame.
+
+        Raises
+        ------
+        FileError
+            If the disk refuses.
+        """
+        piece = self.path.with_name(f"{self.path.stem}_{len(self._entries):04d}.vtu")
+        replace_bytes(piece, vtu_bytes(self.model, frame, self._averaging))
+        self._entries.append(f'<DataSet timestep="{frame.time!r}" file="{escape(piece.name)}"/>\n')
+        body = "".join(self._entries)
+        replace_text(
+            self.path,
+            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="1.0">\n<Collection>\n'
+            f"{body}</Collection>\n</VTKFile>\n",
+        )
+
+    def commit(self) -> None:
+        """Nothing: every frame is on disk already."""
+
+    def close(self, info: dict[str, Any] | None = None) -> None:
+        """Nothing is open."""
+
+
+def write_pvd(results: Results, path: Path) -> None:
+    """Write all frames."""
+    writer = PvdWriter(path, results.model)
+    for frame in results.frames:
+        writer.add(frame)

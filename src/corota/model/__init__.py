@@ -1,0 +1,33 @@
+"""The model: plain data, valid or refused; no solver objects inside."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from corota.model.loads import (
+    Amplitude,
+    BodyForce,
+    EdgeLoad,
+    Fixed,
+    InitialStress,
+    InitialTemperature,
+    InitialVelocity,
+    Load,
+    NodalForce,
+    Temperature,
+)
+from corota.model.model import DOFS, Model
+from corota.model.sections import Section
+
+__all__ = [
+    "DOFS",
+    "Amplitude",
+    "BodyForce",
+    "EdgeLoad",
+    "Fixed",
+    "InitialStress",
+    "InitialTemperature",
+    "InitialVelocity",
+    "Load",
+    "Model",
+    "NodalForce",
+    "Section",
+    "Temperature",
+]

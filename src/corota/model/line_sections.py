@@ -1,0 +1,124 @@
+"""Trusses, beams and springs of a model: a part of :class:`corota.Model`."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from corota.mesh import Mesh
+    from corota.model.materials import Material
+    from corota.model.sections import Section
+
+    Ints = NDArray[np.int64]
+
+
+class LineSections:
+    """What :class:`corota.Model` knows of line elements."""
+
+    mesh: Mesh
+    sections: list[Section]
+
+    def _cells(self, cells: str | ArrayLike) -> str | Ints:
+        raise TypeError("a part of Model")
+
+    def truss(self, cells: str | ArrayLike, *, material: Material, area: float) -> None:
+        """Make two-node lines bars that carry an axial force only.
+
+        Parameters
+        ----------
+        cells : str or array_like of int, shape (n,)
+        material : Elastic
+        area : float
+            Cross-section [length^2].
+        """
+        self._line(cells, "TRUSS", material, (area, 0.0, 0.0))
+
+    def beam(
+        self,
+        cells: str | ArrayLike,
+        *,
+        material: Material,
+        area: float,
+        inertia: float,
+        shear_area: float = 0.0,
+    ) -> None:
+        """Make two-node lines straight beams; their nodes get a rotation.
+
+        Parameters
+        ----------
+        cells : str or array_like of int, shape (n,)
+        material : Elastic
+        area : float
+            Cross-section [length^2].
+        inertia : float
+            Second moment of the cross-section [length^4].
+        shear_area : float, optional
+            Area that takes shear [length^2]; 0 for no shear deformation.
+        """
+        if not (np.isfinite(inertia) and inertia > 0.0 and 0.0 <= shear_area < np.inf):
+            raise InputError(
+                f"a beam needs inertia > 0 and shear_area >= 0, not {inertia} and {shear_area}"
+            )
+        self._line(cells, "BEAM", material, (area, inertia, shear_area))
+
+    def spring(self, cells: str | ArrayLike, stiffness: ArrayLike, dofs: str | None = None) -> None:
+        """Make lines or points springs.
+
+        Parameters
+        ----------
+        cells : str or array_like of int, shape (n,)
+            Two-node lines, or points for springs to the ground.
+        stiffness : float or array_like, shape (m, 2)
+            Force per length, or moment per angle; or pairs of elongation and force, with the
+            force constant outside.
+        dofs : str, optional
+            Fixed directions that the spring joins: ``"x"``, ``"y"`` or ``"theta"``, or two of
+            them for the two nodes. By default it acts along the line of its nodes.
+        """
+        from corota.model.materials import Elastic
+        from corota.model.model import DOFS
+        from corota.model.sections import Section
+
+        given = np.asarray(stiffness, dtype=np.float64)
+        if given.ndim not in (0, 2) or (given.ndim and given.shape[1] != 2):
+            raise InputError(f"a stiffness, or pairs of elongation and force, not {stiffness!r}")
+        if not np.isfinite(given).all():
+            raise InputError(f"the stiffness of a spring must be finite, not {stiffness!r}")
+        value = float(given) if given.ndim == 0 else 0.0
+        pairs = [] if given.ndim == 0 else given.tolist()
+        name, ends = "SPRING", (0, 0)
+        if dofs is not None:
+            chosen = [DOFS[d] for d in dofs.split()]
+            ends = (chosen[0], chosen[-1])
+            found = self._cells(cells)
+            every = self.mesh.cell_sets[found] if isinstance(found, str) else found
+            kinds = {self.mesh.cells[self.mesh.locate(int(c))[0]].kind for c in every}
+            name = ("SPRING1" if kinds == {"point1"} else "SPRING2") + "R" * (2 in ends)
+        table = tuple((e, f) for e, f in pairs)
+        self.sections.append(
+            Section(self._cells(cells), name, Elastic(E=1.0), profile=(value, *ends), table=table)
+        )
+
+    def _line(
+        self,
+        cells: str | ArrayLike,
+        element: str,
+        material: Material,
+        profile: tuple[float, float, float],
+    ) -> None:
+        from copy import deepcopy
+
+        from corota.model.sections import Section
+
+        if not (np.isfinite(profile[0]) and profile[0] > 0.0):
+            raise InputError(f"the area must be > 0, not {profile[0]}")
+        self.sections.append(
+            Section(self._cells(cells), element, deepcopy(material), profile[0], profile=profile)
+        )

@@ -1,0 +1,233 @@
+"""Ways along an equilibrium path, and the points on it where stability changes."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.model.model import DOFS
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Where = str | int | ArrayLike
+
+#: Dofs by the names that a user may write.
+_DOFS = {**DOFS, "rotation": 2}
+
+
+class Label(int):
+    """A node by its number in the deck, where an index from 0 would be taken otherwise."""
+
+
+def dof_index(dof: str | int) -> int:
+    """Number of a dof from ``"x"``, ``"y"``, ``"rotation"`` or a number from 0.
+
+    Raises
+    ------
+    InputError
+        If it is none of these.
+    """
+    if dof in (0, 1, 2):
+        return int(dof)
+    if dof not in _DOFS:
+        raise InputError(f"no degree of freedom {dof!r}; there are 'x', 'y' and 'rotation'")
+    return _DOFS[str(dof)]
+
+
+@dataclass(kw_only=True)
+class ArcLength:
+    """Follow the path by its length: through limit points and snap-back, without tuning.
+
+    The step ends where the first of the named ends is reached. With none named it ends at
+    load factor 1; otherwise the load factor may go where it likes.
+
+    Parameters
+    ----------
+    factor : float, optional
+        End where the load factor crosses this value.
+    displacement : tuple, optional
+        ``(where, dof, value)``: end where the mean displacement of a set, node or nodes
+        crosses a value [length].
+    increments : int, optional
+        End after so many increments.
+    shape : {"cylindrical", "spherical"}
+        Whether only displacements make the length of an increment, or the load factor too.
+    locate : bool
+        Locate limit and bifurcation points and make them increments of their own.
+    switch : bool
+        Leave the path at the first bifurcation point along the branch that turns off.
+    side : {1, -1}
+        To which side of the mode, whose largest component is positive.
+    stop_at_limit : bool
+        End at the first limit point.
+
+    Examples
+    --------
+    >>> import corota as ct
+    >>> ct.Static(path=ct.ArcLength(displacement=("top", "y", -2.0))).path.factor is None
+    True
+    """
+
+    factor: float | None = None
+    displacement: tuple[Where, str | int, float] | None = None
+    increments: int | None = None
+    shape: Literal["cylindrical", "spherical"] = "cylindrical"
+    locate: bool = True
+    switch: bool = False
+    side: Literal[1, -1] = 1
+    stop_at_limit: bool = False
+
+    def __post_init__(self) -> None:
+        if self.shape not in ("cylindrical", "spherical"):
+            raise InputError(f"shape must be 'cylindrical' or 'spherical', not {self.shape!r}")
+        if self.side not in (1, -1):
+            raise InputError(f"side must be 1 or -1, not {self.side!r}")
+        if self.increments is not None and self.increments < 1:
+            raise InputError(f"a path needs at least one increment, not {self.increments}")
+        if self.factor is not None and not math.isfinite(self.factor):
+            raise InputError(f"the load factor at the end must be finite, not {self.factor}")
+        if self.displacement is not None:
+            if len(self.displacement) != 3 or not math.isfinite(self.displacement[2]):
+                raise InputError(
+                    "displacement must be (where, dof, value) with a finite value, not "
+                    f"{self.displacement!r}"
+                )
+            dof_index(self.displacement[1])
+        if self.factor is None and self.displacement is None and self.increments is None:
+            self.factor = 1.0
+
+
+@dataclass
+class DisplacementControl:
+    """Follow the path by a displacement that grows to a target while the load adapts.
+
+    Where the displacement turns back (snap-back), arc length takes over.
+
+    Parameters
+    ----------
+    where : str, int or array_like of int
+        Set, node index or indices; the mean over them is controlled.
+    dof : {"x", "y", "rotation"}
+    target : float
+        Value at the end of the step [length or rad].
+    also : list of tuple
+        More terms ``(where, dof, weight)`` that are added to the controlled quantity.
+    increments : int
+        Increments if all goes well.
+    locate : bool
+        Locate limit and bifurcation points and make them increments of their own.
+
+    Examples
+    --------
+    The opening between two jaws:
+
+    >>> import corota as ct
+    >>> jaws = ct.DisplacementControl("upper", "y", 0.5, also=[("lower", "y", -1.0)])
+    """
+
+    where: Where
+    dof: str | int
+    target: float
+    also: list[tuple[Where, str | int, float]] = field(default_factory=list)
+    increments: int = 20
+    locate: bool = True
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.target):
+            raise InputError(f"the target displacement must be finite, not {self.target}")
+        if self.increments < 1:
+            raise InputError(f"a path needs at least one increment, not {self.increments}")
+        for _, dof, weight in self.terms:
+            dof_index(dof)
+            if not math.isfinite(weight):
+                raise InputError(f"the weight of a term must be finite, not {weight}")
+
+    @property
+    def terms(self) -> list[tuple[Where, str | int, float]]:
+        """All terms of the controlled quantity."""
+        return [(self.where, self.dof, 1.0), *self.also]
+
+
+@dataclass
+class CriticalPoint:
+    """A limit or bifurcation point of a path.
+
+    Parameters
+    ----------
+    kind : {"limit", "bifurcation"}
+        Whether the load factor has a turning point there, or another branch crosses.
+    step, increment : int
+        Of the frame that holds it.
+    factor : float
+        Load factor.
+    mode : ndarray, shape (n_nodes, 3)
+        Direction in which the tangent has no stiffness: displacements and rotation by node,
+        the largest displacement 1.
+    projection : float
+        Work of the load in the mode, over the load times the mode's largest displacement:
+        of order one at a limit point, 0 at a bifurcation.
+    negative : tuple of int
+        Negative pivots before and after; -1 where unknown.
+    """
+
+    kind: Literal["limit", "bifurcation"]
+    step: int
+    increment: int
+    factor: float
+    mode: Floats
+    projection: float
+    negative: tuple[int, int]
+
+    def __str__(self) -> str:
+        before, after = self.negative
+        return (
+            f"{self.kind} point at load factor {self.factor:.6g} (step {self.step}, increment "
+            f"{self.increment}; negative pivots {before} before, {after} after)"
+        )
+
+
+@dataclass
+class Modes:
+    """Eigenvalues with their shapes.
+
+    Parameters
+    ----------
+    kind : {"buckling", "frequency"}
+    step : int
+        Step that found them.
+    factors : ndarray, shape (m,)
+        Rising; for buckling the factors on the perturbing load that make the state critical;
+        else frequencies [1/time].
+    shapes : ndarray, shape (m, n_nodes, 3)
+        Displacements and rotation by node; for buckling the largest displacement is 1, for
+        frequencies the modal mass. Of complex modes the real part.
+    growth : ndarray, shape (m,)
+        Rates of growth of the modes [1/time]: negative where they decay, positive where the state
+        is unstable (divergence without a frequency, flutter with one).
+    imaginary : ndarray, shape (m, n_nodes, 3), or None
+        Imaginary part of complex modes.
+    about : ndarray, shape (n_dofs,), or None
+        Displacement of the state that vibration modes belong to.
+    """
+
+    kind: Literal["buckling", "frequency"]
+    step: int
+    factors: Floats
+    shapes: Floats
+    growth: Floats = field(default_factory=lambda: np.zeros(0))
+    imaginary: Floats | None = None
+    about: Floats | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if not len(self.growth):
+            self.growth = np.zeros(len(self.factors))
+
+
+__all__ = ["ArcLength", "CriticalPoint", "DisplacementControl", "Label", "Modes", "dof_index"]

@@ -1,0 +1,276 @@
+"""J2 (von Mises) plasticity with isotropic, kinematic and combined hardening."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.model.materials import Material, _positive, isotropic_compliance
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from corota.errors import Location
+
+    Floats = NDArray[np.float64]
+
+#: Most back-stresses of a material.
+MAX_BACK_STRESSES = 6
+
+
+@dataclass
+class Voce:
+    """Isotropic hardening that saturates: ``Q (1 - exp(-b p)) + H p`` above the yield stress.
+
+    Parameters
+    ----------
+    Q : float
+        Growth of the yield stress in the end [force/length^2], >= 0.
+    b : float
+        Rate in terms of the equivalent plastic strain, >= 0.
+    H : float
+        Linear part [force/length^2], >= 0.
+
+    Notes
+    -----
+    Source: E. Voce, *J. Inst. Metals* 74 (1948) 537-562.
+    """
+
+    Q: float
+    b: float
+    H: float = 0.0
+
+
+@dataclass
+class Mises(Material):
+    """J2 plasticity, integrated implicitly, in plane stress and plane strain.
+
+    Parameters
+    ----------
+    E : float
+        Young's modulus [force/length^2], > 0.
+    nu : float
+        Poisson's ratio, -1 < nu < 1/2.
+    yield_curve : sequence of (stress, plastic strain), optional
+        Points of the uniaxial curve, starting at plastic strain 0; straight between them and
+        constant after the last. Give this or `yield_stress`.
+    yield_stress : float, optional
+        Initial yield stress [force/length^2], > 0.
+    isotropic : float or Voce, optional
+        Slope of the yield stress against equivalent plastic strain [force/length^2], or a
+        saturating law.
+    kinematic : float, optional
+        Modulus of linear kinematic hardening: slope of the uniaxial back-stress
+        [force/length^2].
+    chaboche : sequence of (C, gamma), optional
+        Back-stresses ``db = 2/3 C dep - gamma b dp``; C [force/length^2] > 0, gamma >= 0. With
+        `kinematic` at most six.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its range, or the curve falls.
+
+    Notes
+    -----
+    Any of the isotropic laws goes with any back-stresses (combined hardening); none of them
+    is perfect plasticity. With ``gamma > 0`` the exact tangent is not symmetric; its symmetric
+    part is used, which took at most a tenth more iterations where it was measured.
+
+    Sources: J. C. Simo and R. L. Taylor, *Int. J. Numer. Methods Eng.* 22 (1986) 649-670;
+    J. L. Chaboche, *Int. J. Plasticity* 2 (1986) 149-188.
+
+    Examples
+    --------
+    >>> import corota as ct
+    >>> steel = ct.Mises(E=210e3, nu=0.3, yield_stress=250.0, isotropic=1000.0)
+    >>> alloy = ct.Mises(E=70e3, nu=0.33, yield_curve=[(200.0, 0.0), (260.0, 0.02)])
+    """
+
+    E: float
+    nu: float = 0.0
+    yield_curve: Sequence[tuple[float, float]] | None = None
+    yield_stress: float | None = None
+    isotropic: float | Voce = 0.0
+    kinematic: float = 0.0
+    chaboche: Sequence[tuple[float, float]] = ()
+    #: Where each row of the yield curve stands in a deck.
+    rows: Sequence[Location] = field(default=(), kw_only=True, compare=False, repr=False)
+
+    law = "mises"
+
+    def __post_init__(self) -> None:
+        self._check_isotropic(self.E, self.nu)
+        self._check_motion()
+        if (self.yield_curve is None) == (self.yield_stress is None):
+            raise InputError("give either yield_curve or yield_stress", self.where)
+        if self.yield_curve is not None:
+            if self.isotropic != 0.0:
+                raise InputError(
+                    "yield_curve is the isotropic hardening itself: leave out isotropic, or give "
+                    "yield_stress instead of the curve",
+                    self.where,
+                )
+            self._check_curve([(float(s), float(p)) for s, p in self.yield_curve])
+        else:
+            assert self.yield_stress is not None
+            _positive(self.yield_stress, "the yield stress", self.where)
+        law = self.isotropic if isinstance(self.isotropic, Voce) else Voce(0.0, 0.0, self.isotropic)
+        for name, value in (("Q", law.Q), ("b", law.b), ("the isotropic slope", law.H)):
+            self._not_negative(name, value)
+        self._not_negative("the kinematic modulus", self.kinematic)
+        for number, (c, gamma) in enumerate(self.chaboche, start=1):
+            _positive(c, f"C of back-stress {number}", self.where)
+            self._not_negative(f"gamma of back-stress {number}", gamma)
+        if len(self.back_stresses) > MAX_BACK_STRESSES:
+            raise InputError(
+                f"at most {MAX_BACK_STRESSES} back-stresses are held, not "
+                f"{len(self.back_stresses)}; fit the curve with fewer",
+                self.where,
+            )
+
+    def _not_negative(self, name: str, value: float) -> None:
+        if not (math.isfinite(value) and value >= 0.0):
+            raise InputError(f"{name} must be >= 0, not {value}", self.where)
+
+    def _check_curve(self, curve: list[tuple[float, float]]) -> None:
+        if not curve:
+            raise InputError("the yield curve has no points", self.where)
+        for i, (stress, strain) in enumerate(curve):
+            where = self.rows[i] if i < len(self.rows) else self.where
+            if not (math.isfinite(stress) and stress > 0.0):
+                raise InputError(f"the yield stress must be > 0, not {stress:g}", where)
+            if not (math.isfinite(strain) and strain >= 0.0):
+                raise InputError(f"the plastic strain must be >= 0, not {strain:g}", where)
+            if i == 0 and strain != 0.0:
+                raise InputError(
+                    f"the yield curve must start at plastic strain 0, not {strain:g}: give the "
+                    "plastic, not the total, strain",
+                    where,
+                )
+            if i and strain <= curve[i - 1][1]:
+                raise InputError(
+                    f"the plastic strain must grow from row to row, but {strain:g} follows "
+                    f"{curve[i - 1][1]:g}",
+                    where,
+                )
+            if i and stress < curve[i - 1][0]:
+                raise InputError(
+                    f"the yield stress may not fall, but {stress:g} follows {curve[i - 1][0]:g}; "
+                    "softening depends on the mesh and is not offered",
+                    where,
+                )
+
+    @property
+    def back_stresses(self) -> list[tuple[float, float]]:
+        """Pairs (C, gamma), the linear one first."""
+        linear = [(float(self.kinematic), 0.0)] if self.kinematic else []
+        return linear + [(float(c), float(gamma)) for c, gamma in self.chaboche]
+
+    def compliance(self) -> Floats:
+        return isotropic_compliance(self.E, self.nu)
+
+    def parameters(self, orientation: float = 0.0) -> list[float]:
+        """``E, nu, n``, n pairs ``C, gamma``, then the kind of hardening and its numbers."""
+        back = self.back_stresses
+        numbers = [float(self.E), float(self.nu), float(len(back))]
+        numbers += [value for pair in back for value in pair]
+        if self.yield_curve is not None:
+            return [*numbers, 1.0, *(float(v) for point in self.yield_curve for v in point)]
+        assert self.yield_stress is not None
+        if isinstance(self.isotropic, Voce):
+            law = self.isotropic
+            return [*numbers, 2.0, self.yield_stress, law.Q, law.b, law.H]
+        return [*numbers, 0.0, self.yield_stress, float(self.isotropic)]
+
+    def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
+        """Answer of a single point to a strain path, one implicit step per row.
+
+        Parameters
+        ----------
+        strain : array_like, shape (n, 3)
+            Rows xx, yy, xy (engineering shear).
+        plane : {"stress", "strain"}
+
+        Returns
+        -------
+        dict of ndarray
+            ``stress`` (n, 3), ``tangent`` (n, 3, 3), ``zz`` (n, 2; strain and stress through
+            the thickness), ``PEEQ``, ``YRATIO``, ``PWORK``, ``PDISS`` (n,).
+        """
+        from corota import _core
+
+        path = np.ascontiguousarray(np.atleast_2d(np.asarray(strain, float)))
+        n = len(path)
+        raw: dict[str, Any] = _core.material_path(
+            self.law, self.parameters(), plane, path, np.zeros(0)
+        )
+        shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
+        shapes["state"] = (n, -1)
+        return {key: values.reshape(shapes.get(key, (n,))) for key, values in raw.items()}
+
+    def uniaxial(self, strain: ArrayLike) -> Floats:
+        """Uniaxial stress along a path of axial strains.
+
+        Parameters
+        ----------
+        strain : array_like, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Axial stress [force/length^2]; the transverse one is zero.
+        """
+        from corota import _core
+
+        state = np.zeros(0)
+        side = 0.0
+        out = []
+        for axial in np.asarray(strain, float):
+            for _ in range(50):
+                point = np.array([[axial, side, 0.0]])
+                raw = _core.material_path(self.law, self.parameters(), "stress", point, state)
+                step = raw["stress"][1] / raw["tangent"][4]
+                if abs(raw["stress"][1]) <= 1e-12 * (abs(raw["stress"][0]) + 1e-12 * self.E):
+                    break
+                side -= step
+            state = raw["state"]
+            out.append(raw["stress"][0])
+        return np.array(out)
+
+    def plot_uniaxial(self, strain: ArrayLike | None = None, ax: Any = None) -> Any:
+        """Draw uniaxial stress against strain.
+
+        Parameters
+        ----------
+        strain : array_like, shape (n,), optional
+            Path of axial strains; by default one loop over ten times the yield strain.
+        ax : matplotlib.axes.Axes, optional
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        import matplotlib.pyplot as plt
+
+        if strain is None:
+            first = self.yield_curve[0][0] if self.yield_curve else self.yield_stress
+            assert first is not None
+            top = 10.0 * first / self.E
+            strain = np.concatenate(
+                [np.linspace(0, top, 60), np.linspace(top, -top, 120), np.linspace(-top, top, 120)]
+            )
+        path = np.asarray(strain, float)
+        ax = ax or plt.figure().add_subplot()
+        ax.plot(path, self.uniaxial(path))
+        ax.set_xlabel("strain")
+        ax.set_ylabel("stress [force/length^2]")
+        ax.set_title(self.name or "uniaxial answer")
+        return ax

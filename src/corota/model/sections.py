@@ -1,0 +1,100 @@
+"""What cells are made of."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.errors import InputError, Location
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.model.materials import Material
+
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class Section:
+    """Element type, material and thickness of a set of cells.
+
+    Parameters
+    ----------
+    cells : str or array_like of int
+        Cell set, or global cell indices.
+    element : str
+        Element name (``Q4I``, ``Q4D``, ``OPT``, ...).
+    material : Material
+    thickness : float
+        Out-of-plane thickness [length], > 0.
+    plane : {"stress", "strain"}
+    local_strain : {"simplified", "modified", "logarithmic"}
+    orientation : float
+        Angle of the material axes from the global ones in the reference [rad].
+    profile : tuple of float
+        Numbers of line elements: area, second moment, shear area; of springs the stiffness and
+        the dofs of both ends.
+    table : tuple of pairs of float
+        Elongation (or angle) and force of nonlinear springs, rising; empty for linear ones.
+    mean_dilatation : bool
+        Replace the volume strain by its mean over each element: no volumetric locking in plastic
+        or nearly incompressible plane strain. Quadrilaterals in plane strain only.
+    beta0 : float, optional
+        Weight of the bending stiffness of OPT, > 0; by default the one that makes elastic bending
+        exact. In plastic bending it is too stiff; see the page on plasticity.
+    """
+
+    cells: str | Ints
+    element: str
+    material: Material
+    thickness: float = 1.0
+    plane: Literal["stress", "strain"] = "stress"
+    local_strain: Literal["simplified", "modified", "logarithmic"] = "simplified"
+    orientation: float = 0.0
+    where: Location | None = field(default=None, compare=False, repr=False)
+    mean_dilatation: bool = field(default=False, kw_only=True)
+    beta0: float | None = field(default=None, kw_only=True)
+    profile: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), kw_only=True)
+    table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
+
+    def __post_init__(self) -> None:
+        pairs = np.asarray(self.table, dtype=np.float64).reshape(-1, 2)
+        rising = (np.diff(pairs[:, 0]) > 0.0).all() and len(pairs) != 1
+        if not (np.isfinite(pairs).all() and rising):
+            raise InputError(
+                "a nonlinear spring needs at least two finite pairs of elongation and force, the "
+                "elongation rising",
+                self.where,
+            )
+        if not (np.isfinite(self.thickness) and self.thickness > 0.0):
+            raise InputError(f"the thickness must be > 0, not {self.thickness}", self.where)
+        if self.mean_dilatation and self.plane != "strain":
+            raise InputError(
+                "mean dilatation is for plane strain; in plane stress the thickness is free to "
+                "change and nothing locks: leave it out",
+                self.where,
+            )
+        if self.mean_dilatation and self.element.upper() == "Q4I":
+            raise InputError(
+                "Q4I does not lock: its incompatible modes give the volume its freedom, and with "
+                "mean dilatation they would have no stiffness; leave it out",
+                self.where,
+            )
+        if self.mean_dilatation and not self.element.upper().startswith("Q"):
+            raise InputError(
+                f"mean dilatation is for quadrilaterals, not {self.element}, whose volume strain "
+                "is constant or nearly so already: use Q4I, Q8R or Q4D instead",
+                self.where,
+            )
+        if self.beta0 is not None and not (
+            self.element.upper() == "OPT" and np.isfinite(self.beta0) and self.beta0 > 0.0
+        ):
+            raise InputError(
+                f"beta0 = {self.beta0} for {self.element}: only OPT has this weight, and it must "
+                "be > 0",
+                self.where,
+            )

@@ -1,0 +1,351 @@
+"""Analysis steps: what is done with the model, and what is written."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from corota.errors import Location
+    from corota.model.loads import Fixed, Load
+    from corota.model.paths import ArcLength, DisplacementControl
+
+
+@dataclass
+class Output:
+    """One print, file or history request.
+
+    Parameters
+    ----------
+    kind : {"node print", "el print", "contact print", "node file", "el file", "contact file"}
+    variables : tuple of str
+        Names as in decks: ``U RF S E CSTR ...``.
+    where : str
+        Node or cell set, or name of a contact pair; empty for all.
+    frequency : int
+        Every so many increments; 0 only at the end of the step.
+    totals : {"no", "yes", "only"}
+        Sums over the set beside, or instead of, the rows.
+    time_points : str
+        Name of a list of times in ``Model.time_points``; empty for none.
+    """
+
+    kind: Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
+    variables: tuple[str, ...]
+    where: str = ""
+    frequency: int = 1
+    totals: Literal["no", "yes", "only"] = "no"
+    time_points: str = ""
+    source: Location | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(kw_only=True)
+class Step:
+    """Common data of all steps.
+
+    Parameters
+    ----------
+    nlgeom : bool
+        Large rotations; otherwise the same elements in a fixed frame.
+    period : float
+        Duration of the step [time].
+    first_increment, smallest_increment, largest_increment : float
+        Increment control [time]; 0 takes the default (period, 1e-6 of it, period).
+    fixed_increments : bool
+        Never change the increment (``DIRECT``).
+    max_increments : int
+    supports, loads : list
+        Those of this step, beside the model's.
+    new_supports, new_loads : bool
+        Forget those of earlier steps (``OP=NEW``) instead of adding and modifying.
+    outputs : list of Output
+    """
+
+    nlgeom: bool = True
+    period: float = 1.0
+    first_increment: float = 0.0
+    smallest_increment: float = 0.0
+    largest_increment: float = 0.0
+    fixed_increments: bool = False
+    max_increments: int = 1000
+    supports: list[Fixed] = field(default_factory=list)
+    loads: list[Load] = field(default_factory=list)
+    new_supports: bool = False
+    new_loads: bool = False
+    outputs: list[Output] = field(default_factory=list)
+    name: str = ""
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    procedure = ""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.period) and self.period > 0.0):
+            raise InputError(f"the period of a step must be > 0, not {self.period}", self.where)
+        for name in ("first_increment", "smallest_increment", "largest_increment"):
+            value = getattr(self, name)
+            if not value >= 0.0:
+                raise InputError(f"{name} must be >= 0, not {value}", self.where)
+        self.first_increment = min(self.first_increment or self.period, self.period)
+        self.largest_increment = self.largest_increment or self.period
+        self.smallest_increment = self.smallest_increment or min(
+            self.first_increment, 1e-6 * self.period
+        )
+        if self.max_increments < 1:
+            raise InputError("a step needs at least one increment", self.where)
+
+
+@dataclass(kw_only=True)
+class Static(Step):
+    """Static equilibrium under loads that grow with time, by Newton's method.
+
+    Parameters
+    ----------
+    increments : int, optional
+        Start with ``period / increments`` (and grow no further than that).
+    ramp : bool
+        Loads without amplitude grow linearly over the step; else they act at once.
+    tolerance : float
+        Largest residual force relative to the force scale of the model, and likewise moments.
+    max_iterations : int
+        Newton iterations before the increment is cut back.
+    path : ArcLength or DisplacementControl, optional
+        Follow the equilibrium path instead of raising the load; see :mod:`corota.model.paths`.
+        Increments are then arcs, in units in which a linear structure takes one for a load
+        factor of one; the first is a twentieth of the period by default.
+    at_limit : {"stop", "follow"}
+        What load control does where the load cannot be raised further: end there with the
+        reason, or go on along the path by arc length until the full load is reached.
+    plastic_increment : float
+        Largest growth of the equivalent plastic strain at any point in one increment of load
+        control; larger increments are cut back. 0 for no limit.
+    """
+
+    increments: int = 0
+    ramp: bool = True
+    tolerance: float = 1e-9
+    max_iterations: int = 16
+    path: ArcLength | DisplacementControl | None = None
+    at_limit: Literal["stop", "follow"] = "stop"
+    plastic_increment: float = 0.0
+
+    procedure = "static"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.plastic_increment) and self.plastic_increment >= 0.0):
+            raise InputError(
+                f"plastic_increment must be >= 0, not {self.plastic_increment}", self.where
+            )
+        if self.at_limit not in ("stop", "follow"):
+            raise InputError(
+                f"at_limit must be 'stop' or 'follow', not {self.at_limit!r}", self.where
+            )
+        if self.path is not None:
+            self._path_increments()
+            return
+        if self.increments:
+            self.first_increment = self.period / self.increments
+            self.largest_increment = self.largest_increment or self.first_increment
+        super().__post_init__()
+
+    def _path_increments(self) -> None:
+        """Defaults of arcs: no largest one, and a first one that a limit load can bear."""
+        share = 1.0 / self.increments if self.increments else 0.05
+        first = self.first_increment or share * self.period
+        largest = self.largest_increment or math.inf
+        super().__post_init__()
+        self.first_increment, self.largest_increment = first, largest
+        self.smallest_increment = min(self.smallest_increment, 1e-6 * first)
+
+
+@dataclass(kw_only=True)
+class Dynamic(Step):
+    """Motion by implicit or explicit time integration.
+
+    Parameters
+    ----------
+    increments : int, optional
+        Fixed increments of ``period / increments``.
+    scheme : {"hht", "newmark", "generalized_alpha", "energy_momentum", "central_difference"}
+    alpha : float
+        Of the HHT scheme, -1/3 to 0.
+    rho_inf : float
+        Of the generalized-alpha scheme, 0 to 1.
+    mass : {"consistent", "constant", "lumped"}
+        ``central_difference`` is always lumped.
+    rayleigh : tuple of float
+        Damping per mass [1/time] and per stiffness [time].
+    ramp : bool
+        Loads without amplitude grow over the step; else (default) they act at once.
+    error_tolerance : float
+        Local error of an automatic increment, relative to the largest displacement.
+    tolerance : float
+        Largest residual relative to the force scale.
+    max_iterations : int
+    redistribute : bool
+        Let the other nodes of their elements carry the mass of the slave nodes of contact, so
+        that contact neither creates energy nor chatters; see docs/contact.md.
+    """
+
+    increments: int = 0
+    scheme: str = "hht"
+    alpha: float = -0.05
+    rho_inf: float = 0.8
+    mass: Literal["consistent", "constant", "lumped"] = "consistent"
+    rayleigh: tuple[float, float] = (0.0, 0.0)
+    ramp: bool = False
+    error_tolerance: float = 1e-2
+    tolerance: float = 1e-9
+    max_iterations: int = 16
+    redistribute: bool = True
+
+    procedure = "dynamic"
+
+    def __post_init__(self) -> None:
+        if self.increments:
+            self.first_increment = self.period / self.increments
+            self.largest_increment = self.first_increment
+            self.fixed_increments = True
+        if self.max_increments == 1000:
+            self.max_increments = 10_000_000
+        super().__post_init__()
+        from corota.analysis.procedures.schemes import NAMES
+
+        if self.scheme not in NAMES:
+            raise InputError(f"no scheme {self.scheme!r}; there are {', '.join(NAMES)}", self.where)
+        if self.mass not in ("consistent", "constant", "lumped"):
+            raise InputError(
+                f"mass must be consistent, constant or lumped, not {self.mass!r}", self.where
+            )
+        if min(self.rayleigh) < 0.0:
+            raise InputError(f"damping must be >= 0, not {self.rayleigh}", self.where)
+
+
+@dataclass(kw_only=True)
+class Buckle(Step):
+    """Linear buckling about the state that the steps before reached.
+
+    The tangent there is followed to first order along the linear response to a perturbing
+    load; the factors are those at which it becomes singular. The perturbing load is that of
+    the step, or the model's own where the step has none; what earlier steps applied stays.
+
+    Parameters
+    ----------
+    modes : int
+        Lowest positive factors that are wanted.
+    """
+
+    modes: int = 1
+
+    procedure = "buckle"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.modes < 1:
+            raise InputError(f"at least one buckling mode is needed, not {self.modes}", self.where)
+
+
+@dataclass(kw_only=True)
+class Frequency(Step):
+    """Natural frequencies and modes about the state that the steps before reached.
+
+    Parameters
+    ----------
+    modes : int
+        How many, from the lowest.
+    mass : {"consistent", "constant", "lumped"}
+    complex_modes : bool
+        Take damping (of materials and dashpots) and, under a centrifugal load, Coriolis forces in:
+        complex frequencies with rates of growth or decay. Loads that follow the structure without
+        a potential make frequencies complex in any case.
+    rayleigh : tuple of float
+        Damping of complex modes per mass [1/time] and per stiffness [time].
+    """
+
+    modes: int = 6
+    mass: Literal["consistent", "constant", "lumped"] = "consistent"
+    complex_modes: bool = False
+    rayleigh: tuple[float, float] = (0.0, 0.0)
+
+    procedure = "frequency"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.modes < 1:
+            raise InputError(f"at least one mode is needed, not {self.modes}", self.where)
+
+
+@dataclass(kw_only=True)
+class ModalDynamic(Step):
+    """Linear transient about a state, by superposition of the modes of a frequency step.
+
+    Parameters
+    ----------
+    increments : int
+        Increments over the period; loads vary linearly within each.
+    damping : float
+        Share of critical damping of every mode.
+    rayleigh : tuple of float
+        Damping per mass [1/time] and per stiffness [time], added.
+    """
+
+    increments: int = 0
+    damping: float = 0.0
+    rayleigh: tuple[float, float] = (0.0, 0.0)
+    ramp: bool = False
+
+    procedure = "modal dynamic"
+
+    def __post_init__(self) -> None:
+        if self.increments:
+            self.first_increment = self.period / self.increments
+        super().__post_init__()
+
+
+@dataclass(kw_only=True)
+class SteadyState(Step):
+    """Harmonic response about a state, by superposition of modes.
+
+    Parameters
+    ----------
+    lowest, highest : float
+        Range of frequencies [1/time].
+    points : int
+        Frequencies between neighbouring eigenfrequencies, ends included.
+    damping : float
+        Share of critical damping of every mode.
+    rayleigh : tuple of float
+        Damping per mass [1/time] and per stiffness [time], added.
+    """
+
+    lowest: float
+    highest: float
+    points: int = 20
+    damping: float = 0.0
+    rayleigh: tuple[float, float] = (0.0, 0.0)
+    ramp: bool = False
+
+    procedure = "steady state"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.lowest < self.highest:
+            raise InputError(
+                f"the range of frequencies must rise, not {self.lowest} to {self.highest}",
+                self.where,
+            )
+
+    def sweep(self, own: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Frequencies to answer at, finer where they matter: between eigenfrequencies."""
+        import numpy as np
+
+        inside = own[(own > self.lowest) & (own < self.highest)]
+        marks = np.unique([self.lowest, *inside, self.highest])
+        parts = [np.linspace(a, b, self.points) for a, b in zip(marks, marks[1:], strict=False)]
+        return np.unique(np.concatenate(parts))

@@ -1,0 +1,101 @@
+"""One quantity over the increments of an analysis: values, plots and tables."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from corota.results.results import Results
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class History:
+    """A quantity at every kept increment.
+
+    Parameters
+    ----------
+    name : str
+        For labels, with place and way of combining.
+    values : ndarray, shape (n_frames,)
+    results : Results
+        Where it comes from; gives the other axis of a plot.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from corota.results.history import History
+    >>> float(History("U2", np.array([0.0, 1.5]), None).max())
+    1.5
+    """
+
+    name: str
+    values: Floats
+    results: Results
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
+        return np.array(self.values, dtype=dtype)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.values[index]
+
+    def max(self) -> float:
+        """Largest value."""
+        return float(self.values.max())
+
+    def min(self) -> float:
+        """Smallest value."""
+        return float(self.values.min())
+
+    def plot(
+        self,
+        against: str | History = "time",
+        *,
+        path: str | PathLike[str] | None = None,
+        ax: Any = None,
+    ) -> Any:
+        """Draw the curve; needs matplotlib (``pip install corota[plot]``).
+
+        Parameters
+        ----------
+        against : str or History
+            ``"load factor"``, ``"time"``, ``"increment"``, a scalar of the frames, or another
+            history. A load factor or force goes on the upright axis, as engineers draw it.
+        path : path-like, optional
+            Write PNG, SVG or PDF there.
+        ax : matplotlib axes, optional
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from corota import plots
+
+        other = against if isinstance(against, History) else self.results.history(against)
+        return plots.curve(self, other, path=path, ax=ax)
+
+    def to_pandas(self) -> Any:
+        """Return a ``pandas.Series`` indexed by total time.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        pandas = import_module("pandas")
+
+        index = pandas.Index([f.time for f in self.results.frames], name="time")
+        return pandas.Series(self.values, index=index, name=self.name)

@@ -1,0 +1,387 @@
+"""Results: own copies of what an analysis produced, frame by frame."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Literal
+
+from corota.errors import InputError
+from corota.results.observer import Iteration, Observer, Silent
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from corota.mesh import Mesh
+    from corota.model.model import Model
+    from corota.model.paths import CriticalPoint, Modes
+    from corota.results.history import History
+    from corota.results.variables import Averaging
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+__all__ = ["Frame", "Iteration", "Observer", "PointFields", "Results", "Silent"]
+
+
+@dataclass
+class PointFields:
+    """Values at the quadrature points of the cells of one block (same element, section).
+
+    Parameters
+    ----------
+    element : str
+    cells : ndarray of int, shape (n,)
+        Global cell indices.
+    points : ndarray, shape (n, p, 2)
+        Current positions of the quadrature points [length].
+    shape : ndarray, shape (p, k)
+        Shape functions at the points, for extrapolation to the k cell nodes.
+    frame_rotation : ndarray, shape (n,)
+        Rotation of the element frame [rad].
+    volume : ndarray, shape (n, p)
+        Reference volume of each point [length^3].
+    values : dict of str to ndarray
+        ``S`` stress (n, p, 4) and ``E`` strain (n, p, 4), rows xx, yy, zz, xy in global axes,
+        shear strain engineering; scalars (n, p): ``MISES``, ``ENER``, later ``PEEQ``, ...
+    """
+
+    element: str
+    cells: Ints
+    points: Floats
+    shape: Floats
+    frame_rotation: Floats
+    volume: Floats
+    values: dict[str, Floats]
+
+
+@dataclass
+class Frame:
+    """One converged increment.
+
+    Parameters
+    ----------
+    step, increment : int
+        From 1; increment 0 is the state at the start.
+    time, step_time : float
+        Total and step time [time].
+    factor : float
+        Load factor: share of the step's loads reached.
+    U : ndarray, shape (n_nodes, 2)
+        Displacement [length].
+    UR : ndarray, shape (n_nodes,)
+        Drilling rotation [rad], 0 at nodes without one.
+    RF : ndarray, shape (n_nodes, 3)
+        Reaction force and moment: internal minus external.
+    F : ndarray, shape (n_nodes, 3)
+        External force and moment.
+    fields : list of PointFields
+    scalars : dict of str to float
+        ``strain energy``, ``external work``, ``iterations``, ...
+    V, A : ndarray, shape (n_nodes, 3), or None
+        Velocity and acceleration, the rotation's last; in dynamic steps.
+    C : ndarray, shape (n_nodes, 5), or None
+        Contact at slave nodes, 0 elsewhere: pressure, shear traction (positive along the slave
+        surface, the body on the left), gap, slip so far, status (0 open, 1 closed, 2 slipping);
+        tractions per reference area.
+    """
+
+    step: int
+    increment: int
+    time: float
+    step_time: float
+    factor: float
+    U: Floats
+    UR: Floats
+    RF: Floats
+    F: Floats
+    fields: list[PointFields] = field(default_factory=list)
+    scalars: dict[str, float] = field(default_factory=dict)
+    V: Floats | None = None
+    A: Floats | None = None
+    C: Floats | None = None
+
+
+@dataclass
+class Results:
+    """All frames of an analysis.
+
+    Parameters
+    ----------
+    model : Model
+    frames : list of Frame
+        Increment 0 of the first step first.
+    notes : list of str
+        Warnings and remarks of the analysis.
+    info : dict
+        Counts and phase times; ``info["profile"]`` maps a phase to its seconds.
+    critical_points : list of CriticalPoint
+        Limit and bifurcation points of the paths that were followed.
+    modes : list of Modes
+        Those of each buckling step.
+    keep : {"all", "last"}
+        ``"last"`` holds one frame only, for large models whose frames go to disk.
+    """
+
+    model: Model
+    frames: list[Frame] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    info: dict[str, Any] = field(default_factory=dict)
+    keep: Literal["all", "last"] = "all"
+    critical_points: list[CriticalPoint] = field(default_factory=list)
+    modes: list[Modes] = field(default_factory=list)
+
+    def add(self, frame: Frame) -> None:
+        """Take a frame; with ``keep="last"`` it replaces the one before."""
+        if self.keep == "last":
+            self.frames.clear()
+        self.frames.append(frame)
+
+    @property
+    def mesh(self) -> Mesh:
+        """Mesh of the model."""
+        return self.model.mesh
+
+    @property
+    def times(self) -> Floats:
+        """Total times of the frames, shape (n_frames,) [time]."""
+        import numpy as np
+
+        return np.array([f.time for f in self.frames])
+
+    @property
+    def averaging(self) -> Averaging:
+        """Map from points to nodes; made once."""
+        if self._averaging is None:
+            from corota.results.variables import Averaging
+
+            self._averaging = Averaging(self.model.mesh)
+        return self._averaging
+
+    _averaging: Averaging | None = field(default=None, init=False, repr=False, compare=False)
+
+    def frame(self, index: int = -1) -> Frame:
+        """One frame, the last by default.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if not -len(self.frames) <= index < len(self.frames):
+            raise InputError(
+                f"no frame {index}; the results hold {len(self.frames)}, counted from 0"
+            )
+        return self.frames[index]
+
+    def variables(self, index: int = -1) -> list[str]:
+        """Names that :meth:`nodal`, :meth:`history` and :meth:`plot` understand."""
+        from corota.results.variables import available, nodal_names
+
+        frame = self.frame(index)
+        return [*nodal_names(frame), *available(frame.fields)]
+
+    def nodal(self, name: str, index: int = -1, section: int | None = None) -> Floats:
+        """Values at the nodes, shape (n_nodes,).
+
+        Quantities of points are extrapolated and averaged
+        (:data:`corota.results.variables.AVERAGING`).
+
+        Parameters
+        ----------
+        name : str
+            Such as ``U2``, ``S11``, ``MISES``, ``SP1``, in any case.
+        index : int
+            Frame, the last by default.
+        section : int, optional
+            Average over the cells of this section group only (:meth:`sections`).
+
+        Raises
+        ------
+        InputError
+            If there is no such variable.
+        """
+        from corota.results.variables import NODAL, canonical, nodal_value
+
+        frame = self.frame(index)
+        name = canonical(name, frame)
+        if name in NODAL:
+            return nodal_value(frame, name)
+        chosen = None if section is None else self.sections() == section
+        return self.averaging.nodal(frame.fields, name, chosen)
+
+    def sections(self) -> Ints:
+        """Section group of each cell, -1 without; shape (n_cells,)."""
+        from corota.results.variables import section_of_cells
+
+        return section_of_cells(self.model)
+
+    def cells(self, name: str, index: int = -1) -> Floats:
+        """Volume averages over the cells, shape (n_cells,), 0 where there are none.
+
+        Invariants are taken from the averaged components.
+        """
+        import numpy as np
+
+        from corota.results.variables import COMPONENTS, INVARIANTS, canonical, cell_mean, invariant
+
+        frame = self.frame(index)
+        name = canonical(name, frame)
+        tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+        out = np.zeros(self.mesh.n_cells)
+        for block in frame.fields:
+            if tensor not in block.values:
+                continue
+            mean = cell_mean(block, tensor)
+            if name in INVARIANTS:
+                mean = invariant(name, mean)
+            out[block.cells] = mean[:, column] if column >= 0 else mean
+        return out
+
+    def history(
+        self,
+        name: str,
+        at: str | int | Sequence[int] | None = None,
+        combine: Literal["auto", "sum", "mean", "max"] = "auto",
+    ) -> History:
+        """One number for each frame.
+
+        Parameters
+        ----------
+        name : str
+            A nodal or point variable, ``"time"``, ``"load factor"``, ``"step"``, ``"increment"``,
+            or a scalar of the frames such as ``"strain energy"``.
+        at : str, int or sequence of int, optional
+            Set, node index or indices; everywhere by default.
+        combine : {"auto", "sum", "mean", "max"}
+            How the nodes make one number. ``"auto"``: forces are summed; displacements at a
+            place are averaged, those of the whole model take the value of the largest size;
+            point variables take the largest point value (at a place: the mean of the nodes).
+
+        Raises
+        ------
+        InputError
+            If the variable or the set is unknown.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+        >>> model.fix("left")
+        >>> model.force("right", y=0.01)
+        >>> results = ct.solve(model, ct.Static(increments=2), threads=1)
+        >>> deflection = results.history("U2", at="right")
+        >>> len(deflection), bool(deflection[-1] > deflection[1] > 0.0)
+        (3, True)
+
+        ``deflection.plot(against="load factor")`` draws the curve.
+        """
+        import numpy as np
+
+        from corota.results.history import History
+
+        simple = {
+            "time": "time", "step time": "step_time", "load factor": "factor",
+            "factor": "factor", "step": "step", "increment": "increment",
+        }  # fmt: skip
+        if name in simple:
+            values = [float(getattr(f, simple[name])) for f in self.frames]
+            return History("load factor" if name == "factor" else name, np.array(values), self)
+        if any(name in f.scalars for f in self.frames):
+            values = [f.scalars.get(name, 0.0) for f in self.frames]
+            return History(name, np.array(values), self)
+        values = [self._one(name, i, at, combine) for i in range(len(self.frames))]
+        label = name.upper() if name.upper() in self.variables() else name
+        where = f" at {at}" if at is not None else ""
+        return History(label + where, np.array(values), self)
+
+    def _one(self, name: str, index: int, at: Any, combine: str) -> float:
+        import numpy as np
+
+        from corota.results.variables import NODAL, canonical, point_value
+
+        frame = self.frame(index)
+        name = canonical(name, frame)
+        if at is None and name not in NODAL and combine in ("auto", "max"):
+            return max(float(point_value(b, name).max()) for b in frame.fields)
+        values = self.nodal(name, index)
+        if at is not None:
+            nodes = self.mesh.nodes_of(at) if isinstance(at, str) else np.atleast_1d(at)
+            values = values[nodes]
+        if combine == "auto":
+            force = name in NODAL and name[0] in "RFM"
+            combine = "sum" if force else "mean" if at is not None else "size"
+        if combine == "size":
+            return float(values[np.argmax(np.abs(values))])
+        if combine == "sum":
+            return float(values.sum())
+        return float(values.mean() if combine == "mean" else values.max())
+
+    def plot(self, name: str = "MISES", **options: Any) -> Any:
+        """Draw a contour on the deformed shape; see :func:`corota.plots.contour`."""
+        from corota import plots
+
+        return plots.contour(self, name, **options)
+
+    def write(self, path: str | PathLike[str]) -> Path:
+        """Write to a file; its ending names the format (:mod:`corota.io.writers`).
+
+        Parameters
+        ----------
+        path : path-like
+            ``.vtkhdf``, ``.pvd``, ``.vtu``, ``.npz``, ``.csv``, ``.dat`` or ``.sta``.
+
+        Raises
+        ------
+        InputError
+            If the ending is unknown.
+        FileError
+            If the file cannot be written.
+        """
+        from corota.io.writers import write
+
+        return write(self, path)
+
+    def to_pandas(self) -> Any:
+        """Table of the scalars of the frames as a ``pandas.DataFrame``.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        pandas = import_module("pandas")
+
+        rows = [
+            {"step": f.step, "increment": f.increment, "time": f.time, "load factor": f.factor}
+            | f.scalars
+            for f in self.frames
+        ]
+        return pandas.DataFrame(rows)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        rows = {
+            "model": self.model.name,
+            "nodes": f"{self.mesh.n_nodes:,}",
+            "cells": f"{self.mesh.n_cells:,}",
+            "frames": f"{len(self.frames):,}",
+        }
+        if self.frames:
+            last = self.frames[-1]
+            rows["last"] = f"step {last.step}, increment {last.increment}, time {last.time:g}"
+            rows["largest displacement"] = f"{self.history('U').max():.6g}"
+        cells = "".join(
+            f"<tr><th style='text-align:left'>{escape(k)}</th><td>{escape(v)}</td></tr>"
+            for k, v in rows.items()
+        )
+        notes = "".join(f"<li>{escape(n)}</li>" for n in self.notes)
+        return f"<table>{cells}</table>" + (f"<ul>{notes}</ul>" if notes else "")

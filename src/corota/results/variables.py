@@ -1,0 +1,339 @@
+"""Names of result variables; values at points, averaged at nodes, and invariants."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from corota.mesh import Mesh
+    from corota.model.model import Model
+    from corota.results.results import Frame, PointFields
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Nodal variables: name to (attribute of a frame, component); -1 is the magnitude.
+NODAL: dict[str, tuple[str, int]] = {
+    "U1": ("U", 0), "U2": ("U", 1), "U": ("U", -1), "UR3": ("UR", 0),
+    "RF1": ("RF", 0), "RF2": ("RF", 1), "RF": ("RF", -1), "RM3": ("RF", 2),
+    "F1": ("F", 0), "F2": ("F", 1), "F": ("F", -1), "M3": ("F", 2),
+    "V1": ("V", 0), "V2": ("V", 1), "V": ("V", -1), "VR3": ("V", 2),
+    "A1": ("A", 0), "A2": ("A", 1), "A": ("A", -1), "AR3": ("A", 2),
+    "CPRESS": ("C", 0), "CSHEAR": ("C", 1), "COPEN": ("C", 2), "CSLIP": ("C", 3),
+    "CSTATUS": ("C", 4),
+}  # fmt: skip
+
+#: Columns of the contact values at nodes.
+CONTACT = ("CPRESS", "CSHEAR", "COPEN", "CSLIP", "CSTATUS")
+
+#: Tensors at points, rows xx, yy, zz, xy: stress, strain, plastic strain, back-stress deviator.
+TENSORS = ("S", "E", "PE", "ALPHA")
+
+#: Components of the tensors at points: name to (tensor, column).
+COMPONENTS: dict[str, tuple[str, int]] = {
+    f"{tensor}{name}": (tensor, column)
+    for tensor in TENSORS
+    for column, name in enumerate(("11", "22", "33", "12"))
+}
+
+#: Invariants: name to (tensor, which); computed from averaged components at nodes.
+INVARIANTS: dict[str, tuple[str, str]] = {
+    "MISES": ("S", "mises"),
+    "SP1": ("S", "1"), "SP2": ("S", "2"), "SP3": ("S", "3"),
+    "EP1": ("E", "1"), "EP2": ("E", "2"), "EP3": ("E", "3"),
+}  # fmt: skip
+
+#: Other spellings that :func:`canonical` understands (compared in lower case).
+ALIASES = {
+    "displacement": "U", "rotation": "UR3", "ur": "UR3", "reaction": "RF", "rf3": "RM3",
+    "von mises": "MISES", "principal": "SP1", "sxx": "S11", "syy": "S22", "szz": "S33",
+    "sxy": "S12", "exx": "E11", "eyy": "E22", "ezz": "E33", "exy": "E12",
+}  # fmt: skip
+
+#: What each variable is, with its dimension; used in labels, file metadata and documents.
+MEANING = {
+    "U1": "displacement x [length]", "U2": "displacement y [length]",
+    "U": "size of the displacement [length]", "UR3": "drilling rotation [rad]",
+    "RF1": "reaction x [force]", "RF2": "reaction y [force]",
+    "RF": "size of the reaction [force]", "RM3": "reaction moment [force*length]",
+    "F1": "external force x [force]", "F2": "external force y [force]",
+    "F": "size of the external force [force]", "M3": "external moment [force*length]",
+    "V1": "velocity x", "V2": "velocity y", "V": "speed", "VR3": "angular velocity",
+    "A1": "acceleration x", "A2": "acceleration y", "A": "size of the acceleration",
+    "AR3": "angular acceleration",
+    "S11": "Cauchy stress xx", "S22": "Cauchy stress yy", "S33": "Cauchy stress zz",
+    "S12": "Cauchy stress xy", "MISES": "von Mises stress",
+    "SP1": "largest principal stress", "SP2": "middle principal stress",
+    "SP3": "smallest principal stress",
+    "E11": "strain xx", "E22": "strain yy", "E33": "strain zz", "E12": "shear strain (angle)",
+    "EP1": "largest principal strain", "EP2": "middle principal strain",
+    "EP3": "smallest principal strain", "ENER": "strain energy density",
+    "PEEQ": "equivalent plastic strain", "YRATIO": "equivalent over yield stress",
+    "PE11": "plastic strain xx", "PE22": "plastic strain yy", "PE33": "plastic strain zz",
+    "PE12": "plastic shear strain (angle)",
+    "ALPHA11": "back-stress deviator xx", "ALPHA22": "back-stress deviator yy",
+    "ALPHA33": "back-stress deviator zz", "ALPHA12": "back-stress deviator xy",
+    "PWORK": "plastic work density", "PDISS": "plastic dissipation density",
+    "STH": "current thickness [length]",
+    "N": "axial force [force]", "M1": "moment at the first end [force*length]",
+    "M2": "moment at the second end [force*length]",
+    "CPRESS": "contact pressure", "CSHEAR": "contact shear traction",
+    "COPEN": "contact gap [length]", "CSLIP": "contact slip [length]",
+    "CSTATUS": "contact status: 0 open, 1 closed, 2 slipping",
+}  # fmt: skip
+
+#: The order of operations, written into result files.
+AVERAGING = (
+    "Components at the quadrature points are extrapolated to the nodes of each cell (linear fit in "
+    "triangles, bilinear in quadrilaterals, least squares), averaged over the cells at a node with "
+    "equal weights, and invariants are taken from the averaged components."
+)
+
+
+def mises(stress: Floats) -> Floats:
+    """Von Mises stress of rows xx, yy, zz, xy; shape (..., 4) to (...)."""
+    xx, yy, zz, xy = (stress[..., i] for i in range(4))
+    square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2
+    return np.asarray(np.sqrt(square), dtype=np.float64)
+
+
+def principal(tensor: Floats, shear: float = 1.0) -> Floats:
+    """Principal values, largest first, out-of-plane one included; (..., 4) to (..., 3).
+
+    Parameters
+    ----------
+    tensor : ndarray, shape (..., 4)
+        Rows xx, yy, zz, xy.
+    shear : float
+        Factor from the stored shear to the tensor's: 1 for stress, 1/2 for strain.
+    """
+    xx, yy, zz, xy = (tensor[..., i] for i in range(4))
+    middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), shear * xy)
+    three = np.stack([middle + radius, middle - radius, zz], axis=-1)
+    return np.asarray(-np.sort(-three, axis=-1), dtype=np.float64)
+
+
+def invariant(name: str, tensor: Floats) -> Floats:
+    """Values of an invariant of :data:`INVARIANTS` from its tensor, (..., 4) to (...)."""
+    kind, which = INVARIANTS[name]
+    if which == "mises":
+        return mises(tensor)
+    return np.asarray(principal(tensor, 1.0 if kind == "S" else 0.5)[..., int(which) - 1])
+
+
+def available(fields: Iterable[PointFields]) -> list[str]:
+    """Names that can be asked of point fields: components, invariants and scalars."""
+    have = {name for block in fields for name in block.values}
+    found = [name for name, (tensor, _) in COMPONENTS.items() if tensor in have]
+    found += [name for name, (tensor, _) in INVARIANTS.items() if tensor in have]
+    return found + sorted(have - set(TENSORS) - set(INVARIANTS))
+
+
+def canonical(name: str, frame: Frame) -> str:
+    """Name of a variable as the tables have it.
+
+    Raises
+    ------
+    InputError
+        If there is no such variable; names the nearest and lists all.
+    """
+    valid = [*nodal_names(frame), *available(frame.fields)]
+    return match_name(name, valid)
+
+
+def match_name(name: str, valid: list[str]) -> str:
+    """Find a name in a list, whatever its case or alias; else raise with the list."""
+    wanted = ALIASES.get(name.lower(), name)
+    for candidate in valid:
+        if candidate.lower() == wanted.lower():
+            return candidate
+    near = get_close_matches(wanted.upper(), valid, n=1)
+    hint = f"; did you mean {near[0]}?" if near else ""
+    raise InputError(f"no result variable named {name!r}{hint} There are: {', '.join(valid)}")
+
+
+def nodal_names(frame: Frame) -> list[str]:
+    """Names of :data:`NODAL` that a frame has."""
+    return [name for name, (where, _) in NODAL.items() if getattr(frame, where) is not None]
+
+
+def nodal_value(frame: Frame, name: str) -> Floats:
+    """A variable of :data:`NODAL` at all nodes, shape (n_nodes,)."""
+    attribute, column = NODAL[name]
+    array = getattr(frame, attribute)
+    if array is None:  # a static step in an analysis that moves elsewhere
+        return np.zeros(len(frame.U))
+    if array.ndim == 1:
+        return np.asarray(array)
+    if column < 0:
+        return np.asarray(np.hypot(array[:, 0], array[:, 1]))
+    return np.asarray(array[:, column])
+
+
+def point_value(block: PointFields, name: str) -> Floats:
+    """A variable at the points of a block, shape (n, p)."""
+    if name in COMPONENTS:
+        tensor, column = COMPONENTS[name]
+        return block.values[tensor][..., column]
+    if name in INVARIANTS:
+        return invariant(name, block.values[INVARIANTS[name][0]])
+    return block.values[name]
+
+
+#: Natural coordinates of the nodes of each cell kind, in the order of the mesh.
+_TRIANGLE = [(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]
+_SQUARE = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)]
+
+
+def natural_nodes(n_nodes: int) -> Floats:
+    """Natural coordinates of the nodes of a cell, shape (n_nodes, 2)."""
+    table = _TRIANGLE if n_nodes in (3, 6) else _SQUARE
+    return np.array(table[:n_nodes], dtype=np.float64)
+
+
+def extrapolation(shape: Floats) -> Floats:
+    """Matrix from values at the points of a cell to values at its nodes, shape (k, p).
+
+    A least-squares fit: constant with one or two points, otherwise linear in triangles and
+    bilinear in quadrilaterals (linear if there are three points).
+
+    Parameters
+    ----------
+    shape : ndarray, shape (p, k)
+        Shape functions at the points.
+    """
+    points, nodes = shape.shape
+    corners = natural_nodes(nodes)
+    at = shape @ corners
+    terms = 1 if points < 3 else 3 if nodes in (3, 6) or points == 3 else 4
+
+    def basis(x: Floats) -> Floats:
+        every = [np.ones(len(x)), x[:, 0], x[:, 1], x[:, 0] * x[:, 1]]
+        return np.stack(every[:terms], axis=1)
+
+    return np.asarray(basis(corners) @ np.linalg.pinv(basis(at)))
+
+
+def section_of_cells(model: Model) -> Ints:
+    """Number of the section group of each cell, -1 without; shape (n_cells,).
+
+    Sections that share material, thickness, state and orientation make one group: triangles
+    and quadrilaterals of one part are averaged together.
+    """
+    group = np.full(model.mesh.n_cells, -1, dtype=np.int64)
+    kinds: list[tuple[object, ...]] = []
+    for section in model.sections:
+        key = (section.material, section.thickness, section.plane, section.orientation)
+        if key not in kinds:
+            kinds.append(key)
+        where = section.cells
+        if isinstance(where, str):
+            if where in model.mesh.cell_sets:
+                group[model.mesh.cell_sets[where]] = kinds.index(key)
+            else:
+                group[:] = kinds.index(key)
+        else:
+            group[where] = kinds.index(key)
+    return group
+
+
+class Averaging:
+    """Point values averaged at nodes; keeps the maps of the last blocks seen.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        self._nodes: dict[tuple[int, int, int], tuple[Ints, Ints]] = {}
+
+    def cell_nodes(self, cells: Ints) -> Ints:
+        """Node indices of cells of one kind, shape (n, k)."""
+        key = (len(cells), int(cells[0]), int(cells[-1]))
+        known = self._nodes.get(key)
+        if known is not None and (known[0] is cells or np.array_equal(known[0], cells)):
+            return known[1]
+        block, _ = self.mesh.locate(int(cells[0]))
+        offset = int(self.mesh.offsets[block])
+        nodes = self.mesh.cells[block].nodes[cells - offset]
+        self._nodes[key] = (cells, nodes)
+        return nodes
+
+    def average(
+        self, fields: list[PointFields], names: list[str], chosen: Ints | None = None
+    ) -> dict[str, Floats]:
+        """Average stored values (tensors and scalars) at nodes.
+
+        Parameters
+        ----------
+        fields : list of PointFields
+        names : list of str
+            Keys of ``values``; a block without one counts as zero.
+        chosen : ndarray of bool, shape (n_cells,), optional
+            Cells that take part; all by default.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (n_nodes, 4) or (n_nodes,)
+            Zero at nodes without a cell.
+        """
+        n = self.mesh.n_nodes
+        count = np.zeros(n)
+        sums: dict[str, Floats] = {}
+        for name in names:
+            width = {b.values[name].shape[2:] for b in fields if name in b.values} or {()}
+            sums[name] = np.zeros((n, *width.pop()))
+        for block in fields:
+            pick = slice(None) if chosen is None else chosen[block.cells]
+            nodes = self.cell_nodes(block.cells)[pick]
+            flat = nodes.ravel()
+            if not flat.size:
+                continue
+            count += np.bincount(flat, minlength=n)
+            matrix = extrapolation(block.shape)
+            # einsum, not @: threads of a BLAS would spin beside the solver for so small a factor.
+            for name in names:
+                if name not in block.values:
+                    continue
+                values = block.values[name][pick]
+                if values.ndim == 2:
+                    at = np.einsum("np,kp->nk", values, matrix)
+                    sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
+                    continue
+                for column in range(values.shape[2]):
+                    at = np.einsum("np,kp->nk", values[..., column], matrix)
+                    sums[name][:, column] += np.bincount(flat, at.ravel(), minlength=n)
+        share = 1.0 / np.maximum(count, 1.0)
+        return {k: (v.T * share).T for k, v in sums.items()}
+
+    def nodal(self, fields: list[PointFields], name: str, chosen: Ints | None = None) -> Floats:
+        """One component, invariant or scalar at the nodes, shape (n_nodes,)."""
+        if name in COMPONENTS:
+            tensor, column = COMPONENTS[name]
+            return self.average(fields, [tensor], chosen)[tensor][:, column]
+        if name in INVARIANTS:
+            tensor = INVARIANTS[name][0]
+            return invariant(name, self.average(fields, [tensor], chosen)[tensor])
+        return self.average(fields, [name], chosen)[name]
+
+
+def cell_mean(block: PointFields, name: str) -> Floats:
+    """Volume average over each cell of stored values, shape (n,) or (n, 4)."""
+    whole = block.volume.sum(axis=1, keepdims=True)
+    # Springs have no volume.
+    weight = np.where(whole > 0.0, block.volume, 1.0)
+    weight = weight / weight.sum(axis=1, keepdims=True)
+    values = block.values[name]
+    return np.asarray(np.einsum("np,np...->n...", weight, values))
