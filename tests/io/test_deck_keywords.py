@@ -337,11 +337,13 @@ def test_several_steps_with_new_and_modified_conditions(tmp_path: Path) -> None:
     )
     model = read(tmp_path, text)
     first, second, third = model.steps
-    assert [s.nlgeom for s in model.steps] == [True, True, False]
+    # Once on, NLGEOM stays on; the deck is told.
+    assert [s.nlgeom for s in model.steps] == [True, True, True]
+    assert any("NLGEOM=NO" in note for note in model.notes)
     assert [s.ramp for s in model.steps] == [False, True, True]
     assert [load.value for load in first.loads] == [1.0, 2.0]
-    assert (second.new_loads, second.new_supports) == (True, False)
-    assert (third.new_loads, third.new_supports) == (False, True)
+    assert (second.new_loads, second.new_supports) == ({"force"}, False)
+    assert (third.new_loads, third.new_supports) == (set(), True)
     # Supports before the first step do not outlive OP=NEW.
     assert (len(model.supports), len(first.supports), len(third.supports)) == (0, 3, 3)
 

@@ -109,7 +109,7 @@ def test_a_python_model_survives_a_round_trip(tmp_path: Path) -> None:
     model.gravity(y=-9.81, cells=[0, 1])
     model.steps = [
         ct.Static(increments=4, tolerance=1e-11, max_iterations=7),
-        ct.Static(nlgeom=False, new_loads=True),
+        ct.Static(new_loads=True),
     ]
     again = ct.read(write(model, tmp_path / "model.inp"))
     # The model's loads act in every step; a deck says them in the first, and after OP=NEW.

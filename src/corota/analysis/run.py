@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import time as clock
 import warnings
+from copy import copy
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -95,6 +96,30 @@ def solve(
     return run.run()
 
 
+def keep_nlgeom(steps: Sequence[Step]) -> tuple[list[Step], list[str]]:
+    """Steps in which large rotations stay in force once they are, and what to say about it.
+
+    The linear theory has another displacement under the same loads: a linear step after a
+    nonlinear one would jump.
+    """
+    kept: list[Step] = []
+    notes: list[str] = []
+    nonlinear = 0
+    for number, step in enumerate(steps, start=1):
+        if step.procedure in WITH_CONTACT:
+            if step.nlgeom and not nonlinear:
+                nonlinear = number
+            elif nonlinear and not step.nlgeom:
+                step = copy(step)
+                step.nlgeom = True
+                notes.append(
+                    f"step {number} keeps the large rotations (nlgeom) of step {nonlinear}: the "
+                    "linear theory would jump to another displacement under the same loads"
+                )
+        kept.append(step)
+    return kept, notes
+
+
 class Analysis:
     """One run of :func:`solve`."""
 
@@ -112,10 +137,13 @@ class Analysis:
 
         if steps is None:
             steps = model.steps or [Static()]
-        self.steps = [steps] if isinstance(steps, Step) else list(steps)
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
+        self.steps, notes = keep_nlgeom([steps] if isinstance(steps, Step) else steps)
+        for note in notes:
+            self.results.notes.append(note)
+            warnings.warn(note, stacklevel=3)
         self.threads = threads or os.cpu_count() or 1
         if isinstance(solver, str):
             if solver not in SOLVERS:

@@ -124,6 +124,9 @@ class BodyForce:
     kind : {"gravity", "centrifugal"}
         ``gravity``: value ``(bx, by)`` [length/time^2];
         ``centrifugal``: value ``(omega^2, x0, y0)`` [1/time^2, length, length].
+    direction : tuple of float or None
+        Of gravity, as it was given: a negative size and a size of zero keep their direction.
+        That of the value by default.
     """
 
     cells: str | Ints
@@ -131,6 +134,14 @@ class BodyForce:
     value: tuple[float, ...]
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+    direction: tuple[float, float] | None = None
+
+    @property
+    def axis(self) -> NDArray[np.float64] | None:
+        """Unit vector along gravity, shape (2,); None without any direction."""
+        along = np.array(self.direction or self.value[:2])
+        size = float(np.hypot(*along))
+        return along / size if size > 0.0 else None
 
 
 @dataclass
@@ -210,3 +221,14 @@ class InitialStress:
 
 
 Load = NodalForce | EdgeLoad | BodyForce | Temperature
+#: Loads that ``OP=NEW`` takes away together: those of *CLOAD, of *DLOAD and *DSLOAD, and of
+#: *TEMPERATURE.
+LoadKind = Literal["force", "distributed", "temperature"]
+LOAD_KINDS: tuple[LoadKind, ...] = ("force", "distributed", "temperature")
+
+
+def kind_of(load: Load) -> LoadKind:
+    """The kind of a load that ``OP=NEW`` concerns."""
+    if isinstance(load, NodalForce):
+        return "force"
+    return "temperature" if isinstance(load, Temperature) else "distributed"

@@ -8,13 +8,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from corota.errors import InputError
+from corota.model.loads import LOAD_KINDS
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     import numpy as np
     from numpy.typing import NDArray
 
     from corota.errors import Location
-    from corota.model.loads import Fixed, Load
+    from corota.model.loads import Fixed, Load, LoadKind
     from corota.model.paths import ArcLength, DisplacementControl
 
 
@@ -53,7 +56,8 @@ class Step:
     Parameters
     ----------
     nlgeom : bool
-        Large rotations; otherwise the same elements in a fixed frame.
+        Large rotations; otherwise the same elements in a fixed frame. Once on, it stays on in
+        later static and dynamic steps. Frequencies without it leave the preload out.
     period : float
         Duration of the step [time].
     first_increment, smallest_increment, largest_increment : float
@@ -63,8 +67,10 @@ class Step:
     max_increments : int
     supports, loads : list
         Those of this step, beside the model's.
-    new_supports, new_loads : bool
-        Forget those of earlier steps (``OP=NEW``) instead of adding and modifying.
+    new_supports : bool
+        Forget the supports of earlier steps (``OP=NEW``) instead of adding and modifying.
+    new_loads : bool or collection of {"force", "distributed", "temperature"}
+        Forget the loads of earlier steps: all, or those of some kinds.
     outputs : list of Output
     """
 
@@ -78,7 +84,7 @@ class Step:
     supports: list[Fixed] = field(default_factory=list)
     loads: list[Load] = field(default_factory=list)
     new_supports: bool = False
-    new_loads: bool = False
+    new_loads: bool | Collection[LoadKind] = False
     outputs: list[Output] = field(default_factory=list)
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
@@ -86,6 +92,7 @@ class Step:
     procedure = ""
 
     def __post_init__(self) -> None:
+        self._kinds()
         if not (math.isfinite(self.period) and self.period > 0.0):
             raise InputError(f"the period of a step must be > 0, not {self.period}", self.where)
         for name in ("first_increment", "smallest_increment", "largest_increment"):
@@ -99,6 +106,21 @@ class Step:
         )
         if self.max_increments < 1:
             raise InputError("a step needs at least one increment", self.where)
+
+    def _kinds(self) -> None:
+        """Name the kinds of loads that are forgotten."""
+        given = self.new_loads
+        wanted = (LOAD_KINDS if given else ()) if isinstance(given, bool) else given
+        if unknown := set(wanted) - set(LOAD_KINDS):
+            raise InputError(
+                f"no kind of load {sorted(unknown)[0]!r}; there are {', '.join(LOAD_KINDS)}",
+                self.where,
+            )
+        self.new_loads = frozenset(wanted)
+
+    def renews(self, kind: LoadKind) -> bool:
+        """Whether the step forgets earlier loads of a kind."""
+        return not isinstance(self.new_loads, bool) and kind in self.new_loads
 
 
 @dataclass(kw_only=True)
@@ -239,9 +261,12 @@ class Buckle(Step):
     ----------
     modes : int
         Lowest positive factors that are wanted.
+    preload : bool
+        Start from the state that the steps before reached; else from the structure without load.
     """
 
     modes: int = 1
+    preload: bool = True
 
     procedure = "buckle"
 

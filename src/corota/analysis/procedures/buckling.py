@@ -64,8 +64,12 @@ def buckle_step(
     """
     turning = system.turning
     system.turning = True
+    base = state.u
+    if not step.preload:
+        _check_unloaded(system, step)
+        base = np.zeros_like(state.u)
     try:
-        factors, shapes = _solve(system, step, number, state)
+        factors, shapes = _solve(system, step, number, base)
     finally:
         # A perturbation leaves nothing behind.
         system.conditions.end_time = 0.0
@@ -79,9 +83,21 @@ def buckle_step(
     save(state, 1, 0.0, scalars)
 
 
-def _solve(system: System, step: Buckle, number: int, state: State) -> tuple[Floats, Floats]:
-    force, move, loads = _perturbation(system, step, number, state.u)
-    base = _symmetric(system, system.evaluate(state.u, 0.0))
+def _check_unloaded(system: System, step: Buckle) -> None:
+    """Refuse to leave out a preload that has changed the material."""
+    laws = {block.section.material.law for block in system.blocks}
+    heated = system.free.expands and not system.free.follows(system.free.start)
+    if heated or laws - {"elastic", "orthotropic"}:
+        raise UnsupportedError(
+            "buckling without the preload needs elastic material at its initial temperature; "
+            "keep the preload (*STEP, PERTURBATION; preload=True) or buckle in the first step",
+            step.where,
+        )
+
+
+def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats, Floats]:
+    force, move, loads = _perturbation(system, step, number, u)
+    base = _symmetric(system, system.evaluate(u, 0.0))
     values = _unknowns(system, base, base.residual)
     response, negative = system.correct(replace(base, values=base.values.copy()), force, move)
     if negative > 0:
@@ -90,7 +106,7 @@ def _solve(system: System, step: Buckle, number: int, state: State) -> tuple[Flo
             "linear buckling needs a stable one; follow its path instead (path=ArcLength(...))",
             step.where,
         )
-    change = _derivative(system, state.u, values, response, loads)
+    change = _derivative(system, u, values, response, loads)
     largest_move = _moved(system, response, loads)
     held, free = system.conditions.held, _free(system)
     product = system.core.multiply if system.ties is None else system.ties.places.multiply

@@ -2,29 +2,30 @@
 
 Without an amplitude a static load or support moves linearly from what the last step reached
 to its new value; with one it is the value times the amplitude. What a step does not mention
-stays (``OP=MOD``) or goes back to zero over the step (``OP=NEW``). A support that is
-released leaves its reaction as a force that fades out over the step.
+stays (``OP=MOD``): an amplitude of total time runs on, one of step time ends with its step and
+leaves its last value. With ``OP=NEW`` loads of that kind go back to zero, over a static step
+and at once in motion. A support that is released leaves its reaction as a force that fades out
+over the step.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import _core
+from corota.analysis.distributed import DistributedLoads
+from corota.analysis.load_history import LoadHistory
 from corota.errors import ModelError, UnsupportedError
-from corota.mesh import EDGES
-from corota.model import elements
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
+    from corota.analysis.distributed import DistributedLoad
     from corota.analysis.equations import System
     from corota.errors import Location
     from corota.model.loads import Fixed, Load
@@ -36,38 +37,12 @@ if TYPE_CHECKING:
 
 #: Procedures whose state stays as it is.
 LINEAR = ("modal dynamic", "steady state")
+#: Procedures that look at a state and leave the loads as they are.
+PERTURBATION = ("frequency", "buckle")
+#: Procedures in which loads that are taken away go at once.
+ABRUPT = ("dynamic", *LINEAR)
 #: Times whose external forces are kept: those an increment goes from and to.
 KNOWN = 2
-
-
-class Course:
-    """How numbers go through a step: from `begin` to `end`, or `end` times an amplitude."""
-
-    def __init__(self, n: int) -> None:
-        self.begin = np.zeros(n)
-        self.end = np.zeros(n)
-        self.amplitude = np.zeros(n, np.int64)  # index into the names, 0 is the ramp
-
-    def at(self, ramp: float, factors: Floats) -> Floats:
-        """Values where the ramp has `ramp` and the amplitudes have `factors`."""
-        out: Floats = self.begin + ramp * (self.end - self.begin)
-        if len(factors) > 1:
-            named = self.amplitude > 0
-            out[named] = self.end[named] * factors[self.amplitude[named]]
-        return out
-
-
-@dataclass
-class Spread:
-    """A distributed load with its course: one scale for a fixed vector, or a pressure."""
-
-    key: tuple[object, ...]
-    vector: Floats | None  # force per unit scale by dof; None for a following pressure
-    edges: object | None  # core object of a pressure
-    begin: float
-    end: float
-    amplitude: int
-    item: EdgeLoad | BodyForce
 
 
 class Conditions:
@@ -93,21 +68,26 @@ class Conditions:
         #: External forces that do not follow the displacement, by the times asked for last.
         self._known: dict[float, Floats] = {}
         self._following = False
-        self.support = Course(n)
-        self.force = Course(n)
+        self.support = LoadHistory(n)
+        self.force = LoadHistory(n)
         #: Nodal forces with an amplitude: their values at factor one, by amplitude.
         self.timed: dict[int, Floats] = {}
+        #: Nodal forces at the end of the step before.
+        self._reached = np.zeros(n)
         self.fading = np.zeros(n)
-        self.spread: list[Spread] = []
+        self.distributed = DistributedLoads(system)
         #: Temperatures of nodes, absolute.
-        self.temperature = Course(len(system.free.start))
+        self.temperature = LoadHistory(len(system.free.start))
         self.temperature.begin[:] = self.temperature.end[:] = system.free.start
         self.names = ["", *system.model.amplitudes]
+        #: Amplitudes that count total time go on in later steps.
+        self._runs_on = np.array([False, *(a.total_time for a in system.model.amplitudes.values())])
         self.period = 1.0
         self.end_time = 1.0  # step time at which the step ended: a path may end anywhere
         self.time = 0.0
         self.ramp = True
-        self._cells: dict[int, tuple[int, int]] = {}
+        self.abrupt = False  # whether loads that are taken away go at once
+        self._loaded = False  # whether the model's own loads act yet
 
     # -- steps -------------------------------------------------------------------------
 
@@ -122,43 +102,60 @@ class Conditions:
         first = reaction is None
         self.fading = np.zeros(self.system.n_dofs)
         if not first:
-            end = self.end_time
-            reached = self._nodal(end)
-            self.force.begin, self.force.end = reached, reached.copy()
-            self.timed = {}
-            for load in self.spread:
-                load.begin = load.end = self._scale(load, end)
-                load.amplitude = 0
-            heat = self.temperature
-            heat.begin = self._values(heat, end)
-            heat.end, heat.amplitude = heat.begin.copy(), np.zeros_like(heat.amplitude)
+            self._carry()
         held_before = self.held.copy()
-        self.support.begin, self.support.end = u.copy(), u.copy()
-        self.support.amplitude[:] = 0
-        if step.new_loads:
-            self.force.end[:] = 0.0
-            for load in self.spread:
-                load.end = 0.0
-            self.temperature.end = self.system.free.start.copy()
+        self.support.carry(u, self._runs_on)
         if step.new_supports:
             self.held[:] = False
+            self.support.amplitude[:] = 0
+        self.period, self.time, self.end_time = step.period, time, step.period
+        self.ramp = getattr(step, "ramp", True)
+        self.abrupt = step.procedure in ABRUPT
         model = self.system.model
-        loads = [*(model.loads if first or step.new_loads else []), *step.loads]
-        supports = [*(model.supports if first or step.new_supports else []), *step.supports]
-        self._set_supports(supports)
-        self._set_loads(loads)
+        with_model = first or step.new_supports
+        self._set_supports([*(model.supports if with_model else []), *step.supports])
+        if step.procedure in PERTURBATION:
+            # What perturbs a state is none of the loads that later steps start from.
+            self.end_time = 0.0
+        else:
+            self._change_loads(step)
         if reaction is not None:
             released = held_before & ~self.held
             self.fading[released] = reaction[released]
-        self.period, self.time, self.end_time = step.period, time, step.period
-        self.ramp = getattr(step, "ramp", True)
         self._known = {}
-        if step.procedure in LINEAR and self.heating.any():
+        if step.procedure in LINEAR and self._heats():
             raise UnsupportedError(
                 f"temperatures do not change in a {step.procedure} step; heat in a static or "
                 "dynamic step before",
                 step.where,
             )
+
+    def _change_loads(self, step: Step) -> None:
+        """Take away what the step does not keep, and set what it names."""
+        if step.renews("force"):
+            self.force.begin, self.timed = self._reached.copy(), {}
+            self.force.remove()
+        if step.renews("distributed"):
+            self.distributed.remove()
+        if step.renews("temperature"):
+            self.temperature.remove(self.system.free.start)
+        model = self.system.model.loads
+        again = [x for x in model if not self._loaded or step.renews(kind_of(x))]
+        self._loaded = True
+        self._set_loads([*again, *step.loads])
+
+    def _carry(self) -> None:
+        """Let the loads go on from what the step reached, or along their amplitudes."""
+        end = self.end_time
+        self.distributed.carry(lambda load: self._scale(load, end), self._runs_on)
+        self.temperature.carry(self.temperatures(end), self._runs_on)
+        self._reached = self._nodal(end)
+        self.timed = {a: values for a, values in self.timed.items() if self._runs_on[a]}
+        factors = self._factors(end)
+        ended = self._reached.copy()
+        for amplitude, values in self.timed.items():
+            ended -= factors[amplitude] * values
+        self.force.carry(ended, self._runs_on)
 
     def add(self, loads: list[Load], supports: Iterable[Fixed]) -> None:
         """Add loads and supports that grow from zero, apart from any step."""
@@ -185,8 +182,8 @@ class Conditions:
             return force, None
         force = force.copy()
         triplets: list[tuple[Ints, Ints, Floats]] = []
-        for load in self.spread:
-            if load.vector is None and (scale := self._scale(load, step_time)) != 0.0:
+        for load in self.distributed.loads:
+            if load.follows and (scale := self._scale(load, step_time)) != 0.0:
                 turning = self.system.turning
                 moved = self.system.by_node(u)[:, :2] if turning else 0.0
                 x = np.ascontiguousarray(self.system.model.mesh.points + moved)
@@ -215,14 +212,14 @@ class Conditions:
         """External forces at a time that do not follow the displacement."""
         force = self._nodal(step_time)
         force += (1.0 - self._ramp(step_time)) * self.fading
-        for load in self.spread:
+        for load in self.distributed.loads:
             if load.vector is not None:
                 force += self._scale(load, step_time) * load.vector
         force.flags.writeable = False
         if len(self._known) >= KNOWN:
             self._known.clear()
         self._known[step_time] = force
-        self._following = any(load.vector is None for load in self.spread)
+        self._following = any(load.follows for load in self.distributed.loads)
         return force
 
     def rate(self, u: Floats) -> tuple[Floats, Floats]:
@@ -248,7 +245,7 @@ class Conditions:
             If there is an amplitude, an abrupt load or a released support.
         """
         named = {int(i) for i in np.unique(self.support.amplitude[self.held])}
-        named |= set(self.timed) | {load.amplitude for load in self.spread}
+        named |= set(self.timed) | {load.amplitude for load in self.distributed.loads}
         named |= {int(i) for i in np.unique(self.temperature.amplitude)}
         for index in named - {0}:
             raise ModelError(
@@ -277,14 +274,18 @@ class Conditions:
         """Body forces that act at the end of the step, each with its scale."""
         return [
             (load.item, scale)
-            for load in self.spread
+            for load in self.distributed.loads
             if isinstance(load.item, BodyForce) and (scale := self._scale(load, self.period)) != 0.0
         ]
 
-    # -- courses -----------------------------------------------------------------------
+    # -- histories ---------------------------------------------------------------------
 
     def _ramp(self, step_time: float) -> float:
         return step_time / self.period if self.ramp else 1.0
+
+    def _removal(self, step_time: float) -> float:
+        """Share of a load that is taken away which is gone by now."""
+        return 1.0 if self.abrupt else step_time / self.period
 
     def _factors(self, step_time: float) -> Floats:
         factors = np.ones(len(self.names))
@@ -294,20 +295,33 @@ class Conditions:
             factors[i] = table(step_time + (self.time if table.total_time else 0.0))
         return factors
 
-    def _values(self, course: Course, step_time: float) -> Floats:
-        return course.at(self._ramp(step_time), self._factors(step_time))
+    def _values(self, history: LoadHistory, step_time: float) -> Floats:
+        return history.at(self._ramp(step_time), self._removal(step_time), self._factors(step_time))
 
     def _nodal(self, step_time: float) -> Floats:
+        force = self._values(self.force, step_time)
         factors = self._factors(step_time)
-        force = self.force.at(self._ramp(step_time), factors)
         for amplitude, values in self.timed.items():
             force += factors[amplitude] * values
         return force
 
-    def _scale(self, load: Spread, step_time: float) -> float:
+    def _scale(self, load: DistributedLoad, step_time: float) -> float:
         if load.amplitude:
             return load.end * float(self._factors(step_time)[load.amplitude])
-        return load.begin + self._ramp(step_time) * (load.end - load.begin)
+        share = self._removal(step_time) if load.removed else self._ramp(step_time)
+        return load.begin + share * (load.end - load.begin)
+
+    def _heats(self) -> bool:
+        """Whether temperatures change in the step."""
+        tables = self.system.model.amplitudes
+        times = {0.0, self.period}
+        for index in np.unique(self.temperature.amplitude):
+            if index:
+                table = tables[self.names[index]]
+                own = table.time - (self.time if table.total_time else 0.0)
+                times |= set(own[(own > 0.0) & (own < self.period)].tolist())
+        start = self.temperature.begin
+        return any(not np.array_equal(self.temperatures(t), start) for t in times)
 
     def _amplitude(self, name: str, where: Location | None) -> int:
         if name not in self.names:
@@ -332,8 +346,7 @@ class Conditions:
             if self.system.ties is not None:
                 self.system.ties.refuse_held(dofs, item.where)
             self.held[dofs] = True
-            self.support.end[dofs] = item.value
-            self.support.amplitude[dofs] = self._amplitude(item.amplitude, item.where)
+            self.support.set(dofs, item.value, self._amplitude(item.amplitude, item.where))
         self.fixed = np.flatnonzero(self.held)
 
     def _set_loads(self, loads: list[Load]) -> None:
@@ -344,32 +357,21 @@ class Conditions:
         for heated in loads:
             if isinstance(heated, Temperature):
                 self._heat(heated)
-        spread = [item for item in loads if isinstance(item, EdgeLoad | BodyForce)]
-        named = {self._key(item) for item in spread}
-        ramped = {self._key(item) for item in spread if not item.amplitude}
-        for old in self.spread:
-            if old.key in named:
-                # The old load fades while the new one grows: a ramp between the two.
-                old.end, old.amplitude = 0.0, 0
-                old.begin = old.begin if old.key in ramped else 0.0
-        self.spread = [s for s in self.spread if s.begin != 0.0 or s.end != 0.0]
-        fresh: list[Spread] = []
-        for load in spread:
-            self._add_spread(load, fresh)
-        self.spread += fresh
+        self.distributed.set(
+            [item for item in loads if isinstance(item, EdgeLoad | BodyForce)], self._amplitude
+        )
 
     def _heat(self, item: Temperature) -> None:
         self.system.free.require_expansion(item.where)
-        course, amplitude = self.temperature, self._amplitude(item.amplitude, item.where)
+        amplitude = self._amplitude(item.amplitude, item.where)
         every = isinstance(item.nodes, str) and not item.nodes
-        nodes = np.arange(len(course.end)) if every else self._nodes(item.nodes)
+        nodes = np.arange(len(self.temperature.end)) if every else self._nodes(item.nodes)
         try:
-            course.end[nodes] = item.value
+            self.temperature.set(nodes, item.value, amplitude)
         except ValueError:
             raise ModelError(
                 f"{np.size(item.value)} temperatures for {len(nodes)} nodes", item.where
             ) from None
-        course.amplitude[nodes] = amplitude
 
     def _force_dofs(self, item: NodalForce) -> Ints:
         nodes = self._nodes(item.nodes)
@@ -394,8 +396,10 @@ class Conditions:
             dofs = self._force_dofs(item)
             named[dofs] = True
             ramped[dofs] |= not item.amplitude
-        self.force.end[named] = 0.0
-        self.force.begin[named & ~ramped] = 0.0
+        for values in self.timed.values():
+            values[named] = 0.0
+        self.force.set(np.flatnonzero(named), 0.0, 0)
+        self.force.begin[named] = np.where(ramped, self._reached, 0.0)[named]
 
     def _add_force(self, item: NodalForce) -> None:
         # Several entries of one step add up, each with its own amplitude.
@@ -404,106 +408,6 @@ class Conditions:
         if amplitude:
             target = self.timed.setdefault(amplitude, np.zeros(self.system.n_dofs))
         np.add.at(target, self._force_dofs(item), item.value)
-
-    def _key(self, item: EdgeLoad | BodyForce) -> tuple[object, ...]:
-        where = item.edges if isinstance(item, EdgeLoad) else item.cells
-        name = where if isinstance(where, str) else np.asarray(where).tobytes()
-        return (type(item).__name__, item.kind, name)
-
-    def _add_spread(self, item: EdgeLoad | BodyForce, fresh: list[Spread]) -> None:
-        key, amplitude = self._key(item), self._amplitude(item.amplitude, item.where)
-        vector: Floats | None = None
-        edges: object | None = None
-        end, edge = 1.0, isinstance(item, EdgeLoad)
-        if isinstance(item, BodyForce):
-            vector = self._body(item)
-        else:
-            core, area = self._edges(item)
-            if item.kind == "pressure":
-                edges, end = core, item.value[0]
-            else:
-                share = 1.0 / area if item.total else 1.0
-                x = self.system.model.mesh.points
-                t = (share * item.value[0], share * item.value[1])
-                vector = self.system.from_nodes(core.traction(x, t))  # type: ignore[attr-defined]
-        for other in fresh:
-            # Body forces stay apart: each is known by its item.
-            if edge and (other.key, other.amplitude) == (key, amplitude):
-                if vector is None or other.vector is None:
-                    other.end += end
-                else:
-                    other.vector = other.vector + vector
-                return
-        fresh.append(Spread(key, vector, edges, 0.0, end, amplitude, item))
-
-    def _body(self, item: BodyForce) -> Floats:
-        density = [b.section.material.rho for b in self.system.blocks]
-        mesh = self.system.model.mesh
-        inside = np.ones(mesh.n_cells, bool)
-        if not isinstance(item.cells, str):
-            inside[:] = False
-            inside[item.cells] = True
-        elif item.cells not in ("", "all"):
-            if item.cells not in mesh.cell_sets:
-                known = ", ".join(mesh.cell_sets) or "none"
-                raise ModelError(
-                    f"no element set named {item.cells!r}; there are: {known}", item.where
-                )
-            inside[:] = False
-            inside[mesh.cell_sets[item.cells]] = True
-        masks = [inside[b.cells] for b in self.system.blocks]
-        for block, rho, mask in zip(self.system.blocks, density, masks, strict=True):
-            massless = block.section.element.startswith("SPRING")
-            if mask.any() and rho <= 0.0 and not massless:
-                name = block.section.material.name or block.section.material.law
-                raise ModelError(
-                    f"material {name!r} has no density for a body force; add one (*DENSITY)",
-                    item.where,
-                )
-        force: Floats = self.system.core.body_force(item.kind, list(item.value), density, masks)
-        return self.system.at_nodes(force)
-
-    def _edges(self, item: EdgeLoad) -> tuple[object, float]:
-        mesh = self.system.model.mesh
-        if isinstance(item.edges, str):
-            if item.edges not in mesh.edge_sets:
-                known = ", ".join(mesh.edge_sets) or "none"
-                raise ModelError(f"no surface named {item.edges!r}; there are: {known}", item.where)
-            pairs = mesh.edge_sets[item.edges]
-        else:
-            pairs = np.asarray(item.edges, np.int64).reshape(-1, 2)
-        if not self._cells:
-            self._cells = {
-                int(c): (b, r)
-                for b, block in enumerate(self.system.blocks)
-                for r, c in enumerate(block.cells)
-            }
-        nodes, thickness, alpha = [], [], []
-        area = 0.0
-        for cell, side in pairs:
-            if int(cell) not in self._cells:
-                label = mesh.cell_labels[int(cell)]
-                raise ModelError(f"element {label} of a loaded edge has no section", item.where)
-            b, row = self._cells[int(cell)]
-            block = self.system.blocks[b]
-            element = elements.find(block.section.element)
-            local = EDGES[element.cell][int(side)]
-            ends = [int(block.nodes[row, a]) for a in local]
-            nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
-            thickness.append(block.section.thickness)
-            alpha.append(element.alpha_b)
-            x = mesh.points[ends]
-            if len(ends) == 2:
-                length = float(np.hypot(*(x[1] - x[0])))
-            else:
-                r = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
-                d = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
-                length = float(np.hypot(d[:, 0], d[:, 1]) @ np.array([5.0, 8.0, 5.0]) / 9.0)
-            area += length * block.section.thickness
-        core = _core.EdgeLoads(
-            np.asarray(nodes, np.uint32).reshape(-1, 3), np.asarray(thickness), np.asarray(alpha)
-        )
-        return core, area
 
     def _nodes(self, where: str | Ints) -> Ints:
         if isinstance(where, str):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from corota.io.deck.cards.lines import LineDraft
     from corota.io.deck.cards.tie import TieDraft
     from corota.mesh.data import Floats, Ints
-    from corota.model.loads import Amplitude
+    from corota.model.loads import Amplitude, LoadKind
     from corota.model.materials import Expansion
     from corota.model.steps import Output, Step
 
@@ -189,9 +189,13 @@ class StepDraft:
     supports: list[Draft] = field(default_factory=list)
     loads: list[Draft] = field(default_factory=list)
     new_supports: bool = False
-    new_loads: bool = False
+    new_loads: set[LoadKind] = field(default_factory=set)
+    #: Kinds of conditions that cards of the step gave so far.
+    said: set[str] = field(default_factory=set)
     outputs: list[Output] = field(default_factory=list)
     frequency: int = 1
+    #: For frequencies: whether stresses and displacements of earlier steps count; else None.
+    preload: bool | None = None
 
 
 @dataclass(slots=True)

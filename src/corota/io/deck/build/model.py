@@ -371,6 +371,11 @@ class ModelBuilder:
 
     def _body(self, draft: Draft, cells: str | Ints, amplitude: str) -> BodyForce:
         kind = cast("Literal['gravity', 'centrifugal']", draft.kind)
+        if kind == "gravity":
+            along = (draft.value[2], draft.value[3]) if len(draft.value) > 2 else None
+            return BodyForce(
+                cells, kind, draft.value[:2], amplitude, draft.row.where, direction=along
+            )
         return BodyForce(cells, kind, draft.value, amplitude, draft.row.where)
 
     def _edge_set(self, draft: Draft) -> str | None:
@@ -402,7 +407,7 @@ class ModelBuilder:
             make = draft.make or Static
             options = draft.options or {"ramp": draft.ramp}
             return make(
-                nlgeom=draft.nlgeom,
+                nlgeom=draft.nlgeom if draft.preload is None else draft.preload,
                 period=period,
                 first_increment=first,
                 smallest_increment=least,

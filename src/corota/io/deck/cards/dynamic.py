@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from corota.io.deck.cards.step import open_step, step_times
+from corota.io.deck.cards.step import keeps_preload, open_step, step_times
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.deck import Draft
 from corota.io.deck.lexer import key
@@ -26,6 +26,11 @@ def _procedure(deck: Deck, card: Card) -> StepDraft | None:
     return now
 
 
+def _grows(now: StepDraft) -> bool:
+    """Whether ``*STEP, AMPLITUDE=RAMP`` lets loads grow that act at once by default."""
+    return now.card.has("AMPLITUDE") and now.ramp
+
+
 def dynamic(deck: Deck, card: Card) -> None:
     """``*DYNAMIC[, ALPHA=][, DIRECT][, EXPLICIT]``: increment, period, smallest, largest."""
     now = _procedure(deck, card)
@@ -43,7 +48,7 @@ def dynamic(deck: Deck, card: Card) -> None:
         "scheme": "central_difference" if explicit else "hht",
         "mass": "lumped" if explicit else "consistent",
         # Loads act at once unless an amplitude says otherwise.
-        "ramp": card.has("AMPLITUDE") and now.ramp,
+        "ramp": _grows(now),
         "rayleigh": deck.damping,
     }
     step_times(deck, card, now)
@@ -71,6 +76,7 @@ def frequency(deck: Deck, card: Card) -> None:
     if any(rows[0].get(i) for i in (1, 2)):
         deck.notes.append(f"{card.where}: the range of frequencies of *FREQUENCY is ignored")
     now.make, now.options = Frequency, {"modes": count}
+    now.preload = keeps_preload(deck, card, now)
 
 
 def modal_dynamic(deck: Deck, card: Card) -> None:
@@ -79,7 +85,7 @@ def modal_dynamic(deck: Deck, card: Card) -> None:
     if now is None:
         return
     now.make = ModalDynamic
-    now.options = {"rayleigh": deck.damping, "ramp": False}
+    now.options = {"rayleigh": deck.damping, "ramp": _grows(now)}
     step_times(deck, card, now)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from corota.errors import InputError
 from corota.io.deck.cards import step as inp_cards_step
-from corota.io.deck.cards.step import open_step
+from corota.io.deck.cards.step import keeps_preload, open_step
 from corota.io.deck.lexer import key
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import Buckle
@@ -110,11 +110,7 @@ def buckle(deck: Deck, card: Card) -> None:
         if len(rows) > 1:
             deck.row_error(card, rows[1], 0, "one data line is expected")
             return
-    if len(deck.steps) > 1:
-        deck.notes.append(
-            f"{card.where}: *BUCKLE starts from the state that the steps before reached"
-        )
-    now.make, now.options = Buckle, {"modes": count}
+    now.make, now.options = Buckle, {"modes": count, "preload": keeps_preload(deck, card, now)}
 
 
 def controls(deck: Deck, card: Card) -> None:

@@ -18,12 +18,19 @@ from corota.model.loads import Amplitude
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
+    from corota.model.loads import LoadKind
 
 #: Names of Abaqus for groups of degrees of freedom (numbers from 1).
 NAMED_SUPPORTS = {
     "ENCASTRE": (1, 2, 3, 4, 5, 6), "PINNED": (1, 2, 3), "XSYMM": (1, 5, 6),
     "YSYMM": (2, 4, 6), "ZSYMM": (3, 4, 5), "XASYMM": (2, 3, 4), "YASYMM": (1, 3, 5),
     "ZASYMM": (1, 2, 6),
+}  # fmt: skip
+#: Cards that ``OP=NEW`` concerns together.
+_KINDS = {
+    "support": "supports (*BOUNDARY)", "force": "nodal forces (*CLOAD)",
+    "distributed": "distributed loads (*DLOAD, *DSLOAD)",
+    "temperature": "temperatures (*TEMPERATURE)",
 }  # fmt: skip
 _FACE = re.compile(r"P(\d{1,9})\Z", re.ASCII)
 
@@ -36,7 +43,13 @@ def step(deck: Deck, card: Card) -> None:
         )
     nlgeom = bool(deck.steps and deck.steps[-1].nlgeom)
     if card.has("NLGEOM"):
-        nlgeom = deck.choice(card, "NLGEOM", ("YES", "NO", ""), "YES") != "NO"
+        if deck.choice(card, "NLGEOM", ("YES", "NO", ""), "YES") != "NO":
+            nlgeom = True
+        elif nlgeom:
+            deck.notes.append(
+                f"{card.where}: NLGEOM=NO after a step with NLGEOM has no effect: large rotations "
+                "stay in force, or the structure would jump to the solution of the linear theory"
+            )
     limit = deck.parameter_integer(card, "INC", 100, 1)
     ramp = deck.choice(card, "AMPLITUDE", ("RAMP", "STEP"), "RAMP") == "RAMP"
     deck.step = StepDraft(card, nlgeom, limit, ramp)
@@ -195,8 +208,7 @@ def time_points(deck: Deck, card: Card) -> None:
 
 def boundary(deck: Deck, card: Card) -> None:
     """``*BOUNDARY[, OP=][, AMPLITUDE=]``: node or set, first dof[, last dof[, value]]."""
-    new = _op(deck, card) == "NEW"
-    if deck.step is not None and new:
+    if _renews(deck, deck.step, card, "support") and deck.step is not None:
         deck.step.new_supports = True
     deck.choice(card, "TYPE", ("DISPLACEMENT",), "DISPLACEMENT")
     into = deck.step.supports if deck.step is not None else deck.supports
@@ -282,7 +294,7 @@ def _dof(deck: Deck, card: Card, row: Row, index: int) -> int | None:
 
 def cload(deck: Deck, card: Card) -> None:
     """``*CLOAD[, OP=][, AMPLITUDE=]``: node or set, dof, value."""
-    now = loads_of(deck, card)
+    now = loads_of(deck, card, "force")
     if now is None:
         return
     for row in card.rows():
@@ -308,7 +320,7 @@ def cload(deck: Deck, card: Card) -> None:
 
 def dload(deck: Deck, card: Card) -> None:
     """``*DLOAD``: pressure on faces, ``GRAV``, ``CENTRIF``."""
-    now = loads_of(deck, card)
+    now = loads_of(deck, card, "distributed")
     if now is None:
         return
     for row in card.rows():
@@ -356,7 +368,8 @@ def _gravity(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
     elif size == 0.0:
         deck.row_error(card, row, 3, "the direction of gravity is zero")
     else:
-        value = (g * nx / size, g * ny / size)
+        # A size that is not positive still has the direction that it was given.
+        value = (g * nx / size, g * ny / size, *((nx / size, ny / size) if g <= 0.0 else ()))
         now.loads.append(
             Draft("gravity", card, row, row.get(0), value, amplitude=card.value("AMPLITUDE"))
         )
@@ -383,7 +396,7 @@ def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
 
 def dsload(deck: Deck, card: Card) -> None:
     """``*DSLOAD``: surface, ``P``, pressure; or ``TRVEC``, size, direction."""
-    now = loads_of(deck, card)
+    now = loads_of(deck, card, "distributed")
     if now is None:
         return
     follower = deck.choice(card, "FOLLOWER", ("YES", "NO"), "YES") == "YES"
@@ -422,16 +435,44 @@ def dsload(deck: Deck, card: Card) -> None:
             )
 
 
-def _op(deck: Deck, card: Card) -> str:
-    return deck.choice(card, "OP", ("NEW", "MOD"), "MOD")
+def _renews(deck: Deck, now: StepDraft | None, card: Card, kind: str) -> bool:
+    """Whether a card takes away what earlier steps gave of its kind (``OP=NEW``)."""
+    new = deck.choice(card, "OP", ("NEW", "MOD"), "MOD") == "NEW"
+    if now is None:
+        return new
+    before = kind in now.said
+    now.said.add(kind)
+    renewed = now.new_supports if kind == "support" else kind in now.new_loads
+    if new and before and not renewed:
+        deck.error(
+            card,
+            card.at("OP"),
+            f"OP=NEW comes after another card of the step with {_KINDS[kind]}",
+            hint="put OP=NEW on the first of them; CalculiX ignores it here",
+        )
+    return new
 
 
-def loads_of(deck: Deck, card: Card) -> StepDraft | None:
+def loads_of(deck: Deck, card: Card, kind: LoadKind) -> StepDraft | None:
     """Return the step that a card of loads belongs to, or None after an error."""
     now = open_step(deck, card)
-    if now is not None and _op(deck, card) == "NEW":
-        now.new_loads = True
+    if now is not None and _renews(deck, now, card, kind):
+        now.new_loads.add(kind)
     return now
+
+
+def keeps_preload(deck: Deck, card: Card, now: StepDraft) -> bool:
+    """Whether a step starts from stresses and displacements of the steps before.
+
+    As in CalculiX, it is ``*STEP, PERTURBATION`` that says so.
+    """
+    kept = now.card.has("PERTURBATION")
+    if len(deck.steps) > 1 and not kept:
+        deck.notes.append(
+            f"{card.where}: *{card.keyword} is about the structure without load, as in CalculiX; "
+            "write *STEP, PERTURBATION to keep the preload of the steps before"
+        )
+    return kept
 
 
 def open_step(deck: Deck, card: Card) -> StepDraft | None:

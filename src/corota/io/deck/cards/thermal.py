@@ -57,7 +57,7 @@ def expansion(deck: Deck, card: Card) -> None:
 
 def temperature(deck: Deck, card: Card) -> None:
     """``*TEMPERATURE[, OP=][, AMPLITUDE=]``: node or set, temperature."""
-    now = loads_of(deck, card)
+    now = loads_of(deck, card, "temperature")
     if now is None:
         return
     for row in card.rows():

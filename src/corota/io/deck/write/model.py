@@ -19,7 +19,7 @@ from corota.io.deck.write.lines import LINE_TYPES, line_cards
 from corota.io.deck.write.mesh import TYPES
 from corota.io.deck.write.thermal import expansion_cards, initial_cards, temperatures
 from corota.mesh import EDGES
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
 from corota.model.materials import Elastic, Orthotropic
 from corota.model.steps import Static
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from corota.mesh.data import Ints, Mesh
-    from corota.model.loads import Fixed, Load
+    from corota.model.loads import Fixed, Load, LoadKind
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 #: Entries on a line of a set.
 PER_LINE = 10
 #: Data of a model for which the writer has no card, and how a message calls them.
+#: Cards that take away the loads of a kind.
+_NEW: dict[LoadKind, str] = {"force": "CLOAD", "distributed": "DLOAD", "temperature": "TEMPERATURE"}
 _UNWRITTEN = {
     "velocities": "initial velocities",
     "point_masses": "point masses",
@@ -88,8 +90,8 @@ class _Writer:
         tail += initial_cards(self, model)
         tail += _boundary(self, model.supports, False)
         for number, step in enumerate(steps):
-            again = number == 0 or step.new_loads
-            loads = (model.loads if again else []) + step.loads
+            again = [x for x in model.loads if number == 0 or step.renews(kind_of(x))]
+            loads = again + step.loads
             tail += self._step(step, loads, number)
         yield f"*HEADING\n{model.title or model.name}\n"
         yield from self._mesh()
@@ -223,8 +225,9 @@ class _Writer:
         if number == 0:
             yield from step_cards(self)
         yield from _boundary(self, step.supports, step.new_supports)
-        if step.new_loads:
-            yield "*CLOAD, OP=NEW\n"
+        for kind, card in _NEW.items():
+            if step.renews(kind):
+                yield f"*{card}, OP=NEW\n"
         for load in loads:
             yield from self._load(load)
         for request in step.outputs:
@@ -274,11 +277,14 @@ class _Writer:
             return (
                 f"{where}, CENTRIF, {_number(square)}, {_number(x)}, {_number(y)}, 0., 0., 0., 1.\n"
             )
-        x, y = load.value
-        size = math.hypot(x, y)
-        if size == 0.0:
+        along = load.axis
+        if along is None:
             return ""
-        return f"{where}, GRAV, {_number(size)}, {_number(x / size)}, {_number(y / size)}, 0.\n"
+        size = math.hypot(*load.value)
+        if load.direction:
+            size = math.copysign(size, float(along @ load.value))
+        x, y = along.tolist()
+        return f"{where}, GRAV, {_number(size)}, {_number(x)}, {_number(y)}, 0.\n"
 
     def nodes(self, where: str | Ints) -> list[str]:
         """Targets of a support or nodal force: a set, or node numbers."""

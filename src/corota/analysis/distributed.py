@@ -1,0 +1,306 @@
+"""Distributed loads over the steps: pressures, tractions and body forces.
+
+A load is known by what it acts on. On an edge of an element that is the edge and the kind
+(pressure or traction), whatever the name of the set. Of a body it is the set, the kind, and the
+direction of gravity or the axis of rotation: gravity in another direction is another load. A
+load that is given again in a later step replaces the one before; loads of one step add up.
+
+Source: CalculiX 2.20, ``loadadd.f`` and ``bodyadd.f``; tests/steps compares with its results.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota import _core
+from corota.errors import ModelError
+from corota.mesh import EDGES
+from corota.model import elements
+from corota.model.loads import BodyForce, EdgeLoad
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.errors import Location
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Directions and axes are the same within this (CalculiX's own tolerance).
+SAME = 1e-10
+#: Sides of an element are numbered below this.
+SIDES = 8
+
+
+@dataclass
+class DistributedLoad:
+    """A load with its history: one scale for a fixed vector, or a following pressure.
+
+    Parameters
+    ----------
+    begin, end : float
+        Scale at the ends of the step; with an amplitude `end` is its value at factor one.
+    amplitude : int
+        Index into the names of amplitudes; 0 for none.
+    removed : bool
+        Whether the step took the load away.
+    vector : ndarray, shape (n_dofs,), or None
+        Force per unit scale; None for a following pressure.
+    edges : object or None
+        Core object of the edges of a pressure or traction.
+    faces : ndarray, shape (n, 2), or None
+        Cell and side of these edges.
+    traction : tuple of float
+        Of a dead traction: force per area and unit scale.
+    item : EdgeLoad or BodyForce
+        What the load was made of; the first of several.
+    """
+
+    begin: float
+    end: float
+    amplitude: int
+    item: EdgeLoad | BodyForce
+    removed: bool = False
+    vector: Floats | None = None
+    edges: object | None = None
+    faces: Ints | None = None
+    traction: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def follows(self) -> bool:
+        """Whether the force depends on the displacement."""
+        return self.vector is None
+
+
+class DistributedLoads:
+    """The distributed loads that act now, and how a step changes them.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.loads: list[DistributedLoad] = []
+        self._cells: dict[int, tuple[int, int]] = {}
+
+    def carry(self, scale: Callable[[DistributedLoad], float], runs_on: NDArray[np.bool_]) -> None:
+        """Start the next step from what was reached, except where an amplitude runs on."""
+        for load in self.loads:
+            load.begin, load.removed = scale(load), False
+            if not runs_on[load.amplitude]:
+                load.end, load.amplitude = load.begin, 0
+        self.loads = [load for load in self.loads if load.begin != 0.0 or load.end != 0.0]
+
+    def remove(self) -> None:
+        """Take all loads away."""
+        for load in self.loads:
+            load.end, load.amplitude, load.removed = 0.0, 0, True
+
+    def set(
+        self,
+        items: Sequence[EdgeLoad | BodyForce],
+        amplitude: Callable[[str, Location | None], int],
+    ) -> None:
+        """Add the loads of a step in place of those that act on the same."""
+        fresh = self._bodies([i for i in items if isinstance(i, BodyForce)], amplitude)
+        fresh += self._on_edges([i for i in items if isinstance(i, EdgeLoad)], amplitude)
+        for load in fresh:
+            self._replace(load, fresh)
+        self.loads += fresh
+
+    # -- replacing ----------------------------------------------------------------------
+
+    def _replace(self, new: DistributedLoad, fresh: list[DistributedLoad]) -> None:
+        """Let older loads on the same fade while the new one grows: a ramp between the two."""
+        kept: list[DistributedLoad] = []
+        for old in self.loads:
+            if old.faces is None or new.faces is None:
+                same = old.faces is new.faces and _same_body(old.item, new.item)
+                if same:
+                    kept += _fading(old, new)
+                else:
+                    kept.append(old)
+                continue
+            hit = np.isin(_codes(old.faces), _codes(new.faces)) & (old.item.kind == new.item.kind)
+            if not hit.any():
+                kept.append(old)
+            elif hit.all():
+                kept += _fading(old, new)
+            else:
+                kept.append(self._part(old, ~hit))
+                kept += _fading(self._part(old, hit), new)
+        self.loads = kept
+
+    def _part(self, load: DistributedLoad, chosen: NDArray[np.bool_]) -> DistributedLoad:
+        """The same load on some of its edges."""
+        assert load.faces is not None
+        return self._edge_load(replace(load, faces=load.faces[chosen]))
+
+    # -- building -----------------------------------------------------------------------
+
+    def _bodies(
+        self, items: Sequence[BodyForce], amplitude: Callable[[str, Location | None], int]
+    ) -> list[DistributedLoad]:
+        return [
+            DistributedLoad(
+                0.0, 1.0, amplitude(item.amplitude, item.where), item, vector=self._body(item)
+            )
+            for item in items
+        ]
+
+    def _on_edges(
+        self, items: Sequence[EdgeLoad], amplitude: Callable[[str, Location | None], int]
+    ) -> list[DistributedLoad]:
+        """Loads on edges; items of the same size and amplitude share one core object."""
+        found: dict[tuple[object, ...], tuple[DistributedLoad, list[Ints]]] = {}
+        for item in items:
+            faces = self._faces(item)
+            load = DistributedLoad(0.0, 1.0, amplitude(item.amplitude, item.where), item)
+            if item.kind == "pressure":
+                load.end = item.value[0]
+            else:
+                share = 1.0 / self._area(faces) if item.total else 1.0
+                load.traction = (share * item.value[0], share * item.value[1])
+            key = (item.kind, load.end, load.amplitude, load.traction)
+            found.setdefault(key, (load, []))[1].append(faces)
+        return [
+            self._edge_load(replace(load, faces=np.concatenate(faces)))
+            for load, faces in found.values()
+        ]
+
+    def _edge_load(self, load: DistributedLoad) -> DistributedLoad:
+        """Give a load on edges what its faces need in the core."""
+        assert load.faces is not None
+        core: Any = self._core(load.faces)
+        load.edges = core
+        if load.item.kind == "traction":
+            x = self.system.model.mesh.points
+            load.vector = self.system.from_nodes(core.traction(x, load.traction))
+        return load
+
+    def _body(self, item: BodyForce) -> Floats:
+        density = [b.section.material.rho for b in self.system.blocks]
+        mesh = self.system.model.mesh
+        inside = np.ones(mesh.n_cells, bool)
+        if not isinstance(item.cells, str):
+            inside[:] = False
+            inside[item.cells] = True
+        elif item.cells not in ("", "all"):
+            if item.cells not in mesh.cell_sets:
+                known = ", ".join(mesh.cell_sets) or "none"
+                raise ModelError(
+                    f"no element set named {item.cells!r}; there are: {known}", item.where
+                )
+            inside[:] = False
+            inside[mesh.cell_sets[item.cells]] = True
+        masks = [inside[b.cells] for b in self.system.blocks]
+        for block, rho, mask in zip(self.system.blocks, density, masks, strict=True):
+            massless = block.section.element.startswith("SPRING")
+            if mask.any() and rho <= 0.0 and not massless:
+                name = block.section.material.name or block.section.material.law
+                raise ModelError(
+                    f"material {name!r} has no density for a body force; add one (*DENSITY)",
+                    item.where,
+                )
+        force: Floats = self.system.core.body_force(item.kind, list(item.value), density, masks)
+        return self.system.at_nodes(force)
+
+    def _faces(self, item: EdgeLoad) -> Ints:
+        """Cell and side of every loaded edge, shape (n, 2)."""
+        mesh = self.system.model.mesh
+        if isinstance(item.edges, str):
+            if item.edges not in mesh.edge_sets:
+                known = ", ".join(mesh.edge_sets) or "none"
+                raise ModelError(f"no surface named {item.edges!r}; there are: {known}", item.where)
+            faces = mesh.edge_sets[item.edges]
+        else:
+            faces = np.asarray(item.edges, np.int64).reshape(-1, 2)
+        if not self._cells:
+            self._cells = {
+                int(c): (b, r)
+                for b, block in enumerate(self.system.blocks)
+                for r, c in enumerate(block.cells)
+            }
+        for cell in faces[:, 0].tolist():
+            if cell not in self._cells:
+                label = mesh.cell_labels[cell]
+                raise ModelError(f"element {label} of a loaded edge has no section", item.where)
+        return faces
+
+    def _ends(self, cell: int, side: int) -> tuple[list[int], int]:
+        """Nodes of an edge, and the block of its element."""
+        b, row = self._cells[cell]
+        block = self.system.blocks[b]
+        local = EDGES[elements.find(block.section.element).cell][side]
+        return [int(block.nodes[row, a]) for a in local], b
+
+    def _core(self, faces: Ints) -> object:
+        nodes, thickness, alpha = [], [], []
+        for cell, side in faces.tolist():
+            ends, b = self._ends(cell, side)
+            section = self.system.blocks[b].section
+            nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
+            thickness.append(section.thickness)
+            alpha.append(elements.find(section.element).alpha_b)
+        return _core.EdgeLoads(
+            np.asarray(nodes, np.uint32).reshape(-1, 3), np.asarray(thickness), np.asarray(alpha)
+        )
+
+    def _area(self, faces: Ints) -> float:
+        """Area of edges times thickness; curved ones by Gauss's rule of three points."""
+        area = 0.0
+        for cell, side in faces.tolist():
+            ends, b = self._ends(cell, side)
+            x = self.system.model.mesh.points[ends]
+            if len(ends) == 2:
+                length = float(np.hypot(*(x[1] - x[0])))
+            else:
+                r = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
+                d = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
+                length = float(np.hypot(d[:, 0], d[:, 1]) @ np.array([5.0, 8.0, 5.0]) / 9.0)
+            area += length * self.system.blocks[b].section.thickness
+        return area
+
+
+def _codes(faces: Ints) -> Ints:
+    """One number for each pair of cell and side."""
+    return faces[:, 0] * SIDES + faces[:, 1]
+
+
+def _fading(old: DistributedLoad, new: DistributedLoad) -> list[DistributedLoad]:
+    """What is left of a load that `new` replaces: nothing if an amplitude drives the new one."""
+    if new.amplitude or old.begin == 0.0:
+        return []
+    return [replace(old, end=0.0, amplitude=0, removed=False)]
+
+
+def _same_body(old: EdgeLoad | BodyForce, new: EdgeLoad | BodyForce) -> bool:
+    """Whether two body forces are one load, of which the later value counts."""
+    if not (isinstance(old, BodyForce) and isinstance(new, BodyForce)) or old.kind != new.kind:
+        return False
+    if _name(old) != _name(new):
+        return False
+    if old.kind == "centrifugal":
+        return float(np.hypot(*np.subtract(old.value[1:3], new.value[1:3]))) <= SAME
+    one, other = old.axis, new.axis
+    # Gravity of no size and direction ends gravity in every direction.
+    return one is None or other is None or float(np.dot(one, other)) > 1.0 - SAME
+
+
+def _name(item: BodyForce) -> object:
+    """The set that a body force acts on."""
+    if isinstance(item.cells, str):
+        return item.cells if item.cells != "all" else ""
+    return np.asarray(item.cells).tobytes()
+
+
+__all__ = ["DistributedLoad", "DistributedLoads"]
