@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.results.results import Results
-
 
 @dataclass(frozen=True, slots=True)
 class Location:
@@ -127,7 +125,7 @@ class ConvergenceError(CorotaError):
 
     exit_code = 4
 
-    def __init__(self, reason: str, results: Results | None = None) -> None:
+    def __init__(self, reason: str, results: Any = None) -> None:
         super().__init__(reason)
         self.reason = reason
         self.results = results

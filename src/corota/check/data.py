@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.check.parts import cells_of
 from corota.errors import Diagnostic
+from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.check.parts import cells_of, part_of_cells, stiff_part_of_cells
 from corota.errors import Diagnostic
+from corota.mesh.parts import cells_of, part_of_cells, stiff_part_of_cells
 from corota.model import elements
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.check.parts import cells_of, part_of_cells
 from corota.errors import Diagnostic, InputError
+from corota.mesh.parts import cells_of, part_of_cells
 from corota.model import elements
 from corota.model.materials import Elastic
 

@@ -237,7 +237,7 @@ class Dynamic(Step):
         if self.max_increments == 1000:
             self.max_increments = 10_000_000
         super().__post_init__()
-        from corota.analysis.procedures.schemes import NAMES
+        from corota.model.schemes import NAMES
 
         if self.scheme not in NAMES:
             raise InputError(f"no scheme {self.scheme!r}; there are {', '.join(NAMES)}", self.where)

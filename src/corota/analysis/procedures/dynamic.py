@@ -15,12 +15,12 @@ from corota.analysis.newton import Outcome, Settings, newton
 from corota.analysis.procedures.explicit import explicit_step
 from corota.analysis.procedures.localization import softening
 from corota.analysis.procedures.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
-from corota.analysis.procedures.schemes import SCHEMES
 from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import newton_with_contact
 from corota.analysis.terms.damping import damping_matrix
 from corota.errors import ConvergenceError, Interrupted, ModelError
 from corota.model import elements
+from corota.model.schemes import SCHEMES
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.eigen import quadratic_modes, symmetric_modes, unsymmetric_modes
-from corota.analysis.linearized import LinearMotion
+from corota.analysis.linear.eigen import quadratic_modes, symmetric_modes, unsymmetric_modes
+from corota.analysis.terms.linearized import LinearMotion
 from corota.errors import ModelError
 from corota.model.paths import Modes
 

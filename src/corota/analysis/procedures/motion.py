@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import Link
     from corota.analysis.equations import System
     from corota.analysis.newton import Judgement
-    from corota.analysis.procedures.schemes import Scheme
+    from corota.model.schemes import Scheme
     from corota.model.steps import Step
     from corota.results.results import PointFields
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.check.parts import cells_of
 from corota.io.tables.dat_numbers import fortran, rows
+from corota.mesh.parts import cells_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

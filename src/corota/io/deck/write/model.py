@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.check.parts import cells_of
 from corota.errors import InputError, UnsupportedError
 from corota.io.atomic_file import replace_text
 from corota.io.deck.write.contact import contact_cards, step_cards, surfaces
@@ -19,6 +18,7 @@ from corota.io.deck.write.lines import LINE_TYPES, line_cards
 from corota.io.deck.write.mesh import TYPES
 from corota.io.deck.write.thermal import expansion_cards, initial_cards, temperatures
 from corota.mesh import EDGES
+from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
 from corota.model.materials import Elastic, Orthotropic
 from corota.model.steps import Static

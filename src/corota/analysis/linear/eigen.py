@@ -22,7 +22,7 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.linearized import Factor, LinearMotion
+    from corota.analysis.terms.linearized import Factor, LinearMotion
 
     Floats = NDArray[np.float64]
     Complex = NDArray[np.complex128]
