@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -52,6 +53,63 @@ class Amplitude:
     def __call__(self, time: float) -> float:
         """Factor at a time [1]."""
         return float(np.interp(time, self.time, self.value))
+
+    def derivatives(
+        self, time: float, window: float, first: float = -np.inf, last: float = np.inf
+    ) -> tuple[float, float]:
+        """Rate and acceleration of the factor at a time, seen over a window.
+
+        Both are of second order in the window: central differences, or one-sided ones where
+        the window would reach beyond `first` or `last`. The second difference of a table is the
+        sum of the jumps of its slope, each times a hat function of the window's width: exactly
+        zero on straight parts, and a pulse of the right area about a kink.
+
+        Parameters
+        ----------
+        time : float
+        window : float
+            Half the width [time].
+        first, last : float
+            Times between which the table is looked at.
+
+        Returns
+        -------
+        rate : float [1/time]
+        acceleration : float [1/time^2]
+        """
+        h, slack = window, 1e-6 * window
+        if time - h < first - slack or time + h > last + slack:
+            sign = 1.0 if time - h < first - slack else -1.0
+            near, far = (self._bend(time + sign * k * h, h) for k in (1.0, 2.0))
+            slope = (self(time + sign * h) - self(time)) / (sign * h)
+            return slope - 0.5 * sign * h * near, 2.0 * near - far
+        return (self(time + h) - self(time - h)) / (2.0 * h), self._bend(time, h)
+
+    def _bend(self, time: float, h: float) -> float:
+        """Second difference over `h` about a time [1/time^2]."""
+        low, high = np.searchsorted(self.time, (time - h, time + h))
+        near = np.arange(low, high)
+        weight = np.maximum(1.0 - np.abs(self.time[near] - time) / h, 0.0)
+        return float(weight @ self._jumps[near]) / h
+
+    @cached_property
+    def _jumps(self) -> NDArray[np.float64]:
+        """Jump of the slope at each time of the table, which is constant outside."""
+        slope = np.diff(self.value) / np.diff(self.time)
+        return np.diff(slope, prepend=0.0, append=0.0)
+
+    def kinks(self) -> NDArray[np.float64]:
+        """Times at which the slope jumps, unlike that of a finely sampled smooth function.
+
+        A jump counts that is half of the largest slope, or a tenth of it and three times its
+        neighbors.
+        """
+        size = np.abs(self._jumps)
+        steepest = np.abs(np.diff(self.value) / np.diff(self.time)).max(initial=0.0)
+        around = np.maximum(np.append(size[1:], 0.0), np.append(0.0, size[:-1]))
+        alone = (size > 0.1 * steepest) & (size > 3.0 * around)
+        out: NDArray[np.float64] = self.time[(size > 0.5 * steepest) | alone]
+        return out
 
 
 @dataclass

@@ -14,7 +14,13 @@ from corota.analysis.increments import CUT, SAME, Increments
 from corota.analysis.newton import Outcome, Settings, newton
 from corota.analysis.procedures.explicit import explicit_step
 from corota.analysis.procedures.localization import softening
-from corota.analysis.procedures.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
+from corota.analysis.procedures.motion import (
+    ConservingMotion,
+    Driven,
+    Inertia,
+    Moving,
+    NewmarkMotion,
+)
 from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import newton_with_contact
 from corota.analysis.terms.damping import damping_matrix
@@ -94,9 +100,10 @@ def dynamic_step(
         target = control.target()
         if not step.fixed_increments:
             target = _not_over_a_load(system, step, control.time, target)
-        motion = _motion(system, step, inertia, now, target - control.time)
         report = iteration_reporter(observers, system, number, control)
         prescribed = system.conditions.prescribed(target, now.u)
+        driven = _driven(system, prescribed, target, target - control.time)
+        motion = _motion(system, step, inertia, now, target - control.time, driven)
         outcome: Outcome[Evaluation]
         if system.touching is None:
             outcome = newton(motion, now.u, prescribed, target, settings, None, report)
@@ -284,7 +291,7 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
         system.ties.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
     rayleigh, matrix = _damping(system, step, u)
-    resting = zero
+    resting = np.zeros_like(zero)
     if system.touching is not None:
         # Bodies may rest on each other from a step before.
         touching = system.touching
@@ -304,6 +311,7 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
     link = at.link
     if link is not None:
         at.link = replace(link, curvature=0.0)
+    # Dependent dofs have their centripetal accelerations besides.
     a = zero + system.predict(at, support_a)[0]
     state.a = a
     if not goes_on:
@@ -314,17 +322,21 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
 def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
     """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
 
-    Both are differences of second order over the first increments: the trapezoidal rule would
-    carry a wrong start on for ever.
+    Both are looked at over the first increment.
     """
     assert state.v is not None
     held = system.conditions.held
     whole = not step.fixed_increments and step.first_increment >= step.period
-    h = min(step.period / 100.0 if whole else step.first_increment, step.period / 3.0)
-    p = [system.conditions.prescribed(k * h, state.u) for k in range(4)]
-    state.v[held] = ((-3.0 * p[0] + 4.0 * p[1] - p[2]) / (2.0 * h))[held]
-    rate = (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]) / (h * h)
-    return np.where(held, rate, 0.0)
+    window = step.period / 100.0 if whole else step.first_increment
+    v, a = system.conditions.support_rates(0.0, window)
+    state.v[held] = v[held]
+    for name, time in system.conditions.support_kinks():
+        state.notes.append(
+            f"the amplitude {name!r} of a support changes its velocity at once at step time "
+            f"{time:.4g}: acceleration and reaction are a pulse there, as high as the increment "
+            "is short; round it off if that is not meant"
+        )
+    return a
 
 
 def initial_velocity(system: System, u: Floats | None = None) -> Floats:
@@ -376,13 +388,29 @@ def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
 
 
 def _motion(
-    system: System, step: Dynamic, inertia: Inertia, now: Moving, dt: float
+    system: System, step: Dynamic, inertia: Inertia, now: Moving, dt: float, driven: Driven
 ) -> NewmarkMotion | ConservingMotion:
     rayleigh, matrix = _damping(system, step, now.u)
     if step.scheme == "energy_momentum":
-        return ConservingMotion(system, inertia, now, dt, rayleigh, matrix)
+        return ConservingMotion(system, inertia, now, dt, driven, rayleigh, matrix)
     scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)
-    return NewmarkMotion(system, inertia, scheme, now, dt, rayleigh, matrix)
+    return NewmarkMotion(system, inertia, scheme, now, dt, driven, rayleigh, matrix)
+
+
+def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Driven:
+    """Motion that the step prescribes at a time, of dependents of held dofs alone too."""
+    conditions, ties = system.conditions, system.ties
+    held = conditions.held
+    v, a = conditions.support_rates(time, dt)
+    if ties is None or not held.any():
+        return Driven(held, prescribed, v, a)
+    u = prescribed.copy()
+    ties.complete(u)
+    ties.complete_rates(u, v, a)
+    free = abs(ties.link(u).g) @ (~held).astype(float)
+    held = held.copy()
+    held[ties.dependent[free == 0.0]] = True
+    return Driven(held, u, v, a)
 
 
 def _damping(system: System, step: Dynamic, u: Floats) -> tuple[tuple[float, float], Floats | None]:

@@ -39,6 +39,8 @@ class Moving:
         Forces at `u`, each with the sign of the residual's first term but `external`.
     link : Link or None
         What the constraints make of these forces.
+    carried : ndarray, shape (n_dofs,), or None
+        Acceleration that Newmark's relations go on with; None where that is `a`.
     """
 
     u: Floats
@@ -49,6 +51,7 @@ class Moving:
     inertia: Floats
     damping: Floats
     link: Link | None = None
+    carried: Floats | None = None
 
     def gathered(self, force: Floats) -> Floats:
         """A force with what dependent dofs pass on to their masters."""
@@ -98,6 +101,8 @@ class Inertia:
         if self.light.any():
             end.v[self.light] = (end.u - begin.u)[self.light] / dt
             end.a[self.light] = 0.0
+            if end.carried is not None:
+                end.carried[self.light] = 0.0
 
     def force(self, u: Floats, v: Floats, a: Floats) -> Floats:
         """Inertia force [force]."""
@@ -177,8 +182,34 @@ class Inertia:
         return force
 
 
+@dataclass
+class Driven:
+    """Prescribed dofs at the end of an increment, each shape (n_dofs,).
+
+    Parameters
+    ----------
+    held : ndarray of bool
+    u, v, a : ndarray
+        Displacement, velocity and acceleration, which mean nothing elsewhere.
+    """
+
+    held: NDArray[np.bool_]
+    u: Floats
+    v: Floats
+    a: Floats
+
+
 class NewmarkMotion:
     """One increment of a scheme with Newmark's relations, for Newton's method.
+
+    The equation of motion holds at the end of the increment, with the true acceleration there;
+    Newmark's relations take a filtered one, A (Arnold & Bruels 2007):
+
+        (1 - alpha_m) A(n+1) + alpha_m A(n) = (1 - alpha_f) a(n+1) + alpha_f a(n) .
+
+    With a constant mass that is the usual weighted equation. Where inertia depends on the
+    configuration, as with constraints that turn, the weighted equation mixes accelerations and
+    velocities of different times and is of first order; this one is of second.
 
     Parameters
     ----------
@@ -187,6 +218,8 @@ class NewmarkMotion:
     scheme : Scheme
     start : Moving
     dt : float
+    driven : Driven
+        Prescribed motion at the end.
     rayleigh : tuple of float
     stiffness : ndarray or None
         Tangent at the start, for the damping per stiffness.
@@ -199,49 +232,64 @@ class NewmarkMotion:
         scheme: Scheme,
         start: Moving,
         dt: float,
+        driven: Driven,
         rayleigh: tuple[float, float] = (0.0, 0.0),
         stiffness: Floats | None = None,
     ) -> None:
         self.system, self.inertia, self.scheme = system, inertia, scheme
-        self.start, self.dt = start, dt
+        self.start, self.dt, self.driven = start, dt, driven
         self.rayleigh, self.stiffness = rayleigh, stiffness
         self.end = start
-        # Forces of the start on the independent dofs: dependent ones have turned by the end.
-        self.begun = start.gathered(start.internal + start.damping)
-        self.begun_inertia = start.gathered(start.inertia)
-        self.begun_external = start.gathered(start.external)
+        # Derivatives of velocity and acceleration by displacement.
+        s = scheme
+        self.c_v = s.gamma / (s.beta * dt)
+        self.c_a = (1.0 - s.alpha_m) / ((1.0 - s.alpha_f) * s.beta * dt * dt)
+        # What balances the start: the forces of contact there, and rounding.
+        self.begun = s.alpha_f * start.reaction() if s.alpha_f else None
 
-    def _rates(self, u: Floats) -> tuple[Floats, Floats]:
-        s, dt, b = self.scheme, self.dt, self.start
-        a = (u - b.u - dt * b.v) / (s.beta * dt * dt) - (0.5 / s.beta - 1.0) * b.a
-        v = b.v + dt * ((1.0 - s.gamma) * b.a + s.gamma * a)
+    def _rates(self, u: Floats) -> tuple[Floats, Floats, Floats]:
+        """Velocity, acceleration and the filtered acceleration."""
+        s, dt, b, driven = self.scheme, self.dt, self.start, self.driven
+        before = b.a if b.carried is None else b.carried
+        carried = (u - b.u - dt * b.v) / (s.beta * dt * dt) - (0.5 / s.beta - 1.0) * before
+        v = b.v + dt * ((1.0 - s.gamma) * before + s.gamma * carried)
+        a = carried
+        if s.alpha_m or s.alpha_f:
+            a = (1.0 - s.alpha_m) * carried + s.alpha_m * before - s.alpha_f * b.a
+            a /= 1.0 - s.alpha_f
+        elif driven.held.any() or self.system.ties is not None:
+            a = carried.copy()
+        held = driven.held
+        if held.any():
+            # Newton's method moves held dofs in its first correction: until then the rates differ
+            # by what the tangent takes them for.
+            rest = (u - driven.u)[held]
+            v[held] = driven.v[held] + self.c_v * rest
+            a[held] = driven.a[held] + self.c_a * rest
         if self.system.ties is not None:
             self.system.ties.complete_rates(u, v, a)
-        return v, a
+            carried[self.system.ties.gone] = a[self.system.ties.gone]
+        carried[held] = a[held]
+        return v, a, carried
 
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and effective tangent of the equation of motion."""
-        s, dt = self.scheme, self.dt
+        share = 1.0 - self.scheme.alpha_f
         at = self.system.evaluate(u, step_time)
-        v, a = self._rates(u)
+        v, a, carried = self._rates(u)
         internal, external = at.internal, at.external
-        c_v, c_a = s.gamma / (s.beta * dt), 1.0 / (s.beta * dt * dt)
-        share = 1.0 - s.alpha_f
         at.values *= share
         if at.load_stiffness is not None:
             rows, columns, values = at.load_stiffness
             at.load_stiffness = (rows, columns, share * values)
-        m = 1.0 - s.alpha_m
-        force = self.inertia.add(at, u, v, a, (m, m * c_v, m * c_a))
-        damping = self.inertia.damping(at, u, v, share * c_v, self.rayleigh, self.stiffness)
-        self.end = Moving(u, v, a, internal, external, force, damping, at.link)
-        at.internal = (
-            share * (internal + damping)
-            + s.alpha_f * self.begun
-            + m * force
-            + s.alpha_m * self.begun_inertia
-        )
-        at.external = share * external + s.alpha_f * self.begun_external
+        weights = (share, share * self.c_v, share * self.c_a)
+        force = self.inertia.add(at, u, v, a, weights)
+        damping = self.inertia.damping(at, u, v, share * self.c_v, self.rayleigh, self.stiffness)
+        self.end = Moving(u, v, a, internal, external, force, damping, at.link, carried)
+        at.internal = share * (internal + damping + force)
+        at.external = share * external
+        if self.begun is not None:
+            at.internal += self.begun
         return at
 
     def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
@@ -270,11 +318,12 @@ class ConservingMotion:
         inertia: Inertia,
         start: Moving,
         dt: float,
+        driven: Driven,
         rayleigh: tuple[float, float] = (0.0, 0.0),
         stiffness: Floats | None = None,
     ) -> None:
         self.system, self.inertia = system, inertia
-        self.start, self.dt = start, dt
+        self.start, self.dt, self.driven = start, dt, driven
         self.rayleigh, self.stiffness = rayleigh, stiffness
         self.end = start
 
@@ -294,7 +343,9 @@ class ConservingMotion:
         values = system.room()
         if system.ties is not None:
             system.ties.complete(u)
-        x1, x0, v0 = (system.in_space(x) for x in (u, b.u, b.v))
+        d = self.increment(u)
+        begun = self._begun()
+        x1, x0, v0 = (system.in_space(x) for x in (u, b.u, begun))
         system.heat(step_time - 0.5 * dt)
         try:
             with system.timed("assemble"):
@@ -310,17 +361,33 @@ class ConservingMotion:
         if stiffness is not None:
             rows, columns, k = stiffness
             stiffness = (rows, columns, 0.5 * k)
-        d = self.increment(u)
-        v = 2.0 / dt * d - b.v
+        v = 2.0 / dt * d - begun
+        a = (v - begun) / dt
         attached = self.inertia.attached
-        force += attached.mass * (v - b.v) / dt
+        force += attached.mass * a
         values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
         link = None if system.ties is None else system.ties.secant(b.u, u)
         at = Evaluation(force, external, scale, values, stiffness, link)
         damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
         at.internal = force + damping
-        self.end = Moving(u, v, (v - b.v) / dt, internal, external, force - internal, damping, link)
+        held = self.driven.held
+        v[held], a[held] = self.driven.v[held], self.driven.a[held]
+        self.end = Moving(u, v, a, internal, external, force - internal, damping, link)
         return at
+
+    def _begun(self) -> Floats:
+        """Velocities that the mid-point rule starts from, shape (n_dofs,).
+
+        Those of the start; at prescribed dofs what makes the change of velocity over the increment
+        the prescribed one, since the rule would swing about it for ever.
+        """
+        held = self.driven.held
+        if not held.any():
+            return self.start.v
+        out: Floats = self.start.v.copy()
+        mean = self.increment(self.driven.u)[held] / self.dt
+        out[held] = mean - 0.5 * (self.driven.v - self.start.v)[held]
+        return out
 
     def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
         """Newton correction."""

@@ -168,6 +168,40 @@ class Conditions:
         out: Floats = np.where(self.held, self._values(self.support, step_time), u)
         return out
 
+    def support_rates(self, step_time: float, window: float) -> tuple[Floats, Floats]:
+        """Velocity and acceleration of held dofs at a time, 0 elsewhere; shapes (n_dofs,).
+
+        Amplitudes are seen over a window (half its width), which is the increment: what
+        changes faster than that is a pulse of the right impulse.
+        """
+        held, course = self.held, self.support
+        v, a = np.zeros(len(held)), np.zeros(len(held))
+        if self.ramp:
+            v = np.where(held, (course.end - course.begin) / self.period, 0.0)
+        window = min(window, self.period / 3.0)
+        for index in np.unique(course.amplitude[held]).tolist():
+            if index:
+                table = self.system.model.amplitudes[self.names[index]]
+                start = self.time if table.total_time else 0.0
+                rate, growth = table.derivatives(
+                    start + step_time, window, start, start + self.period
+                )
+                named = held & (course.amplitude == index)
+                v[named], a[named] = course.end[named] * rate, course.end[named] * growth
+        return v, a
+
+    def support_kinks(self) -> list[tuple[str, float]]:
+        """Amplitudes of supports whose rate jumps within the step, with the first step time."""
+        out = []
+        for index in np.unique(self.support.amplitude[self.held]).tolist():
+            if index:
+                table = self.system.model.amplitudes[self.names[index]]
+                times = table.kinks() - (self.time if table.total_time else 0.0)
+                inside = times[(times > 0.0) & (times < self.period * (1.0 - 1e-9))]
+                if len(inside):
+                    out.append((self.names[index], float(inside[0])))
+        return out
+
     def external(
         self, step_time: float, u: Floats
     ) -> tuple[Floats, tuple[Ints, Ints, Floats] | None]:

@@ -1,0 +1,81 @@
+"""Prescribed dofs take velocity and acceleration from their amplitude, in every scheme."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.model.loads import Amplitude
+
+SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
+
+
+def shaken(time, value, velocity=0.0):
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e6, nu=0.3, rho=1.0))
+    model.amplitudes["base"] = ct.Amplitude(time, value)
+    model.fix("left", x=0.0, y=None)
+    model.fix("left", x=None, y=1.0, amplitude="base")
+    model.velocity(y=velocity)
+    return model
+
+
+@pytest.mark.parametrize("rigid", [False, True])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_base_has_the_acceleration_of_a_smooth_amplitude(scheme, rigid):
+    """Closed form: base at 1 - cos 2t, so V = 2 sin 2t, A = 4 cos 2t; second order in dt."""
+    time = np.linspace(0.0, 2.0, 4001)
+    errors = []
+    for n in (20, 40):
+        model = shaken(time, 1.0 - np.cos(2.0 * time))
+        if rigid:
+            mesh = model.mesh
+            model = shaken(time, 1.0 - np.cos(2.0 * time))
+            model.supports.clear()
+            model.rigid(np.arange(1, mesh.n_nodes), 0)
+            model.fix([0], x=0.0, y=None, rotation=True)
+            model.fix([0], x=None, y=1.0, amplitude="base")
+        step = ct.Dynamic(period=2.0, increments=n, scheme=scheme, nlgeom=rigid)
+        frames = ct.solve(model, step, fields=False).frames[1:]
+        node = model.mesh.nodes_of("left")[0]
+        t = np.array([f.time for f in frames])
+        v, a = (np.array([getattr(f, name)[node, 1] for f in frames]) for name in "VA")
+        errors.append((np.abs(v - 2.0 * np.sin(2.0 * t)).max(),
+                       np.abs(a - 4.0 * np.cos(2.0 * t)).max()))  # fmt: skip
+    coarse, fine = np.array(errors)
+    # The last frame is a one-sided difference, with the error 11/12 h^2 a(4).
+    assert (fine < 0.04).all()
+    assert (np.log2(coarse / fine) > 1.8).all()
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_base_rests_after_a_ramp_and_the_kink_is_named(scheme):
+    """Ramp to 1 within 0.5, then hold: V = A = 0 from there on, in every increment."""
+    model = shaken([0.0, 0.5, 9.0], [0.0, 1.0, 1.0])
+    step = ct.Dynamic(period=1.0, increments=40, scheme=scheme, nlgeom=False)
+    results = ct.solve(model, step, fields=False)
+    node = model.mesh.nodes_of("left")[0]
+    late = [f for f in results.frames if f.time > 0.55]
+    assert max(abs(f.V[node, 1]) for f in late) < 1e-12
+    assert max(abs(f.A[node, 1]) for f in late) < 1e-9
+    # The pulse at the kink is the lost velocity.
+    pulse = [f.A[node, 1] / 40.0 for f in results.frames[1:] if 0.3 < f.time < 0.9]
+    assert sum(pulse) == pytest.approx(-2.0, rel=1e-9)
+    assert any("'base'" in note and "0.5" in note for note in results.notes)
+
+
+def test_derivatives_of_a_table():
+    """Closed form of a parabola; straight parts have no acceleration, to the last digit."""
+    time = np.linspace(0.0, 1.0, 1001)
+    table = Amplitude(time, time**2)
+    for t in (0.0, 0.5, 1.0):
+        assert table.derivatives(t, 0.1, 0.0, 1.0) == pytest.approx((2.0 * t, 2.0), abs=1e-6)
+    line = Amplitude([0.0, 1.0, 2.0], [0.0, 3.0, 3.0])
+    assert line.derivatives(0.5, 0.1) == pytest.approx((3.0, 0.0))
+    assert line.derivatives(0.5, 0.1)[1] == 0.0
+    assert line.derivatives(1.0, 0.1) == pytest.approx((1.5, -30.0))
+    assert list(line.kinks()) == [0.0, 1.0]
+    wave = np.linspace(0.0, 10.0, 100)
+    assert not len(Amplitude(wave, np.sin(wave)).kinks()[1:-1])
