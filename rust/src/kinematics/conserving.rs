@@ -268,57 +268,125 @@ fn coupled<const N: usize, const M: usize>(
     tangent: &mut Blocks<f64, N, M>,
 ) -> Nodal<f64, N, M> {
     let dt = step.dt;
-    let z = [[0.0; 2]; N];
-    // Bulges at both ends; S of their mean; column for a difference of rotations.
-    let (mut dy, mut s_mean, mut column) = (z, z, z);
-    for k in 0..N {
-        let k1 = (k + 1) % N;
-        let mut y = [[0.0; 2]; 2];
-        for (end, (frame, u)) in [(frames[0], step.u0), (frames[1], step.u1)].iter().enumerate() {
-            let p = u[k][M - 1] - u[k1][M - 1];
-            let w = frame.to_global(mass.s[k]);
-            y[end] = [p * w[0], p * w[1]];
-        }
-        let w = between.turn(mass.s[k]);
-        let factor = (1.0 + 0.25 * between.tau * between.tau)
-            * if step.turning { kappa(between.psi[k], between.psi[k1]) } else { 1.0 };
-        for i in 0..2 {
-            dy[k][i] = y[1][i] - y[0][i];
-            rates_end[k][i] = 2.0 * dy[k][i] / dt - rates[k][i];
-            column[k][i] = factor * w[i];
-        }
-        s_mean[k] = [-0.5 * (y[0][1] + y[1][1]), 0.5 * (y[0][0] + y[1][0])];
-    }
+    let bulges = Bulges::new(mass, step, between, frames);
     let mut f = nodal::<f64, N, M>();
-    let mut on_edge = z;
+    let mut on_edge = [[0.0; 2]; N];
+    let acc = |d: f64, v: f64| 2.0 / dt * (d / dt - v);
     for a in 0..N {
         for b in 0..N {
             for i in 0..2 {
-                let acc = |d: f64, v: f64| 2.0 / dt * (d / dt - v);
                 let node = acc(step.u1[b][i] - step.u0[b][i], step.v0[b][i]);
-                let edge = acc(dy[b][i], rates[b][i]);
+                let edge = acc(bulges.change(b)[i], rates[b][i]);
                 f[a][i] += mass.nn[a][b] * node + mass.ne[a][b] * edge;
                 on_edge[a][i] += mass.ne[b][a] * node + mass.ee[a][b] * edge;
             }
         }
-    }
-    let mut couple = 0.0;
-    for k in 0..N {
-        let k1 = (k + 1) % N;
-        couple += s_mean[k][0] * on_edge[k][0] + s_mean[k][1] * on_edge[k][1];
-        let moment = column[k][0] * on_edge[k][0] + column[k][1] * on_edge[k][1];
-        f[k][M - 1] += moment;
-        f[k1][M - 1] -= moment;
-    }
-    for n in 0..N {
         for i in 0..2 {
-            f[n][i] += between.gamma[n][i] * couple;
+            rates_end[a][i] = 2.0 * bulges.change(a)[i] / dt - rates[a][i];
         }
     }
+    bulges.pass_on(between, &on_edge, &mut f);
+    let (s_mean, column) = (bulges.s_mean(), bulges.column);
     if step.tangent {
         coupled_tangent(mass, 2.0 / (dt * dt), between, &s_mean, &column, tangent);
     }
     f
+}
+
+/// Mean force between two configurations of the field `at_origin + omega2 x` on the mass
+/// (`loads::body`): its work is the exact difference of the field's potential.
+pub fn body_force<const N: usize, const M: usize>(
+    mass: &Mass<f64, N>,
+    x: &Nodal<f64, N, 2>,
+    [u0, u1]: [&Nodal<f64, N, M>; 2],
+    (at_origin, omega2): ([f64; 2], f64),
+) -> Nodal<f64, N, M> {
+    let v0 = nodal::<f64, N, M>();
+    let step = Step { u0, v0: &v0, u1, dt: 1.0, turning: true, tangent: false };
+    let (f0, f1) = (Frame::new(x, u0, true), Frame::new(x, u1, true));
+    let between = Between::new(x, &step, &f0, &f1);
+    let bulges = Bulges::new(mass, &step, &between, [&f0, &f1]);
+    let mut f = nodal::<f64, N, M>();
+    let mut on_edge = [[0.0; 2]; N];
+    for a in 0..N {
+        for b in 0..N {
+            for i in 0..2 {
+                let place = x[b][i] + 0.5 * (u0[b][i] + u1[b][i]);
+                let pull = at_origin[i] + omega2 * place;
+                let bulge = 0.5 * omega2 * (bulges.y[0][b][i] + bulges.y[1][b][i]);
+                f[a][i] += mass.nn[a][b] * pull + mass.ne[a][b] * bulge;
+                on_edge[a][i] += mass.ne[b][a] * pull + mass.ee[a][b] * bulge;
+            }
+        }
+    }
+    bulges.pass_on(&between, &on_edge, &mut f);
+    f
+}
+
+/// Edge bulges at both ends of a step.
+struct Bulges<const N: usize> {
+    y: [[[f64; 2]; N]; 2],
+    /// Column of the discrete derivative for a difference of rotations.
+    column: [[f64; 2]; N],
+}
+
+impl<const N: usize> Bulges<N> {
+    fn new<const M: usize>(
+        mass: &Mass<f64, N>,
+        step: &Step<'_, N, M>,
+        between: &Between<N>,
+        frames: [&Frame<f64, N, M>; 2],
+    ) -> Self {
+        let z = [[0.0; 2]; N];
+        let mut own = Self { y: [z, z], column: z };
+        for k in 0..N {
+            let k1 = (k + 1) % N;
+            for (end, (frame, u)) in [(frames[0], step.u0), (frames[1], step.u1)].iter().enumerate()
+            {
+                let p = u[k][M - 1] - u[k1][M - 1];
+                own.y[end][k] = frame.to_global(mass.s[k]).map(|w| p * w);
+            }
+            let factor = (1.0 + 0.25 * between.tau * between.tau)
+                * if step.turning { kappa(between.psi[k], between.psi[k1]) } else { 1.0 };
+            own.column[k] = between.turn(mass.s[k]).map(|w| factor * w);
+        }
+        own
+    }
+
+    fn change(&self, k: usize) -> [f64; 2] {
+        [self.y[1][k][0] - self.y[0][k][0], self.y[1][k][1] - self.y[0][k][1]]
+    }
+
+    /// The mean bulges turned by a right angle.
+    fn s_mean(&self) -> [[f64; 2]; N] {
+        std::array::from_fn(|k| {
+            let [y0, y1] = [self.y[0][k], self.y[1][k]];
+            [-0.5 * (y0[1] + y1[1]), 0.5 * (y0[0] + y1[0])]
+        })
+    }
+
+    /// Add what forces on the bulges give the nodes.
+    fn pass_on<const M: usize>(
+        &self,
+        between: &Between<N>,
+        on_edge: &[[f64; 2]; N],
+        f: &mut Nodal<f64, N, M>,
+    ) {
+        let s_mean = self.s_mean();
+        let mut couple = 0.0;
+        for k in 0..N {
+            let k1 = (k + 1) % N;
+            couple += s_mean[k][0] * on_edge[k][0] + s_mean[k][1] * on_edge[k][1];
+            let moment = self.column[k][0] * on_edge[k][0] + self.column[k][1] * on_edge[k][1];
+            f[k][M - 1] += moment;
+            f[k1][M - 1] -= moment;
+        }
+        for n in 0..N {
+            for i in 0..2 {
+                f[n][i] += between.gamma[n][i] * couple;
+            }
+        }
+    }
 }
 
 /// `scale J^T mass J` with the discrete Jacobian J of (x, y).

@@ -1,63 +1,159 @@
-//! Body forces of one element on its reference: gravity and centrifugal load, with the
-//! moments that the quadratic edges of drilling elements take.
+//! Body forces of one element at its current positions: gravity and centrifugal load.
+//!
+//! Both are gradients of a potential of the positions that the inertia knows: those of the
+//! nodes and of the edge bulges of drilling elements, `y_k = (phi_k - phi_k+1) R s_k`, with the
+//! element's own mass matrix `M`. For the acceleration `b + omega^2 x` that is
+//!
+//! ```text
+//! V = - (sum M) b . x - omega^2 / 2  x . M x,   x = (x_1 .. x_N, y_1 .. y_N)
+//! ```
+//!
+//! so whatever mass moves is also what is heavy: free fall leaves every element without stress.
+//! The force on the bulges gives moments along the current normals of the edges and, since the
+//! bulges ride with the frame, a couple of forces on the nodes. The stiffness is exact and
+//! symmetric.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::small::{Nodal, nodal};
-use crate::elements::{Element, Point, shapes};
+use crate::base::small::{Blocks, Nodal, blocks, nodal};
+use crate::kinematics::inertia::{Mass, Spin};
 
-/// Acceleration field on the reference.
+/// Acceleration field `b + omega^2 x` of the current position x.
 #[derive(Clone, Copy, Debug)]
-pub enum Field {
-    /// The same everywhere [length/time^2].
-    Uniform([f64; 2]),
-    /// `omega^2 (X - centre)`: omega squared and the centre.
-    Centrifugal(f64, [f64; 2]),
+pub struct Field {
+    /// Acceleration at the origin [length/time^2].
+    pub at_origin: [f64; 2],
+    /// Square of the angular velocity [1/time^2].
+    pub omega2: f64,
 }
 
 impl Field {
-    fn at(self, x: [f64; 2]) -> [f64; 2] {
-        match self {
-            Self::Uniform(b) => b,
-            Self::Centrifugal(w2, c) => [w2 * (x[0] - c[0]), w2 * (x[1] - c[1])],
-        }
+    /// The same acceleration everywhere.
+    pub fn uniform(b: [f64; 2]) -> Self {
+        Self { at_origin: b, omega2: 0.0 }
+    }
+
+    /// Centrifugal acceleration about a point.
+    pub fn centrifugal(omega2: f64, center: [f64; 2]) -> Self {
+        Self { at_origin: [-omega2 * center[0], -omega2 * center[1]], omega2 }
+    }
+
+    /// The field times a factor.
+    pub fn times(self, factor: f64) -> Self {
+        Self { at_origin: self.at_origin.map(|b| factor * b), omega2: factor * self.omega2 }
     }
 }
 
-/// Nodal force of a field on an element of mass per area `rho_t`.
-pub fn force<E, const N: usize, const M: usize, const A: usize>(
+/// Nodal force of a field on an element with nodes at `x + u`, and its derivative, blocks
+/// `a <= b`. Without `coupled` the mass has no part that belongs to rotations.
+pub fn force<const N: usize, const M: usize>(
+    mass: &Mass<f64, N>,
+    coupled: bool,
     x: &Nodal<f64, N, 2>,
-    points: &[Point<N>],
-    rho_t: f64,
+    u: &Nodal<f64, N, M>,
     field: Field,
-) -> Nodal<f64, N, M>
-where
-    E: Element<N, M, A>,
-{
-    let mut f = nodal::<f64, N, M>();
-    for p in points {
-        let weight = E::measure(x, p);
-        let mut position = [0.0; 2];
-        for a in 0..N {
-            for i in 0..2 {
-                position[i] += p.n[a] * x[a][i];
-            }
+) -> (Nodal<f64, N, M>, Blocks<f64, N, M>) {
+    let (mut f, mut k) = (nodal::<f64, N, M>(), blocks::<f64, N, M>());
+    let mut pull = [[0.0; 2]; N];
+    for a in 0..N {
+        for i in 0..2 {
+            pull[a][i] = field.at_origin[i] + field.omega2 * (x[a][i] + u[a][i]);
         }
-        let b = field.at(position);
-        let m = weight * rho_t;
-        for a in 0..N {
+    }
+    for a in 0..N {
+        for b in 0..N {
             for i in 0..2 {
-                f[a][i] += m * p.n[a] * b[i];
-            }
-        }
-        if M == 3 {
-            let sides = E::sides(p.xi);
-            for a in 0..N {
-                let bulge = shapes::edge_bulge(x, a);
-                let moment = m * sides[a] * (bulge[0] * b[0] + bulge[1] * b[1]);
-                f[a][M - 1] += moment;
-                f[(a + 1) % N][M - 1] -= moment;
+                f[a][i] += mass.nn[a][b] * pull[b][i];
+                k[a][b][i][i] = field.omega2 * mass.nn[a][b];
             }
         }
     }
-    f
+    if coupled && M == 3 {
+        bulges(mass, x, u, field, &pull, &mut f, &mut k);
+    }
+    (f, k)
+}
+
+/// Add what the edge bulges give.
+fn bulges<const N: usize, const M: usize>(
+    mass: &Mass<f64, N>,
+    x: &Nodal<f64, N, 2>,
+    u: &Nodal<f64, N, M>,
+    field: Field,
+    pull: &[[f64; 2]; N],
+    f: &mut Nodal<f64, N, M>,
+    k: &mut Blocks<f64, N, M>,
+) {
+    let spin = Spin::new(x, u, &mass.s);
+    let next = |e: usize| (e + 1) % N;
+    let differ: [f64; N] = std::array::from_fn(|e| u[e][M - 1] - u[next(e)][M - 1]);
+    let (mut y, mut on_edge) = ([[0.0; 2]; N], [[0.0; 2]; N]);
+    for e in 0..N {
+        y[e] = spin.w[e].map(|w| differ[e] * w);
+    }
+    for e in 0..N {
+        for b in 0..N {
+            for i in 0..2 {
+                f[b][i] += field.omega2 * mass.ne[b][e] * y[e][i];
+                on_edge[e][i] += mass.ne[b][e] * pull[b][i];
+                on_edge[e][i] += field.omega2 * mass.ee[e][b] * y[b][i];
+            }
+        }
+    }
+    let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+    // What turns the frame, and its derivative by the turn.
+    let (mut couple, mut couple_w) = (0.0, 0.0);
+    for e in 0..N {
+        couple += differ[e] * dot(spin.sw[e], on_edge[e]);
+        couple_w += differ[e] * dot(spin.w[e], on_edge[e]);
+        let moment = dot(spin.w[e], on_edge[e]);
+        f[e][M - 1] += moment;
+        f[next(e)][M - 1] -= moment;
+    }
+    for n in 0..N {
+        for i in 0..2 {
+            f[n][i] += spin.gamma[n][i] * couple;
+        }
+    }
+    for q in 0..N {
+        for j in 0..M {
+            // Turn of the frame, relative growth of D, differences of rotations.
+            let (mut turn, mut growth, mut differs) = (0.0, 0.0, [0.0; N]);
+            if j < 2 {
+                (turn, growth) = (spin.gamma[q][j], spin.eta[q][j] / spin.d);
+            } else {
+                differs[q] += 1.0;
+                differs[(q + N - 1) % N] -= 1.0;
+            }
+            let mut dy = [[0.0; 2]; N];
+            for e in 0..N {
+                for i in 0..2 {
+                    dy[e][i] = differs[e] * spin.w[e][i] + differ[e] * turn * spin.sw[e][i];
+                }
+            }
+            let mut d_couple = -couple_w * turn;
+            for e in 0..N {
+                let mut d_edge = [0.0; 2];
+                for i in 0..2 {
+                    for b in 0..N {
+                        d_edge[i] += field.omega2 * mass.ee[e][b] * dy[b][i];
+                        k[b][q][i][j] += field.omega2 * mass.ne[b][e] * dy[e][i];
+                    }
+                    if i == j {
+                        d_edge[i] += field.omega2 * mass.ne[q][e];
+                    }
+                }
+                d_couple += differs[e] * dot(spin.sw[e], on_edge[e]);
+                d_couple += differ[e] * dot(spin.sw[e], d_edge);
+                let moment = turn * dot(spin.sw[e], on_edge[e]) + dot(spin.w[e], d_edge);
+                k[e][q][M - 1][j] += moment;
+                k[next(e)][q][M - 1][j] -= moment;
+            }
+            for n in 0..N {
+                for i in 0..2 {
+                    let turned = spin.eta[n][i] / spin.d * turn + spin.gamma[n][i] * growth;
+                    k[n][q][i][j] += spin.gamma[n][i] * d_couple - turned * couple;
+                }
+            }
+        }
+    }
 }

@@ -1,10 +1,18 @@
-//! Tractions on element edges: dead tractions and following pressure, each with the end
-//! moments of drilling elements.
+//! Loads on element edges at current positions: dead tractions and following pressure.
 //!
-//! A normal traction q (outward) on a drilling edge of length l gives the end moments
-//! `-/+ alpha_b q t l^2 / 12`, since a difference of the end rotations bulges the edge.
-//! Pressure integrates the turned tangent of the deformed edge, so it needs no square root
-//! and its load stiffness is exact; that stiffness is symmetric for closed or fully held
+//! A side of a drilling element is a parabola: its middle lies `alpha_b l0 / 8 (phi_0 - phi_1)`
+//! off the chord, along the chord's current normal. (l0 is the undeformed length. Contact sees
+//! the same curve, see `contact::curve`.) The work of a load on that bulge is a potential
+//!
+//! ```text
+//! W = (phi_0 - phi_1) h(e),   e the current chord
+//! h = alpha_b l0 t p |e| / 12           pressure p: times the area between chord and curve
+//! h = alpha_b l0^2 t (q . S e / |e|) / 12   dead traction q: its work on the bulge
+//! ```
+//!
+//! whose gradient is the pair of end moments and its partner, a pair of forces at the ends. So
+//! this part of the load stiffness is symmetric for every edge. The chord's part of a pressure
+//! integrates the turned tangent; its stiffness is symmetric for closed or fully held
 //! boundaries and not at open ends.
 // SPDX-License-Identifier: BSD-3-Clause
 
@@ -17,12 +25,33 @@ pub struct Edge {
     pub n_nodes: usize,
     pub thickness: f64,
     pub alpha_b: f64,
+    /// Undeformed positions of the nodes.
+    pub x: [[f64; 2]; 3],
+}
+
+/// Where an edge is: positions of its nodes, and the difference of its end rotations.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub x: [[f64; 2]; 3],
+    pub differ: f64,
 }
 
 /// Force on the nodes of an edge: x, y, moment.
 pub type EdgeForce = [[f64; 3]; 3];
-/// Derivative of an [`EdgeForce`] with respect to the nodal displacements.
-pub type EdgeStiffness = [[[[f64; 2]; 3]; 3]; 3];
+/// Derivative of an [`EdgeForce`] with respect to the nodal displacements and rotations.
+pub type EdgeStiffness = [[[[f64; 3]; 3]; 3]; 3];
+
+impl Edge {
+    /// The undeformed edge.
+    pub fn undeformed(&self) -> Place {
+        Place { x: self.x, differ: 0.0 }
+    }
+
+    fn length(&self) -> f64 {
+        let e = chord(&self.x);
+        e[0].hypot(e[1])
+    }
+}
 
 /// Gauss points of the edge, shape functions and derivatives for 2 or 3 nodes.
 fn samples(n_nodes: usize) -> Vec<(f64, [f64; 3], [f64; 3])> {
@@ -40,11 +69,12 @@ fn samples(n_nodes: usize) -> Vec<(f64, [f64; 3], [f64; 3])> {
         .collect()
 }
 
-/// Dead traction `t` [force/length^2] on an edge at positions `x`.
-pub fn traction(edge: &Edge, x: &[[f64; 2]; 3], t: [f64; 2]) -> EdgeForce {
+/// Dead traction `t` [force/length^2 of the undeformed edge], and the derivative of its force.
+pub fn traction(edge: &Edge, at: &Place, t: [f64; 2]) -> (EdgeForce, EdgeStiffness) {
     let mut f = EdgeForce::default();
+    let mut k = EdgeStiffness::default();
     for (w, n, dn) in samples(edge.n_nodes) {
-        let d = tangent(x, &dn);
+        let d = tangent(&edge.x, &dn);
         let dl = w * edge.thickness * (d[0] * d[0] + d[1] * d[1]).sqrt();
         for a in 0..edge.n_nodes {
             f[a][0] += n[a] * t[0] * dl;
@@ -52,24 +82,30 @@ pub fn traction(edge: &Edge, x: &[[f64; 2]; 3], t: [f64; 2]) -> EdgeForce {
         }
     }
     if edge.alpha_b > 0.0 {
-        let e = [x[1][0] - x[0][0], x[1][1] - x[0][1]];
-        // q l = t . (outward normal times length)
-        let ql = t[0] * e[1] - t[1] * e[0];
-        let l = (e[0] * e[0] + e[1] * e[1]).sqrt();
-        let moment = edge.alpha_b * edge.thickness * ql * l / 12.0;
-        f[0][2] -= moment;
-        f[1][2] += moment;
+        let c = edge.alpha_b * edge.thickness * edge.length().powi(2) / 12.0;
+        let (l, unit, normal) = frame(&at.x);
+        let (along, across) =
+            (c * (t[0] * unit[0] + t[1] * unit[1]), c * (t[0] * normal[0] + t[1] * normal[1]));
+        // h = across; its gradient and second derivative by the chord.
+        let slope = normal.map(|n| -along * n / l);
+        let mut second = [[0.0; 2]; 2];
+        for i in 0..2 {
+            for j in 0..2 {
+                let mixed = unit[i] * normal[j] + normal[i] * unit[j];
+                second[i][j] = (along * mixed - across * normal[i] * normal[j]) / (l * l);
+            }
+        }
+        add_bulge(at.differ, across, slope, second, &mut f, &mut k);
     }
-    f
+    (f, k)
 }
 
-/// Pressure `p` (positive into the element) on an edge at current positions `x`, and the
-/// derivative of the force with respect to them.
-pub fn pressure(edge: &Edge, x: &[[f64; 2]; 3], p: f64) -> (EdgeForce, EdgeStiffness) {
+/// Pressure `p` (positive into the element) on the current edge, and the derivative of its force.
+pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
     let mut f = EdgeForce::default();
     let mut k = EdgeStiffness::default();
     for (w, n, dn) in samples(edge.n_nodes) {
-        let d = tangent(x, &dn);
+        let d = tangent(&at.x, &dn);
         let s = w * edge.thickness * p;
         // Inward normal times length: the tangent turned to the left.
         for a in 0..edge.n_nodes {
@@ -82,19 +118,56 @@ pub fn pressure(edge: &Edge, x: &[[f64; 2]; 3], p: f64) -> (EdgeForce, EdgeStiff
         }
     }
     if edge.alpha_b > 0.0 {
-        let e = [x[1][0] - x[0][0], x[1][1] - x[0][1]];
-        let c = edge.alpha_b * edge.thickness * p / 12.0;
-        let moment = c * (e[0] * e[0] + e[1] * e[1]);
-        f[0][2] += moment;
-        f[1][2] -= moment;
+        let c = edge.alpha_b * edge.thickness * edge.length() * p / 12.0;
+        let (l, unit, normal) = frame(&at.x);
+        let mut second = [[0.0; 2]; 2];
         for i in 0..2 {
-            for (b, sign) in [(0, -1.0), (1, 1.0)] {
-                k[0][b][2][i] += 2.0 * c * sign * e[i];
-                k[1][b][2][i] -= 2.0 * c * sign * e[i];
+            for j in 0..2 {
+                second[i][j] = c * normal[i] * normal[j] / l;
+            }
+        }
+        add_bulge(at.differ, c * l, unit.map(|e| c * e), second, &mut f, &mut k);
+    }
+    (f, k)
+}
+
+/// Add the gradient and the second derivative of `differ h(e)`, given those of h.
+fn add_bulge(
+    differ: f64,
+    h: f64,
+    slope: [f64; 2],
+    second: [[f64; 2]; 2],
+    f: &mut EdgeForce,
+    k: &mut EdgeStiffness,
+) {
+    let turns = [1.0, -1.0];
+    for a in 0..2 {
+        // The chord grows with its last end.
+        f[a][2] += turns[a] * h;
+        for i in 0..2 {
+            f[a][i] -= turns[a] * differ * slope[i];
+            for b in 0..2 {
+                let signs = turns[a] * turns[b];
+                k[a][b][2][i] -= signs * slope[i];
+                k[a][b][i][2] -= signs * slope[i];
+                for j in 0..2 {
+                    k[a][b][i][j] += signs * differ * second[i][j];
+                }
             }
         }
     }
-    (f, k)
+}
+
+fn chord(x: &[[f64; 2]; 3]) -> [f64; 2] {
+    [x[1][0] - x[0][0], x[1][1] - x[0][1]]
+}
+
+/// Length of the chord, its direction, and its normal into the element.
+fn frame(x: &[[f64; 2]; 3]) -> (f64, [f64; 2], [f64; 2]) {
+    let e = chord(x);
+    let l = e[0].hypot(e[1]);
+    let unit = [e[0] / l, e[1] / l];
+    (l, unit, [-unit[1], unit[0]])
 }
 
 fn tangent(x: &[[f64; 2]; 3], dn: &[f64; 3]) -> [f64; 2] {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::dofs::Dofs;
-use super::dynamics::{Between, Momenta, Motion};
+use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::scatter::Sink;
 use crate::base::small::{Blocks, Nodal};
 use crate::base::{Kernel, Lanes, MAX_LANES, Real, dispatch};
@@ -10,7 +10,6 @@ use crate::elements::Element;
 use crate::kinematics::corotation::Frame;
 use crate::kinematics::inertia::MassKind;
 use crate::kinematics::integrate::{History, Local, Section};
-use crate::loads::body::{self, Field};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -58,13 +57,12 @@ pub trait Chunk: Send + Sync {
     fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize>;
     /// Values at the points, in the order of [`Chunk::elements`].
     fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields);
-    /// Add the nodal forces of a body force with mass per area `rho * thickness`; `mask` by
-    /// element of the block.
+    /// Add the nodal forces of a body force at the displacements of the context and, if it wants
+    /// a tangent, `share` times their derivative; `mask` by element of the block.
     fn body_force(
         &self,
         context: &Context<'_>,
-        field: Field,
-        rho: f64,
+        load: &BodyLoad<'_>,
         mask: &[bool],
         sink: &Sink<'_>,
     );
@@ -384,21 +382,11 @@ where
     fn body_force(
         &self,
         context: &Context<'_>,
-        field: Field,
-        rho: f64,
+        load: &BodyLoad<'_>,
         mask: &[bool],
         sink: &Sink<'_>,
     ) {
-        let shared = &self.shared;
-        let rho_t = rho * shared.section.thickness;
-        for (e, nodes) in self.nodes.iter().enumerate() {
-            if !mask[self.elements[e] as usize] {
-                continue;
-            }
-            let x = nodes.map(|n| context.x[n as usize]);
-            let f = body::force::<E, N, M, A>(&x, &shared.mass_points, rho_t, field);
-            self.scatter_force(e, 1, &f, context.dofs, sink);
-        }
+        self.add_body_force(context, load, mask, sink);
     }
     fn inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
         self.add_inertia(context, motion, sink);

@@ -8,6 +8,7 @@ use crate::elements::Element;
 use crate::kinematics::conserving::{self, Step};
 use crate::kinematics::inertia::{Mass, MassKind, Spin, bulge_rates, consistent};
 use crate::kinematics::integrate::History;
+use crate::loads::body::{self, Field};
 
 /// State of motion, and what is wanted of the inertia.
 #[derive(Clone, Copy)]
@@ -17,6 +18,18 @@ pub struct Motion<'a> {
     pub kind: MassKind,
     /// Weights of the derivatives with respect to displacement, velocity, acceleration.
     pub weights: [f64; 3],
+}
+
+/// A body force and what is wanted of it.
+#[derive(Clone, Copy)]
+pub struct BodyLoad<'a> {
+    pub field: Field,
+    /// Displacements at the start of a conserving step; empty for the force at the end of it.
+    pub start: &'a [f64],
+    /// The mass that it acts on.
+    pub kind: MassKind,
+    /// Factor of the derivative that is added to the tangent.
+    pub share: f64,
 }
 
 /// The step of the conserving scheme.
@@ -80,6 +93,41 @@ where
             };
             self.scatter_force(e, 1, &f, context.dofs, sink);
             if context.tangent {
+                self.scatter_stiffness(e, 1, &k, context.dofs, sink);
+            }
+        }
+    }
+
+    pub(super) fn add_body_force(
+        &self,
+        context: &Context<'_>,
+        load: &BodyLoad<'_>,
+        mask: &[bool],
+        sink: &Sink<'_>,
+    ) {
+        let coupled = load.kind == MassKind::Consistent && M == 3 && !E::LINE;
+        for e in (0..self.nodes.len()).filter(|&e| mask[self.elements[e] as usize]) {
+            let (x, mut u) = self.gather::<f64>(e, context);
+            let mass = self.mass(e, &x, load.kind);
+            let mut secant = None;
+            if !load.start.is_empty() {
+                let (u0, field) = (self.of_dofs(e, load.start, context), load.field);
+                if coupled {
+                    let ends = [&u0, &u];
+                    let field = (field.at_origin, field.omega2);
+                    secant = Some(conserving::body_force(&mass, &x, ends, field));
+                }
+                for (to, from) in u.as_flattened_mut().iter_mut().zip(u0.as_flattened()) {
+                    *to = 0.5 * (*to + from);
+                }
+            }
+            let (middle, mut k) = body::force(&mass, coupled, &x, &u, load.field);
+            let f = secant.unwrap_or(middle);
+            self.scatter_force(e, 1, &f, context.dofs, sink);
+            if context.tangent {
+                for v in k.as_flattened_mut().as_flattened_mut().as_flattened_mut() {
+                    *v *= load.share;
+                }
                 self.scatter_stiffness(e, 1, &k, context.dofs, sink);
             }
         }

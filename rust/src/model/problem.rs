@@ -4,7 +4,7 @@
 use super::build::{Block, BlockInput, build, colour};
 use super::chunk::{Chunk, Context};
 use super::dofs::Dofs;
-use super::dynamics::{Between, Momenta, Motion};
+use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::held::Held;
 use super::recover::Fields;
 use super::registry;
@@ -12,7 +12,6 @@ use super::scatter::{Shared, Sink};
 use crate::base::Lanes;
 use crate::base::race::Race;
 use crate::kinematics::inertia::MassKind;
-use crate::loads::body::Field;
 use rayon::prelude::*;
 
 /// Elements that could not be evaluated: pairs of block and index in it.
@@ -321,29 +320,27 @@ impl Problem {
         chunks.map(|c| c.plastic_increment()).fold(0.0, f64::max)
     }
 
-    /// Nodal force of a body force; densities and element masks by block.
-    pub fn body_force(&self, field: Field, rho: &[f64], masks: &[Vec<bool>]) -> Vec<f64> {
-        let n = self.dofs.n_dofs();
-        let (mut force, mut scale) = (vec![0.0; n], vec![0.0; n]);
-        let u = vec![0.0; n];
-        let context = Context {
-            x: &self.x,
-            u: &u,
-            dofs: &self.dofs,
-            turning: false,
-            tangent: false,
-            lanes: self.lanes,
-        };
+    /// Add the nodal force of a body force at displacements `u`, or its mean over the conserving
+    /// step that ends there, and, unless `values` is empty, `load.share` times its derivative;
+    /// element masks by block.
+    pub fn body_force(
+        &self,
+        u: &[f64],
+        load: &BodyLoad<'_>,
+        masks: &[Vec<bool>],
+        force: &mut [f64],
+        values: &mut [f64],
+    ) {
+        let mut scale = vec![0.0; force.len()];
+        let context = Context { tangent: !values.is_empty(), ..self.at_rest(u) };
         let sink = Sink {
-            force: Shared::new(&mut force),
+            force: Shared::new(force),
             scale: Shared::new(&mut scale),
-            values: Shared::new(&mut []),
+            values: Shared::new(values),
         };
         for chunk in self.colours.iter().flatten() {
-            let b = chunk.block();
-            chunk.body_force(&context, field, rho[b], &masks[b], &sink);
+            chunk.body_force(&context, load, &masks[chunk.block()], &sink);
         }
-        force
     }
 
     /// Strains that the materials of a block meet, `[n, p, 3]`, with the committed internal

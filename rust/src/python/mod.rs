@@ -3,6 +3,7 @@
 
 mod blocks;
 mod contact;
+mod edges;
 mod io;
 mod linear;
 mod material;
@@ -15,6 +16,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     contact::register(m)?;
+    edges::register(m)?;
     io::register(m)?;
     linear::register(m)?;
     material::register(m)?;

@@ -5,9 +5,8 @@ use super::blocks::block_inputs;
 use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
-use crate::loads::edge;
 use crate::materials::Law;
-use crate::model::dynamics::{Between, Motion};
+use crate::model::dynamics::{Between, BodyLoad, Motion};
 use crate::model::problem::{Failed, Problem};
 use crate::model::registry;
 use crate::model::sizes;
@@ -372,27 +371,47 @@ impl PyProblem {
         rows.into_pyarray(py).reshape([self.inner.dofs.n_nodes(), 3])
     }
 
-    /// Nodal force by dof of a body force: ``kind`` gravity with value (bx, by), or centrifugal
-    /// with (omega^2, x0, y0); densities and element masks by block.
-    fn body_force<'py>(
+    /// Add to ``force`` a body force at displacements ``u``, and ``share`` times its derivative
+    /// to ``values`` (upper triangle) unless that is empty. Unless ``start`` is empty, it is the
+    /// mean force of the conserving step from there, and the derivative that of its middle. ``kind`` is gravity with value
+    /// (bx, by), or centrifugal with (omega^2, x0, y0); ``mass`` is the mass that it acts on;
+    /// element masks by block.
+    #[allow(clippy::too_many_arguments)]
+    fn body_force(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         kind: &str,
         value: Vec<f64>,
-        rho: Vec<f64>,
-        masks: Vec<PyReadonlyArray1<'py, bool>>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        mass: &str,
+        masks: Vec<PyReadonlyArray1<'_, bool>>,
+        u: PyReadonlyArray1<'_, f64>,
+        start: PyReadonlyArray1<'_, f64>,
+        share: f64,
+        mut force: PyReadwriteArray1<'_, f64>,
+        mut values: PyReadwriteArray1<'_, f64>,
+    ) -> PyResult<()> {
         let field = match (kind, value.as_slice()) {
-            ("gravity", &[x, y]) => Field::Uniform([x, y]),
-            ("centrifugal", &[w2, x, y]) => Field::Centrifugal(w2, [x, y]),
+            ("gravity", &[x, y]) => Field::uniform([x, y]),
+            ("centrifugal", &[w2, x, y]) => Field::centrifugal(w2, [x, y]),
             _ => return Err(value_error(format!("no body force {kind:?} with {value:?}"))),
         };
+        let start = start.as_slice()?;
+        let kind = MassKind::new(mass).map_err(value_error)?;
+        let load = BodyLoad { field, start, kind, share };
         let masks: Vec<Vec<bool>> = masks.iter().map(|m| m.as_array().to_vec()).collect();
         let fits = masks.iter().zip(&self.inner.blocks).all(|(m, b)| m.len() == b.n_elements);
-        if masks.len() != self.inner.blocks.len() || rho.len() != masks.len() || !fits {
-            return Err(value_error("densities and masks must fit the blocks"));
+        let (u, f, k) = (u.as_slice()?, force.as_slice_mut()?, values.as_slice_mut()?);
+        let dofs = &self.inner.dofs;
+        let lengths = [u.len(), f.len()] == [dofs.n_dofs(); 2]
+            && (start.is_empty() || start.len() == u.len());
+        if masks.len() != self.inner.blocks.len() || !fits || !lengths {
+            return Err(value_error("masks and arrays must fit the problem"));
         }
-        Ok(self.inner.body_force(field, &rho, &masks).into_pyarray(py))
+        if !(k.is_empty() || k.len() == dofs.indices.len()) {
+            return Err(value_error("the tangent does not fit the problem"));
+        }
+        py.detach(|| self.inner.body_force(u, &load, &masks, f, k));
+        Ok(())
     }
 
     /// Point fields of every block: a list of dicts of arrays by element and point.
@@ -437,99 +456,6 @@ impl PyProblem {
     }
 }
 
-/// Loaded edges, all with the same kind of load.
-///
-/// EdgeLoads(nodes, thickness, alpha_b): ``nodes`` (n, 3) uint32, the third repeated from the
-/// first where the edge is straight.
-#[pyclass(name = "EdgeLoads")]
-pub struct PyEdgeLoads {
-    edges: Vec<edge::Edge>,
-}
-
-#[pymethods]
-impl PyEdgeLoads {
-    #[new]
-    fn new(
-        nodes: PyReadonlyArray2<'_, u32>,
-        thickness: PyReadonlyArray1<'_, f64>,
-        alpha_b: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<Self> {
-        let (t, b) = (thickness.as_slice()?, alpha_b.as_slice()?);
-        let rows = nodes.as_slice()?.as_chunks::<3>().0;
-        let edges = rows.iter().zip(t).zip(b).map(|((&nodes, &thickness), &alpha_b)| {
-            let n_nodes = if nodes[2] == nodes[0] { 2 } else { 3 };
-            edge::Edge { nodes, n_nodes, thickness, alpha_b }
-        });
-        Ok(Self { edges: edges.collect() })
-    }
-
-    /// Nodal force (n_nodes, 3) flat of a dead traction at positions ``x`` (n_nodes, 2).
-    fn traction<'py>(
-        &self,
-        py: Python<'py>,
-        x: PyReadonlyArray2<'py, f64>,
-        t: [f64; 2],
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let x = x.as_slice()?.as_chunks::<2>().0;
-        let mut f = vec![0.0; 3 * x.len()];
-        for e in &self.edges {
-            let local = e.nodes.map(|n| x[n as usize]);
-            add(e, &edge::traction(e, &local, t), &mut f);
-        }
-        Ok(f.into_pyarray(py))
-    }
-
-    /// Nodal force (n_nodes, 3) flat of a following pressure at current positions ``x``, and
-    /// its derivative as triplets (row, column, value) with row and column = 3 node + dof.
-    fn pressure<'py>(
-        &self,
-        py: Python<'py>,
-        x: PyReadonlyArray2<'py, f64>,
-        p: f64,
-    ) -> PyResult<(
-        Bound<'py, PyArray1<f64>>,
-        Bound<'py, PyArray1<u32>>,
-        Bound<'py, PyArray1<u32>>,
-        Bound<'py, PyArray1<f64>>,
-    )> {
-        let x = x.as_slice()?.as_chunks::<2>().0;
-        let mut f = vec![0.0; 3 * x.len()];
-        let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        for e in &self.edges {
-            let local = e.nodes.map(|n| x[n as usize]);
-            let (force, k) = edge::pressure(e, &local, p);
-            add(e, &force, &mut f);
-            for a in 0..e.n_nodes {
-                for b in 0..e.n_nodes {
-                    for i in 0..3 {
-                        for j in 0..2 {
-                            if k[a][b][i][j] != 0.0 {
-                                rows.push(3 * e.nodes[a] + i as u32);
-                                columns.push(3 * e.nodes[b] + j as u32);
-                                values.push(k[a][b][i][j]);
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        Ok((
-            f.into_pyarray(py),
-            rows.into_pyarray(py),
-            columns.into_pyarray(py),
-            values.into_pyarray(py),
-        ))
-    }
-}
-
-fn add(e: &edge::Edge, force: &edge::EdgeForce, f: &mut [f64]) {
-    for a in 0..e.n_nodes {
-        for i in 0..3 {
-            f[3 * e.nodes[a] as usize + i] += force[a][i];
-        }
-    }
-}
-
 /// Facts of all elements: a list of dicts.
 #[pyfunction]
 fn elements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
@@ -558,7 +484,6 @@ fn materials() -> Vec<&'static str> {
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyProblem>()?;
-    m.add_class::<PyEdgeLoads>()?;
     m.add_function(wrap_pyfunction!(elements, m)?)?;
     m.add_function(wrap_pyfunction!(materials, m)?)?;
     Ok(())

@@ -11,12 +11,13 @@ Source: CalculiX 2.20, ``loadadd.f`` and ``bodyadd.f``; tests/steps compares wit
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota import _core
+from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
 from corota.errors import ModelError
 from corota.mesh import EDGES
 from corota.model import elements
@@ -27,10 +28,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.analysis.distributed_forces import Distribution
     from corota.analysis.equations import System
     from corota.errors import Location
 
-    Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 #: Directions and axes are the same within this (CalculiX's own tolerance).
@@ -41,7 +42,7 @@ SIDES = 8
 
 @dataclass
 class DistributedLoad:
-    """A load with its history: one scale for a fixed vector, or a following pressure.
+    """A load with the history of its scale.
 
     Parameters
     ----------
@@ -51,12 +52,10 @@ class DistributedLoad:
         Index into the names of amplitudes; 0 for none.
     removed : bool
         Whether the step took the load away.
-    vector : ndarray, shape (n_dofs,), or None
-        Force per unit scale; None for a following pressure.
-    edges : object or None
-        Core object of the edges of a pressure or traction.
+    force : Distribution
+        Its force per unit scale, given when the load is built.
     faces : ndarray, shape (n, 2), or None
-        Cell and side of these edges.
+        Cell and side of loaded edges.
     traction : tuple of float
         Of a dead traction: force per area and unit scale.
     item : EdgeLoad or BodyForce
@@ -68,15 +67,9 @@ class DistributedLoad:
     amplitude: int
     item: EdgeLoad | BodyForce
     removed: bool = False
-    vector: Floats | None = None
-    edges: object | None = None
+    force: Distribution = field(init=False)
     faces: Ints | None = None
     traction: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def follows(self) -> bool:
-        """Whether the force depends on the displacement."""
-        return self.vector is None
 
 
 class DistributedLoads:
@@ -90,7 +83,15 @@ class DistributedLoads:
     def __init__(self, system: System) -> None:
         self.system = system
         self.loads: list[DistributedLoad] = []
+        #: Mass that body forces act on.
+        self.mass = STATIC_MASS
         self._cells: dict[int, tuple[int, int]] = {}
+
+    def set_mass(self, kind: str) -> None:
+        """Let body forces act on the mass of this kind."""
+        self.mass = kind
+        for load in self.loads:
+            load.force.set_mass(kind)
 
     def carry(self, scale: Callable[[DistributedLoad], float], runs_on: NDArray[np.bool_]) -> None:
         """Start the next step from what was reached, except where an amplitude runs on."""
@@ -150,12 +151,12 @@ class DistributedLoads:
     def _bodies(
         self, items: Sequence[BodyForce], amplitude: Callable[[str, Location | None], int]
     ) -> list[DistributedLoad]:
-        return [
-            DistributedLoad(
-                0.0, 1.0, amplitude(item.amplitude, item.where), item, vector=self._body(item)
-            )
-            for item in items
-        ]
+        found = []
+        for item in items:
+            load = DistributedLoad(0.0, 1.0, amplitude(item.amplitude, item.where), item)
+            load.force = BodyLoad(self.system, item, self.mass)
+            found.append(load)
+        return found
 
     def _on_edges(
         self, items: Sequence[EdgeLoad], amplitude: Callable[[str, Location | None], int]
@@ -180,39 +181,12 @@ class DistributedLoads:
     def _edge_load(self, load: DistributedLoad) -> DistributedLoad:
         """Give a load on edges what its faces need in the core."""
         assert load.faces is not None
-        core: Any = self._core(load.faces)
-        load.edges = core
-        if load.item.kind == "traction":
-            x = self.system.model.mesh.points
-            load.vector = self.system.from_nodes(core.traction(x, load.traction))
+        core, drilling = self._core(load.faces)
+        if load.item.kind == "pressure":
+            load.force = Pressure(self.system, core)
+        else:
+            load.force = Traction(self.system, core, drilling, load.traction)
         return load
-
-    def _body(self, item: BodyForce) -> Floats:
-        density = [b.section.material.rho for b in self.system.blocks]
-        mesh = self.system.model.mesh
-        inside = np.ones(mesh.n_cells, bool)
-        if not isinstance(item.cells, str):
-            inside[:] = False
-            inside[item.cells] = True
-        elif item.cells not in ("", "all"):
-            if item.cells not in mesh.cell_sets:
-                known = ", ".join(mesh.cell_sets) or "none"
-                raise ModelError(
-                    f"no element set named {item.cells!r}; there are: {known}", item.where
-                )
-            inside[:] = False
-            inside[mesh.cell_sets[item.cells]] = True
-        masks = [inside[b.cells] for b in self.system.blocks]
-        for block, rho, mask in zip(self.system.blocks, density, masks, strict=True):
-            massless = block.section.element.startswith("SPRING")
-            if mask.any() and rho <= 0.0 and not massless:
-                name = block.section.material.name or block.section.material.law
-                raise ModelError(
-                    f"material {name!r} has no density for a body force; add one (*DENSITY)",
-                    item.where,
-                )
-        force: Floats = self.system.core.body_force(item.kind, list(item.value), density, masks)
-        return self.system.at_nodes(force)
 
     def _faces(self, item: EdgeLoad) -> Ints:
         """Cell and side of every loaded edge, shape (n, 2)."""
@@ -243,7 +217,8 @@ class DistributedLoads:
         local = EDGES[elements.find(block.section.element).cell][side]
         return [int(block.nodes[row, a]) for a in local], b
 
-    def _core(self, faces: Ints) -> object:
+    def _core(self, faces: Ints) -> tuple[_core.EdgeLoads, bool]:
+        """The core's edges, and whether rotations bulge some of them."""
         nodes, thickness, alpha = [], [], []
         for cell, side in faces.tolist():
             ends, b = self._ends(cell, side)
@@ -251,9 +226,13 @@ class DistributedLoads:
             nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
             thickness.append(section.thickness)
             alpha.append(elements.find(section.element).alpha_b)
-        return _core.EdgeLoads(
-            np.asarray(nodes, np.uint32).reshape(-1, 3), np.asarray(thickness), np.asarray(alpha)
+        edges = _core.EdgeLoads(
+            self.system.model.mesh.points,
+            np.asarray(nodes, np.uint32).reshape(-1, 3),
+            np.asarray(thickness),
+            np.asarray(alpha),
         )
+        return edges, any(a > 0.0 for a in alpha)
 
     def _area(self, faces: Ints) -> float:
         """Area of edges times thickness; curved ones by Gauss's rule of three points."""
@@ -280,7 +259,9 @@ def _fading(old: DistributedLoad, new: DistributedLoad) -> list[DistributedLoad]
     """What is left of a load that `new` replaces: nothing if an amplitude drives the new one."""
     if new.amplitude or old.begin == 0.0:
         return []
-    return [replace(old, end=0.0, amplitude=0, removed=False)]
+    left = replace(old, end=0.0, amplitude=0, removed=False)
+    left.force = old.force
+    return [left]
 
 
 def _same_body(old: EdgeLoad | BodyForce, new: EdgeLoad | BodyForce) -> bool:

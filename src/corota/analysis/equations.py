@@ -246,7 +246,7 @@ class System:
                     self.core.assemble(here, self.turning, internal, scale, values)
         except RuntimeError as error:
             raise failure(self._labels(error.args[1])) from None
-        external, stiffness = self.conditions.external(step_time, u)
+        external, stiffness = self.conditions.external(step_time, u, values)
         link = None if self.ties is None else self.ties.link(u)
         return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
 

@@ -22,7 +22,7 @@ class PointMass:
     ----------
     nodes : str or array_like of int
     mass : float
-        [mass], >= 0. Gravity does not act on it: add its weight as a force.
+        [mass], >= 0. Gravity and spin do not act on it: add its weight as a force.
     inertia : float
         Of a drilling rotation [mass*length^2], >= 0.
     """

@@ -156,7 +156,8 @@ class EdgeLoad:
         Edge set, or pairs of global cell index and local edge (from 0).
     kind : {"pressure", "traction"}
         ``pressure``: normal, positive into the element, follows the deforming edge in
-        geometrically nonlinear steps; ``traction``: dead, fixed in space.
+        geometrically nonlinear steps (the thickness stays the undeformed one); ``traction``:
+        dead, fixed in space.
     value : tuple of float
         ``(p,)`` or ``(tx, ty)`` [force/length^2]; times thickness and reference length.
     total : bool
@@ -181,7 +182,8 @@ class BodyForce:
         Cell set ("" for all), or global cell indices.
     kind : {"gravity", "centrifugal"}
         ``gravity``: value ``(bx, by)`` [length/time^2];
-        ``centrifugal``: value ``(omega^2, x0, y0)`` [1/time^2, length, length].
+        ``centrifugal``: value ``(omega^2, x0, y0)`` [1/time^2, length, length], at current
+        positions in geometrically nonlinear steps.
     direction : tuple of float or None
         Of gravity, as it was given: a negative size and a size of zero keep their direction.
         That of the value by default.

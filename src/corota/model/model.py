@@ -286,9 +286,22 @@ class Model(LineSections, InitialFields):
         cells: str | ArrayLike = "",
         amplitude: str = "",
     ) -> None:
-        """Apply the centrifugal force of a steady spin [rad/time] to cells (default all).
+        """Apply the centrifugal force of a steady spin to cells (default all).
 
-        It is that of the reference positions; an amplitude scales the force.
+        The model is seen from a frame that turns with it: the force grows with the current
+        distance from the axis in geometrically nonlinear steps, with that of the undeformed body
+        in linear ones. Modes and buckling see its stiffness. Coriolis forces are left out.
+
+        Parameters
+        ----------
+        omega : float
+            Angular velocity [rad/time]; its sign does not matter.
+        about : tuple of float
+            Where the axis meets the plane [length].
+        cells : str or array_like of int
+            Cell set ("" for all), or global cell indices.
+        amplitude : str
+            Scales the force, that is omega squared, as the ramp of a static step does.
         """
         where = cells if isinstance(cells, str) else np.asarray(cells, dtype=np.int64)
         value = (float(omega) ** 2, float(about[0]), float(about[1]))

@@ -241,12 +241,11 @@ def _derivative(
             "no meaning there; follow the path instead (path=ArcLength(...))"
         )
     change /= 2.0 * size
-    _, stiffness = loads.external(loads.period, u)
-    if stiffness is not None:
-        # Its entries join the full tangent first, since constraints reduce them too.
-        zero = np.zeros(system.n_dofs)
-        empty = np.zeros(len(system.indices))
-        at = _symmetric(system, Evaluation(zero, zero, zero, empty, stiffness))
+    # Entries of the load stiffness join the full tangent, since constraints reduce them too.
+    zero, own = np.zeros(system.n_dofs), np.zeros(len(system.indices))
+    _, stiffness = loads.external(loads.period, u, own)
+    if stiffness is not None or own.any():
+        at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
         link = None if system.ties is None else system.ties.link(u)
         change += _unknowns(system, replace(at, link=link), zero)
     return change

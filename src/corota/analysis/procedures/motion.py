@@ -83,6 +83,7 @@ class Inertia:
         self.attached = Attachments(system)
         flags = np.zeros(0, bool) if light is None else np.ascontiguousarray(light)
         system.core.set_light(flags)
+        system.conditions.set_mass(kind)
         self.light = np.zeros(system.n_dofs, bool)
         if light is not None:
             self.light = light[system.node_of_dof] & ~system.is_rotation
@@ -357,10 +358,9 @@ class ConservingMotion:
             raise failure(system._labels(error.args[1])) from None
         force, internal = system.at_nodes(force), system.at_nodes(internal)
         middle = 0.5 * (u + b.u)
-        external, stiffness = system.conditions.external(step_time - 0.5 * dt, middle)
-        if stiffness is not None:
-            rows, columns, k = stiffness
-            stiffness = (rows, columns, 0.5 * k)
+        external, stiffness = system.conditions.external(
+            step_time - 0.5 * dt, u, values, share=0.5, start=b.u
+        )
         v = 2.0 / dt * d - begun
         a = (v - begun) / dt
         attached = self.inertia.attached

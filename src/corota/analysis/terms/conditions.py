@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.distributed import DistributedLoads
+from corota.analysis.distributed_forces import EMPTY, END_POINT, STATIC_MASS, LoadSum
 from corota.analysis.load_history import LoadHistory
 from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
@@ -65,9 +66,9 @@ class Conditions:
         self.system = system
         self.held = np.zeros(n, bool)
         self.fixed: Ints = np.zeros(0, np.int64)
-        #: External forces that do not follow the displacement, by the times asked for last.
-        self._known: dict[float, Floats] = {}
-        self._following = False
+        #: External forces that do not follow the displacement, by the times asked for last and
+        #: whether others do.
+        self._known: dict[tuple[float, bool], Floats] = {}
         self.support = LoadHistory(n)
         self.force = LoadHistory(n)
         #: Nodal forces with an amplitude: their values at factor one, by amplitude.
@@ -100,6 +101,8 @@ class Conditions:
             Reactions at the end of the step before, for supports that are released.
         """
         first = reaction is None
+        self.system.core.set_light(np.zeros(0, bool))
+        self.set_mass(STATIC_MASS)
         self.fading = np.zeros(self.system.n_dofs)
         if not first:
             self._carry()
@@ -202,36 +205,50 @@ class Conditions:
                     out.append((self.names[index], float(inside[0])))
         return out
 
-    def external(
-        self, step_time: float, u: Floats
-    ) -> tuple[Floats, tuple[Ints, Ints, Floats] | None]:
-        """External force at a time and displacement, and its derivative as triplets.
+    def set_mass(self, kind: str) -> None:
+        """Let gravity and spin act on the mass that moves: free fall is free of stress."""
+        self._known = {}
+        self.distributed.set_mass(kind)
 
-        The force is for reading only.
+    def external(
+        self,
+        step_time: float,
+        u: Floats,
+        values: Floats = EMPTY,
+        share: float = 1.0,
+        start: Floats = END_POINT,
+    ) -> tuple[Floats, tuple[Ints, Ints, Floats] | None]:
+        """External force at a time and displacement, and its derivative.
+
+        Parameters
+        ----------
+        values : ndarray, shape (nnz,), optional
+            Upper triangle of a tangent. The derivative of loads with a potential of their own is
+            taken from it, in place.
+        share : float
+            Factor of all derivatives.
+        start : ndarray, shape (n_dofs,), optional
+            Where a mid-point increment starts that ends at `u`: loads are those in between.
+
+        Returns
+        -------
+        force : ndarray, shape (n_dofs,)
+            For reading only.
+        triplets : tuple of ndarray or None
+            Rows, columns and values of the rest of the derivative.
         """
-        force = self._known.get(step_time)
+        nlgeom = self.system.turning
+        force = self._known.get((step_time, nlgeom))
         if force is None:
             force = self._dead(step_time)
-        if not self._following:
+        following = [load for load in self.distributed.loads if nlgeom and load.force.follows]
+        if not following:
             return force, None
-        force = force.copy()
-        triplets: list[tuple[Ints, Ints, Floats]] = []
-        for load in self.distributed.loads:
-            if load.follows and (scale := self._scale(load, step_time)) != 0.0:
-                turning = self.system.turning
-                moved = self.system.by_node(u)[:, :2] if turning else 0.0
-                x = np.ascontiguousarray(self.system.model.mesh.points + moved)
-                f, rows, columns, values = load.edges.pressure(x, scale)  # type: ignore[attr-defined]
-                force += self.system.from_nodes(f)
-                if turning:
-                    start = self.system.start
-                    i = start[rows // 3] + rows % 3
-                    j = start[columns // 3] + columns % 3
-                    triplets.append((i, j, values))
-        if not triplets:
-            return force, None
-        rows, columns, values = (np.concatenate(part) for part in zip(*triplets, strict=True))
-        return force, (rows, columns, values)
+        total = LoadSum(force.copy(), values, share, start)
+        for load in following:
+            if (scale := self._scale(load, step_time)) != 0.0:
+                load.force.add(scale, u, total)
+        return total.force, total.triplets
 
     def temperatures(self, step_time: float) -> Floats:
         """Temperatures of the nodes, shape (n_nodes,)."""
@@ -246,14 +263,15 @@ class Conditions:
         """External forces at a time that do not follow the displacement."""
         force = self._nodal(step_time)
         force += (1.0 - self._ramp(step_time)) * self.fading
+        nlgeom = self.system.turning
         for load in self.distributed.loads:
-            if load.vector is not None:
-                force += self._scale(load, step_time) * load.vector
+            dead = not (nlgeom and load.force.follows)
+            if dead and (scale := self._scale(load, step_time)) != 0.0:
+                force += scale * load.force.unit()
         force.flags.writeable = False
         if len(self._known) >= KNOWN:
             self._known.clear()
-        self._known[step_time] = force
-        self._following = any(load.follows for load in self.distributed.loads)
+        self._known[step_time, nlgeom] = force
         return force
 
     def rate(self, u: Floats) -> tuple[Floats, Floats]:

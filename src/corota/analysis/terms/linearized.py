@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
+from corota.analysis.distributed_forces import STATIC_MASS
 from corota.analysis.linear.solvers import Faer
 from corota.analysis.procedures.motion import Inertia
 from corota.analysis.terms.attachments import Attachments
@@ -333,12 +334,14 @@ class LinearMotion(Linearized):
         kind: str = "consistent",
         rayleigh: tuple[float, float] = (0.0, 0.0),
     ) -> None:
+        # Body loads have the stiffness of the mass that moves, see `loads.body`.
+        system.conditions.set_mass(kind)
         super().__init__(system, u)
         self.kind, self.rayleigh = kind, rayleigh
         self.inertia = Inertia(system, kind)
         self.mass_values = self.inertia.tangent(u)
         self.mass = self.padded(self.reduce(self.mass_values))
-        self.stiffness = self.stiffness - spin_softening(system) * self.mass
+        system.conditions.set_mass(STATIC_MASS)
         self._damping: Any = None
 
     @property
@@ -360,7 +363,7 @@ class LinearMotion(Linearized):
         Exact for displacements; drilling rotations and beams take the mean of the masses along
         both axes, which converges with the mesh.
         """
-        rate = np.sqrt(spin_softening(self.system))
+        rate = np.sqrt(spin(self.system))
         system = self.system
         n = system.n_dofs
         x = np.flatnonzero(system.component == 0)
@@ -381,7 +384,7 @@ class LinearMotion(Linearized):
         return self.padded(self.reduce(None, (whole.row, whole.col, whole.data)))
 
 
-def spin_softening(system: System) -> float:
+def spin(system: System) -> float:
     """Square of the angular velocity of the centrifugal load that acts, or 0 [1/time^2].
 
     Raises
@@ -402,4 +405,4 @@ def spin_softening(system: System) -> float:
     return float(sum(rates))
 
 
-__all__ = ["COMPLIANCE", "Factor", "LinearMotion", "Linearized", "spin_softening"]
+__all__ = ["COMPLIANCE", "Factor", "LinearMotion", "Linearized", "spin"]

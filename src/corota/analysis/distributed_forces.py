@@ -1,0 +1,258 @@
+"""Forces of distributed loads at a displacement, and their derivatives.
+
+A load is linear in its scale. Without nlgeom it acts on the reference; with it, on the current
+shape: a pressure follows its edge, a centrifugal force grows with the distance from the axis,
+and the end moments of drilling elements turn with their edges. What does not depend on the
+displacement is worked out once.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from corota.errors import ModelError
+from corota.model import elements
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota import _core
+    from corota.analysis.equations import System
+    from corota.model.loads import BodyForce
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+    Triplets = tuple[Ints, Ints, Floats]
+
+#: No tangent, and no start: the core borrows both at once, so they are two arrays.
+EMPTY, END_POINT = np.zeros(0), np.zeros(0)
+#: Mass that gravity and spin act on where nothing moves.
+STATIC_MASS = "consistent"
+
+
+@dataclass
+class LoadSum:
+    """What distributed loads add up to.
+
+    Parameters
+    ----------
+    force : ndarray, shape (n_dofs,)
+        Along the axes of the nodes.
+    values : ndarray, shape (nnz,) or (0,)
+        Upper triangle of a tangent; the symmetric load stiffness is taken from it.
+    share : float
+        Factor of all derivatives.
+    start : ndarray, shape (n_dofs,) or (0,)
+        Displacement at the start of a mid-point increment: loads are then those in between.
+    """
+
+    force: Floats
+    values: Floats
+    share: float = 1.0
+    start: Floats = field(default_factory=lambda: END_POINT)
+    entries: list[Triplets] = field(default_factory=list)
+
+    def middle(self, u: Floats) -> Floats:
+        """Displacement at which loads are taken that have no mean of their own."""
+        return 0.5 * (self.start + u) if len(self.start) else u
+
+    @property
+    def triplets(self) -> Triplets | None:
+        """The rest of the derivative of the force: rows, columns and values."""
+        if not self.entries:
+            return None
+        rows, columns, values = (np.concatenate(part) for part in zip(*self.entries, strict=True))
+        return rows, columns, self.share * values
+
+
+class Distribution(Protocol):
+    """A distributed load without its course."""
+
+    follows: bool  # whether its force depends on the displacement
+
+    def unit(self) -> Floats:
+        """Force of unit scale on the reference, shape (n_dofs,)."""
+        ...
+
+    def add(self, scale: float, u: Floats, to: LoadSum) -> None:
+        """Add force and derivative at a displacement."""
+        ...
+
+    def set_mass(self, kind: str) -> None:
+        """Take the mass that moves as the mass that is heavy."""
+        ...
+
+
+class BodyLoad:
+    """Gravity or centrifugal force of some elements.
+
+    Parameters
+    ----------
+    system : System
+    item : BodyForce
+    """
+
+    def __init__(self, system: System, item: BodyForce, mass: str) -> None:
+        self.system, self.item, self.mass = system, item, mass
+        mesh = system.model.mesh
+        inside = np.ones(mesh.n_cells, bool)
+        if not isinstance(item.cells, str):
+            inside[:] = False
+            inside[item.cells] = True
+        elif item.cells not in ("", "all"):
+            if item.cells not in mesh.cell_sets:
+                known = ", ".join(mesh.cell_sets) or "none"
+                raise ModelError(
+                    f"no element set named {item.cells!r}; there are: {known}", item.where
+                )
+            inside[:] = False
+            inside[mesh.cell_sets[item.cells]] = True
+        self.masks = [inside[b.cells] for b in system.blocks]
+        facts = [elements.find(b.section.element) for b in system.blocks]
+        for block, mask in zip(system.blocks, self.masks, strict=True):
+            massless = block.section.element.startswith("SPRING")
+            if mask.any() and block.section.material.rho <= 0.0 and not massless:
+                name = block.section.material.name or block.section.material.law
+                raise ModelError(
+                    f"material {name!r} has no density for a body force; add one (*DENSITY)",
+                    item.where,
+                )
+        drilling = any(
+            mask.any() and fact.alpha_b > 0.0 for fact, mask in zip(facts, self.masks, strict=True)
+        )
+        self.follows = item.kind == "centrifugal" or drilling
+        self._unit: Floats | None = None
+
+    def set_mass(self, kind: str) -> None:
+        """See :class:`Distribution`."""
+        self.mass, self._unit = kind, None
+
+    def unit(self) -> Floats:
+        """See :class:`Distribution`."""
+        if self._unit is None:
+            self._unit = self._force(1.0, np.zeros(self.system.n_dofs), END_POINT, EMPTY, 0.0)
+        return self._unit
+
+    def add(self, scale: float, u: Floats, to: LoadSum) -> None:
+        """See :class:`Distribution`."""
+        to.force += self._force(scale, u, to.start, to.values, -to.share)
+
+    def _force(
+        self, scale: float, u: Floats, start: Floats, values: Floats, share: float
+    ) -> Floats:
+        system, item = self.system, self.item
+        # Of a centrifugal force the scale is that of the square of the angular velocity.
+        first = 2 if item.kind == "gravity" else 1
+        value = [scale * v for v in item.value[:first]] + list(item.value[first:])
+        force = np.zeros(system.n_dofs)
+        here, before = (
+            np.ascontiguousarray(system.in_space(x)) if len(x) else x for x in (u, start)
+        )
+        system.core.body_force(
+            item.kind, value, self.mass, self.masks, here, before, share, force, values
+        )
+        return system.at_nodes(force)
+
+
+class Traction:
+    """A dead traction; on drilling elements its end moments turn with the edges."""
+
+    def __init__(
+        self, system: System, edges: _core.EdgeLoads, drilling: bool, value: tuple[float, float]
+    ) -> None:
+        self.system, self.edges, self.value = system, edges, value
+        self.follows = drilling
+        self._unit: Floats | None = None
+        self._places: tuple[Ints, Ints] | None = None
+
+    def set_mass(self, kind: str) -> None:
+        """See :class:`Distribution`."""
+
+    def unit(self) -> Floats:
+        """See :class:`Distribution`."""
+        if self._unit is None:
+            self._unit = self._evaluate(1.0, None)[0]
+        return self._unit
+
+    def add(self, scale: float, u: Floats, to: LoadSum) -> None:
+        """See :class:`Distribution`."""
+        force, (rows, columns, values) = self._evaluate(scale, to.middle(u))
+        to.force += force
+        if not len(to.values):
+            return
+        # Symmetric, between nodes of one element: the pattern has places for it.
+        if self._places is None:
+            upper = np.flatnonzero(rows <= columns)
+            self._places = (upper, places(self.system, rows[upper], columns[upper]))
+        upper, at = self._places
+        np.add.at(to.values, at, -to.share * values[upper])
+
+    def _evaluate(self, scale: float, u: Floats | None) -> tuple[Floats, Triplets]:
+        t = (scale * self.value[0], scale * self.value[1])
+        return evaluate(self.system, self.edges.traction, u, t)
+
+
+class Pressure:
+    """A pressure that follows its edges; the scale is its size."""
+
+    follows = True
+
+    def __init__(self, system: System, edges: _core.EdgeLoads) -> None:
+        self.system, self.edges = system, edges
+        self._unit: Floats | None = None
+
+    def set_mass(self, kind: str) -> None:
+        """See :class:`Distribution`."""
+
+    def unit(self) -> Floats:
+        """See :class:`Distribution`."""
+        if self._unit is None:
+            self._unit = evaluate(self.system, self.edges.pressure, None, 1.0)[0]
+        return self._unit
+
+    def add(self, scale: float, u: Floats, to: LoadSum) -> None:
+        """See :class:`Distribution`."""
+        force, entries = evaluate(self.system, self.edges.pressure, to.middle(u), scale)
+        to.force += force
+        to.entries.append(entries)
+
+
+def evaluate(
+    system: System, load: Any, u: Floats | None, value: float | tuple[float, float]
+) -> tuple[Floats, Triplets]:
+    """Force of loaded edges along the nodes' axes, and its derivative in global axes.
+
+    On the reference, without a derivative, where `u` is None.
+    """
+    n_nodes = len(system.model.mesh.points)
+    moved = np.zeros((0, 3)) if u is None else system.by_node(u)
+    force, rows, columns, values = load(moved, n_nodes, value)
+    start = system.start
+    i, j = start[rows // 3] + rows % 3, start[columns // 3] + columns % 3
+    return system.from_nodes(force), (i, j, values)
+
+
+def places(system: System, rows: Ints, columns: Ints) -> Ints:
+    """Places of entries (row <= column) in the upper triangle, which has them."""
+    start = system.indptr.astype(np.int64)
+    found = [
+        start[c] + np.searchsorted(system.indices[start[c] : start[c + 1]], r)
+        for r, c in zip(rows, columns, strict=True)
+    ]
+    return np.array(found, np.int64)
+
+
+__all__ = [
+    "EMPTY",
+    "END_POINT",
+    "STATIC_MASS",
+    "BodyLoad",
+    "Distribution",
+    "LoadSum",
+    "Pressure",
+    "Traction",
+]
