@@ -106,7 +106,7 @@ def keep_nlgeom(steps: Sequence[Step]) -> tuple[list[Step], list[str]]:
     notes: list[str] = []
     nonlinear = 0
     for number, step in enumerate(steps, start=1):
-        if step.procedure in WITH_CONTACT:
+        if step.procedure in ("static", "dynamic"):
             if step.nlgeom and not nonlinear:
                 nonlinear = number
             elif nonlinear and not step.nlgeom:
