@@ -123,7 +123,7 @@ def test_temperatures_taken_away_are_the_initial_ones(tmp_path: Path) -> None:
 @pytest.mark.parametrize("what", ["*FREQUENCY\n1", "*BUCKLE\n1\n*CLOAD\n3, 2, -1."])
 def test_a_perturbation_leaves_the_loads_as_they_are(tmp_path: Path, what: str) -> None:
     """CalculiX forgets the forces at *STEP, PERTURBATION (``steps.f``: nforc=0, "check!!")."""
-    steps = "*STEP\n*STATIC\n*CLOAD\n2, 1, 3.\n*END STEP\n"
+    steps = "*STEP\n*STATIC\n*CLOAD\n2, 1, .003\n*END STEP\n"
     steps += f"*STEP, PERTURBATION\n{what}\n*END STEP\n*STEP\n*STATIC\n*END STEP\n"
     found = solve(tmp_path, HELD + steps)
-    assert [found[k].RF[[0, 3], 0].sum() for k in (1, 3)] == pytest.approx([-3.0, -3.0])
+    assert [found[k].RF[[0, 3], 0].sum() for k in (1, 3)] == pytest.approx([-3e-3, -3e-3])
