@@ -218,18 +218,18 @@ def test_frequencies_of_a_beam_with_a_rigid_end():
 
 
 def test_dense_and_iterative_frequencies_agree_with_constraints():
-    from corota.analysis.procedures import frequency
+    from corota.analysis.linear import eigen
 
-    kept = frequency.DENSE
+    kept = eigen.DENSE
     found = []
     try:
         for size in (10**6, 0):
-            frequency.DENSE = size
+            eigen.DENSE = size
             model = flying("chain", "Q4D")
             model.fix("left", rotation=True)
             found.append(ct.solve(model, ct.Frequency(modes=4), threads=1).modes[-1])
     finally:
-        frequency.DENSE = kept
+        eigen.DENSE = kept
     assert found[0].factors == pytest.approx(found[1].factors, rel=1e-9)
 
 

@@ -226,6 +226,9 @@ class Analysis:
         assert state.at is not None
         state.time += state.step_time
         state.step_time = 0.0
+        if reaction is None and step.procedure == "frequency":
+            # Nothing was loaded yet: the loads and supports of the model are the next step's.
+            return None
         return system.reaction(state.at)
 
     def _warn(self, kind: str, note: str) -> None:
@@ -251,7 +254,7 @@ class Analysis:
         fields: list[PointFields] = []
         if self.fields:
             with system.timed("recover"):
-                fields, sums = system.recover(state.u)
+                fields, sums = system.recover(state.u) if state.recover is None else state.recover()
                 step = self.steps[number - 1]
                 if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
                     add_kinetic(system, fields, state.u, state.v, step)

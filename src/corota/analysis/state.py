@@ -7,11 +7,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation
+    from corota.analysis.terms.linearized import LinearMotion
     from corota.model.paths import CriticalPoint, Modes
+    from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
 
@@ -44,6 +48,10 @@ class State:
         Found so far.
     notes : list of str
         Remarks for the user.
+    linear : LinearMotion or None
+        Matrices that the last vibration modes belong to.
+    recover : callable or None
+        Gives fields and sums of a linear response, in place of those of `u`.
     """
 
     u: Floats
@@ -59,3 +67,5 @@ class State:
     critical: list[CriticalPoint] = field(default_factory=list)
     modes: list[Modes] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    linear: LinearMotion | None = None
+    recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None

@@ -213,8 +213,6 @@ class Modes:
         is unstable (divergence without a frequency, flutter with one).
     imaginary : ndarray, shape (m, n_nodes, 3), or None
         Imaginary part of complex modes.
-    about : ndarray, shape (n_dofs,), or None
-        Displacement of the state that vibration modes belong to.
     """
 
     kind: Literal["buckling", "frequency"]
@@ -223,7 +221,6 @@ class Modes:
     shapes: Floats
     growth: Floats = field(default_factory=lambda: np.zeros(0))
     imaginary: Floats | None = None
-    about: Floats | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if not len(self.growth):

@@ -11,7 +11,7 @@ from corota.errors import InputError
 from corota.model.loads import LOAD_KINDS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from corota.errors import Location
     from corota.model.loads import Fixed, Load, LoadKind
     from corota.model.paths import ArcLength, DisplacementControl
+
+    #: Share of critical damping of all modes, or (first, last, share) of ranges of modes.
+    ModalDamping = float | Sequence[tuple[int, int, float]]
 
 
 @dataclass
@@ -314,16 +317,21 @@ class ModalDynamic(Step):
     ----------
     increments : int
         Increments over the period; loads vary linearly within each.
-    damping : float
-        Share of critical damping of every mode.
+    damping : float or sequence of tuple
+        Share of critical damping of every mode; or ``(first, last, share)`` for ranges of modes,
+        counted from 1. Modes in no range have none.
     rayleigh : tuple of float
         Damping per mass [1/time] and per stiffness [time], added.
+    residual : bool
+        Add a residual mode for each pattern of loads and moving supports: with them the static
+        response is exact, however few the modes.
     """
 
     increments: int = 0
-    damping: float = 0.0
+    damping: ModalDamping = 0.0
     rayleigh: tuple[float, float] = (0.0, 0.0)
     ramp: bool = False
+    residual: bool = False
 
     procedure = "modal dynamic"
 
@@ -331,11 +339,14 @@ class ModalDynamic(Step):
         if self.increments:
             self.first_increment = self.period / self.increments
         super().__post_init__()
+        check_damping(self.damping, self.rayleigh, self.where)
 
 
 @dataclass(kw_only=True)
 class SteadyState(Step):
-    """Harmonic response about a state, by superposition of modes.
+    """Harmonic response about a state, by superposition of modes or of the whole model.
+
+    Amplitudes of loads and moving supports are tables over the frequency.
 
     Parameters
     ----------
@@ -343,18 +354,32 @@ class SteadyState(Step):
         Range of frequencies [1/time].
     points : int
         Frequencies between neighbouring eigenfrequencies, ends included.
-    damping : float
-        Share of critical damping of every mode.
+    damping : float or sequence of tuple
+        Share of critical damping of every mode, or of ranges of modes (see `ModalDynamic`).
     rayleigh : tuple of float
         Damping per mass [1/time] and per stiffness [time], added.
+    residual : bool
+        Add residual modes (see `ModalDynamic`).
+    direct : bool
+        Solve the equations of the whole model at each frequency; modes are not needed, and without
+        them `points` are spread over the whole range.
+    mass : {"consistent", "constant", "lumped"}
+        Of the whole model; modes have that of their own step.
+    imaginary_loads, imaginary_supports : list
+        Loads, and moves of held dofs, that act a quarter of a period ahead of the others.
     """
 
     lowest: float
     highest: float
     points: int = 20
-    damping: float = 0.0
+    damping: ModalDamping = 0.0
     rayleigh: tuple[float, float] = (0.0, 0.0)
     ramp: bool = False
+    residual: bool = False
+    direct: bool = False
+    mass: Literal["consistent", "constant", "lumped"] = "consistent"
+    imaginary_loads: list[Load] = field(default_factory=list)
+    imaginary_supports: list[Fixed] = field(default_factory=list)
 
     procedure = "steady state"
 
@@ -363,6 +388,13 @@ class SteadyState(Step):
         if not 0.0 <= self.lowest < self.highest:
             raise InputError(
                 f"the range of frequencies must rise, not {self.lowest} to {self.highest}",
+                self.where,
+            )
+        check_damping(self.damping, self.rayleigh, self.where)
+        if self.direct and (self.residual or _any_share(self.damping)):
+            raise InputError(
+                "direct=True has no modes to damp or to add to: give damping by rayleigh=, "
+                "materials or dashpots",
                 self.where,
             )
 
@@ -374,3 +406,32 @@ class SteadyState(Step):
         marks = np.unique([self.lowest, *inside, self.highest])
         parts = [np.linspace(a, b, self.points) for a, b in zip(marks, marks[1:], strict=False)]
         return np.unique(np.concatenate(parts))
+
+
+def check_damping(
+    given: ModalDamping, rayleigh: tuple[float, float], where: Location | None
+) -> None:
+    """Refuse damping of modes that is negative or whose ranges make no sense.
+
+    Raises
+    ------
+    InputError
+        With what is wrong.
+    """
+    if min(rayleigh) < 0.0:
+        raise InputError(f"damping must be >= 0, not {rayleigh}", where)
+    if isinstance(given, (int, float)):
+        if not 0.0 <= given < math.inf:
+            raise InputError(f"the damping of modes must be >= 0, not {given}", where)
+        return
+    for item in given:
+        if len(item) != 3 or not (1 <= item[0] <= item[1] and 0.0 <= item[2] < math.inf):
+            raise InputError(
+                f"a range of damping is (first mode, last mode, share >= 0), not {item!r}", where
+            )
+
+
+def _any_share(given: ModalDamping) -> bool:
+    if isinstance(given, (int, float)):
+        return given != 0.0
+    return any(item[2] != 0.0 for item in given)

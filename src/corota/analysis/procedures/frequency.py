@@ -57,9 +57,10 @@ def frequency_step(
     from corota.analysis.procedures.dynamic import check_density
 
     check_density(system)
-    lin = LinearMotion(system, state.u, step.mass, step.rayleigh)
+    lin = LinearMotion(system, state.u, step.mass)
+    lin.turns = step.complex_modes
     if step.complex_modes:
-        values, shapes = quadratic_modes(lin, lin.damping + lin.coriolis(), step.modes)
+        values, shapes = quadratic_modes(lin, lin.damping(step.rayleigh), step.modes)
     elif lin.symmetric:
         squares, real = symmetric_modes(lin, step.modes)
         # Free motions have squares of rounding size, of either sign.
@@ -68,8 +69,7 @@ def frequency_step(
         shapes = real.astype(complex)
     else:
         values, shapes = unsymmetric_modes(lin, step.modes)
-        damped = any(lin.damping.data) if lin.damping.nnz else False
-        if damped:
+        if np.any(lin.damping().data):
             state.notes.append(
                 f"the damping of the model is left out of frequency step {number}; "
                 "complex_modes=True (*COMPLEX FREQUENCY) takes it in"
@@ -78,6 +78,7 @@ def frequency_step(
         raise ModelError(f"nothing that can move in frequency step {number} has mass", step.where)
     modes = _modes(lin, values, shapes, number, step.complex_modes or not lin.symmetric)
     state.modes.append(modes)
+    state.linear = lin
     _name_instability(modes, state, number, None if step.complex_modes else lin.symmetric)
     scalars = _scalars(lin, modes)
     state.at = system.evaluate(state.u, 0.0)
@@ -109,7 +110,6 @@ def _modes(
         by_node(dofs.real),
         values.real.copy(),
         by_node(dofs.imag) if complex_ones else None,
-        lin.u,
     )
 
 

@@ -1,15 +1,16 @@
-"""Linear response about a state by superposition of its modes."""
+"""Linear transient about a state by superposition of its modes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.damping import damping_matrix
-from corota.errors import ModelError
+from corota.analysis.equations import Evaluation
+from corota.analysis.newton import ElementFailure
+from corota.analysis.procedures.linear_fields import LinearFields
+from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,39 +20,13 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.model.steps import ModalDynamic, SteadyState
+    from corota.analysis.terms.linearized import LinearMotion
+    from corota.model.steps import ModalDynamic
 
     Floats = NDArray[np.float64]
 
-
-class Basis:
-    """The modes of the last frequency step with their damping.
-
-    Shapes have unit modal mass.
-    """
-
-    def __init__(
-        self, system: System, state: State, step: ModalDynamic | SteadyState, number: int
-    ) -> None:
-        found = [m for m in state.modes if m.kind == "frequency"]
-        if not found:
-            raise ModelError(
-                f"step {number} superposes modes, but no frequency step (*FREQUENCY) came "
-                "before it",
-                step.where,
-            )
-        modes = found[-1]
-        self.omega = 2.0 * math.pi * modes.factors
-        self.shapes = np.array([system.from_nodes(shape) for shape in modes.shapes]).T
-        a, b = step.rayleigh
-        with np.errstate(divide="ignore", invalid="ignore"):
-            rayleigh = np.where(self.omega > 0.0, 0.5 * (a / self.omega + b * self.omega), 0.0)
-            matrix = damping_matrix(system, state.u)
-            if matrix is not None:
-                # Of each mode alone: what couples modes is left out.
-                own = [shape @ system.product(matrix, shape) for shape in self.shapes.T]
-                rayleigh += np.where(self.omega > 0.0, 0.5 * np.array(own) / self.omega, 0.0)
-        self.damping = step.damping + rayleigh
+#: Share of the start that modes may miss without a note.
+LOST = 0.05
 
 
 def modal_step(
@@ -63,112 +38,149 @@ def modal_step(
     save: Callable[[State, int, float, dict[str, float]], None],
     stops: list[float],
 ) -> None:
-    """Linear transient: exact for loads that vary linearly within an increment.
+    """Linear transient: exact for loads and moves that vary linearly within an increment.
+
+    It starts from the displacement and velocity of the steps before, or the model's initial
+    velocity.
 
     Raises
     ------
     ModelError
         If there are no modes.
     """
-    basis = Basis(system, state, step, number)
-    u0 = state.u.copy()
-    internal = system.evaluate(u0, 0.0).internal
+    from corota.analysis.procedures.dynamic import initial_velocity
+
+    _, lin = last_modes(system, state, step, number)
     n = max(round(step.period / step.first_increment), 1)
     dt = step.period / n
-    count = len(basis.omega)
-    q, v = np.zeros(count), np.zeros(count)
-    step_of = [_advance(w, z, dt) for w, z in zip(basis.omega, basis.damping, strict=True)]
-    before = basis.shapes.T @ (system.conditions.external(0.0, u0)[0] - internal)
+    loads, moves = _courses(system, lin, n, dt)
+    c, s = loads.coefficients, moves.coefficients
+    model = Reduced(system, state, step, number, loads.matrix, moves.matrix)
+    advance = _advance(model, dt)
+    rates = np.diff(np.concatenate([s, s[-1:]]), axis=0) / dt
+    rates[-1] = rates[-2]
+    start = initial_velocity(system, state.u) if state.v is None else state.v.copy()
+    held = system.conditions.held
+    start[held] = (moves.matrix @ rates[0])[held]
+    p, v = model.project(state.u - lin.u), model.project(start)
+    q = p - model.carried @ s[0]
+    _tell_lost(system, state, number, state.u - lin.u, model.displacement(q, s[0]))
+    fields = LinearFields(system, lin.u)
+    x = np.concatenate([p, v])
+    m = len(p)
     for i in range(1, n + 1):
-        time = i * dt
-        after = basis.shapes.T @ (system.conditions.external(time, u0)[0] - internal)
-        for m, (a, b) in enumerate(step_of):
-            q[m], v[m] = a @ (q[m], v[m]) + b @ (before[m], after[m])
-        before = after
-        state.u, state.v = u0 + basis.shapes @ q, basis.shapes @ v
-        state.at = system.evaluate(state.u, time)
-        state.step_time = time
-        strain = 0.5 * float((basis.omega**2) @ q**2)
-        kinetic = 0.5 * float(v @ v)
+        slope_c = (c[i] - c[i - 1]) / dt
+        inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, rates[i - 1]])
+        x = advance @ np.concatenate([x, inputs])
+        p, v = x[:m], x[m:]
+        rate = rates[i - 1]
+        q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
+        a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
+        bend = (rates[min(i, n - 1)] - rates[i - 1]) / dt
+        change = model.displacement(q, s[i])
+        state.u = lin.u + change
+        state.v = model.displacement(q_rate, rate)
+        state.a = model.displacement(a - model.carried @ bend, bend)
+        external = system.conditions.external(i * dt, lin.u)[0]
+        state.at = linear_evaluation(model, change, state.v, state.a, external)
+        state.step_time = i * dt
+        state.recover = lambda change=change: fields.at(change)
+        strain = 0.5 * float(q @ (model.stiffness @ q))
+        inertia = lin.mass @ lin.restrict(state.v)
+        kinetic = 0.5 * float(lin.restrict(state.v) @ inertia)
         save(
             state,
             i,
-            time / step.period,
+            i / n,
             {"dt": dt, "kinetic energy": kinetic, "modal strain energy": strain},
         )
+    state.recover = None
+    leave(system, state, step.period)
 
 
-def _advance(omega: float, zeta: float, dt: float) -> tuple[Floats, Floats]:
-    """Exact step of ``q'' + 2 zeta omega q' + omega^2 q = p(t)``, p linear in the step.
+def leave(system: System, state: State, step_time: float) -> None:
+    """Give the next step the forces of the system itself, if they exist there."""
+    try:
+        state.at = system.evaluate(state.u, step_time)
+    except ElementFailure:
+        # A linear response may be so large that elements fold; what follows will say so.
+        state.notes.append("the linear response is too large for the elements to be evaluated")
+
+
+def _courses(system: System, lin: LinearMotion, n: int, dt: float) -> tuple[Patterns, Patterns]:
+    """Loads and moves of supports at the ends of all increments, as few patterns."""
+    loads, moves = Patterns(system.n_dofs), Patterns(system.n_dofs)
+    conditions = system.conditions
+    for i in range(n + 1):
+        loads.add(conditions.external(i * dt, lin.u)[0] - lin.at.internal)
+        moves.add(np.where(conditions.held, conditions.prescribed(i * dt, lin.u) - lin.u, 0.0))
+    return loads, moves
+
+
+def _advance(model: Reduced, dt: float) -> Floats:
+    """Exact step of (p, p') for inputs (loads, moves) that are linear in time.
 
     Returns
     -------
-    a : ndarray, shape (2, 2)
-        On (q, q') at the start.
-    b : ndarray, shape (2, 2)
-        On p at the start and at the end.
+    ndarray, shape (2 m, 2 m + 2 k)
+        On (p, p', inputs at the start, their rates).
     """
     from scipy.linalg import expm
 
-    # State (q, q', p, p'): p grows linearly.
-    m = np.zeros((4, 4))
-    m[0, 1] = 1.0
-    m[1] = (-(omega**2), -2.0 * zeta * omega, 1.0, 0.0)
-    m[2, 3] = 1.0
-    e = expm(dt * m)
-    slope = e[:2, 3] / dt
-    return e[:2, :2], np.stack([e[:2, 2] - slope, slope], axis=1)
+    m, nf, ns = len(model.stiffness), model.load.shape[1], model.static.shape[1]
+    k = nf + ns
+    a = np.zeros((2 * m + 2 * k, 2 * m + 2 * k))
+    a[:m, m : 2 * m] = np.eye(m)
+    a[m : 2 * m, :m] = -model.stiffness
+    a[m : 2 * m, m : 2 * m] = -model.damping
+    a[m : 2 * m, 2 * m : 2 * m + nf] = model.load
+    a[m : 2 * m, 2 * m + nf : 2 * m + k] = model.stiffness @ model.carried
+    a[m : 2 * m, 2 * m + k + nf :] = model.damping @ model.carried - model.dragged
+    a[2 * m : 2 * m + k, 2 * m + k :] = np.eye(k)
+    found: Floats = expm(dt * a)[: 2 * m]
+    return found
 
 
-def steady_state_step(
-    system: System,
-    step: SteadyState,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
-    """Harmonic response to the step's loads over a range of frequencies.
+def linear_evaluation(
+    model: Reduced, change: Floats, v: Floats, a: Floats, external: Floats
+) -> Evaluation:
+    """Forces of the linear response; supports carry what is left, and nothing else does."""
+    lin, step = model.lin, model.step
+    forces = (
+        lin.stiffness @ lin.restrict(change)
+        + lin.damping(step.rayleigh) @ lin.restrict(v)
+        + lin.mass @ lin.restrict(a)
+    )
+    return supported(lin, forces, external)
 
-    Each frame is one frequency: its time is the frequency, displacements are amplitudes in
-    phase with the load at the state, and the scalars hold the largest amplitude.
 
-    Raises
-    ------
-    ModelError
-        If there are no modes, or an undamped mode is hit.
+def supported(lin: LinearMotion, forces: Floats, external: Floats) -> Evaluation:
+    """An evaluation whose residual is the reaction of the held dofs alone.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (n_unknowns,)
+        Stiffness, damping and inertia of the response.
+    external : ndarray, shape (n_dofs,)
     """
-    basis = Basis(system, state, step, number)
-    u0, at0 = state.u.copy(), state.at
-    base = system.evaluate(u0, 0.0)
-    load = system.conditions.external(step.period, u0)[0] - base.internal
-    p = basis.shapes.T @ load
-    moves = ~system.is_rotation
-    for i, f in enumerate(step.sweep(basis.omega / (2.0 * math.pi)), start=1):
-        w = 2.0 * math.pi * f
-        denominator = basis.omega**2 - w**2 + 2j * basis.damping * basis.omega * w
-        if (np.abs(denominator) <= 1e-12 * np.maximum(basis.omega**2, w**2)).any():
-            raise ModelError(
-                f"frequency {f:g} hits an undamped mode in step {number}: give a damping",
-                step.where,
-            )
-        response = basis.shapes @ (p / denominator)
-        state.u = u0 + response.real
-        state.step_time = f
-        state.at = base
-        size = np.abs(response)
-        save(
-            state,
-            i,
-            1.0,
-            {
-                "frequency": f,
-                "largest amplitude": float(size[moves].max(initial=0.0)),
-                "phase at largest": float(
-                    np.angle(response[int(np.where(moves, size, 0).argmax())])
-                ),
-            },
+    system = lin.system
+    base = lin.at.internal - external
+    reaction = base.copy() if lin.link is None else lin.link.gather(base)
+    reaction[lin.free] += forces[: lin.nf]
+    internal = external + np.where(system.conditions.held, reaction, 0.0)
+    return Evaluation(internal, external, np.abs(internal), np.zeros(len(system.indices)))
+
+
+def _tell_lost(system: System, state: State, number: int, start: Floats, kept: Floats) -> None:
+    """Note where the modes cannot hold the displacement that the step starts from."""
+    counted = system.counted
+    size = float(np.abs(start[counted]).max(initial=0.0))
+    lost = float(np.abs((start - kept)[counted]).max(initial=0.0))
+    if size > 0.0 and lost > LOST * size:
+        state.notes.append(
+            f"the modes hold all but {lost / size:.0%} of the displacement that step {number} "
+            "starts from: ask for more modes"
         )
-    state.u, state.at = u0, at0
-    state.step_time = 0.0
+
+
+__all__ = ["leave", "linear_evaluation", "modal_step", "supported"]

@@ -16,7 +16,7 @@ PROCEDURES = {
     "dynamic": ("dynamic", "dynamic_step"),
     "frequency": ("frequency", "frequency_step"),
     "modal dynamic": ("modal", "modal_step"),
-    "steady state": ("modal", "steady_state_step"),
+    "steady state": ("harmonic", "steady_state_step"),
 }
 
 

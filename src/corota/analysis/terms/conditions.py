@@ -11,6 +11,7 @@ over the step.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,7 @@ from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -89,6 +90,7 @@ class Conditions:
         self.ramp = True
         self.abrupt = False  # whether loads that are taken away go at once
         self._loaded = False  # whether the model's own loads act yet
+        self._starting = False
 
     # -- steps -------------------------------------------------------------------------
 
@@ -330,6 +332,15 @@ class Conditions:
             if isinstance(load.item, BodyForce) and (scale := self._scale(load, self.period)) != 0.0
         ]
 
+    @contextmanager
+    def as_reached(self) -> Iterator[None]:
+        """Let forces be those that earlier steps reached: none of this step acts yet."""
+        self._starting, self._known = True, {}
+        try:
+            yield
+        finally:
+            self._starting, self._known = False, {}
+
     # -- histories ---------------------------------------------------------------------
 
     def _ramp(self, step_time: float) -> float:
@@ -351,6 +362,8 @@ class Conditions:
         return history.at(self._ramp(step_time), self._removal(step_time), self._factors(step_time))
 
     def _nodal(self, step_time: float) -> Floats:
+        if self._starting:
+            return np.array(self._reached)
         force = self._values(self.force, step_time)
         factors = self._factors(step_time)
         for amplitude, values in self.timed.items():
@@ -358,6 +371,8 @@ class Conditions:
         return force
 
     def _scale(self, load: DistributedLoad, step_time: float) -> float:
+        if self._starting:
+            return load.begin
         if load.amplitude:
             return load.end * float(self._factors(step_time)[load.amplitude])
         share = self._removal(step_time) if load.removed else self._ramp(step_time)

@@ -8,6 +8,7 @@ procedures (frequencies, modal and harmonic response) see only these matrices.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -134,7 +135,8 @@ class Linearized:
     def __init__(self, system: System, u: Floats) -> None:
         self.system = system
         self.u = u.copy()
-        self.at, coupling = self._evaluate(u)
+        with system.conditions.as_reached():
+            self.at, coupling = self._evaluate(u)
         self.link: Link | None = self.at.link
         self.free = np.arange(system.n_dofs) if system.ties is None else system.ties.free
         self.nf = len(self.free)
@@ -267,7 +269,7 @@ class Linearized:
         out: Floats = padded[self.active]
         return out
 
-    def restrict(self, u: Floats) -> Floats:
+    def restrict(self, u: Any) -> Any:
         """Changes of all dofs as those of all unknowns; multipliers stay."""
         return np.concatenate([u[self.free], np.zeros((self.n_multipliers, *u.shape[1:]))])
 
@@ -318,13 +320,14 @@ class LinearMotion(Linearized):
     u : ndarray, shape (n_dofs,)
     kind : {"consistent", "constant", "lumped"}
         Of the mass.
-    rayleigh : tuple of float
-        Damping per mass [1/time] and per stiffness [time] of the whole model.
 
     Attributes
     ----------
-    mass, damping : scipy CSC array, shape (n, n)
-        `damping` holds dashpots, the damping of materials and `rayleigh`.
+    mass : scipy CSC array, shape (n, n)
+    softening : float
+        Square of the angular velocity of the frame of reference [1/time^2].
+    turns : bool
+        Whether Coriolis forces of that frame count among the damping.
     """
 
     def __init__(
@@ -332,30 +335,37 @@ class LinearMotion(Linearized):
         system: System,
         u: Floats,
         kind: str = "consistent",
-        rayleigh: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         # Body loads have the stiffness of the mass that moves, see `loads.body`.
         system.conditions.set_mass(kind)
         super().__init__(system, u)
-        self.kind, self.rayleigh = kind, rayleigh
+        self.kind = kind
         self.inertia = Inertia(system, kind)
         self.mass_values = self.inertia.tangent(u)
         self.mass = self.padded(self.reduce(self.mass_values))
+        self.softening = spin(system)
+        self.turns = False
         system.conditions.set_mass(STATIC_MASS)
-        self._damping: Any = None
+        self._damping: dict[tuple[float, float], Any] = {}
 
-    @property
-    def damping(self) -> Any:
-        """Of dashpots, materials and the whole model, made when asked for."""
-        if self._damping is None:
+    def damping(self, rayleigh: tuple[float, float] = (0.0, 0.0)) -> Any:
+        """Dashpots, damping of materials and of the whole model, and Coriolis forces if it `turns`.
+
+        Parameters
+        ----------
+        rayleigh : tuple of float
+            Of the whole model, per mass [1/time] and per stiffness [time].
+        """
+        if rayleigh not in self._damping:
             system = self.system
-            per_mass, per_stiffness = self.rayleigh
+            per_mass, per_stiffness = rayleigh
             values = damping_matrix(system, self.u, per_stiffness, self.kind)
             values = np.zeros(len(system.indices)) if values is None else values.copy()
             values += per_mass * self.mass_values
             _, triplets = Attachments(system).damp(self.u, np.zeros(system.n_dofs), values, 1.0)
-            self._damping = self.padded(self.reduce(values, triplets))
-        return self._damping
+            matrix = self.padded(self.reduce(values, triplets))
+            self._damping[rayleigh] = (matrix + self.coriolis()).tocsc() if self.turns else matrix
+        return self._damping[rayleigh]
 
     def coriolis(self) -> Any:
         """Coriolis matrix, skew, of a model that turns as its centrifugal load says.
@@ -363,7 +373,7 @@ class LinearMotion(Linearized):
         Exact for displacements; drilling rotations and beams take the mean of the masses along
         both axes, which converges with the mesh.
         """
-        rate = np.sqrt(spin(self.system))
+        rate = math.sqrt(self.softening)
         system = self.system
         n = system.n_dofs
         x = np.flatnonzero(system.component == 0)
@@ -392,11 +402,12 @@ def spin(system: System) -> float:
     UnsupportedError
         If bodies turn at several speeds.
     """
-    rates = {
-        round(scale * item.value[0], 12)
-        for item, scale in system.conditions.body_forces()
-        if item.kind == "centrifugal"
-    }
+    with system.conditions.as_reached():
+        rates = {
+            round(scale * item.value[0], 12)
+            for item, scale in system.conditions.body_forces()
+            if item.kind == "centrifugal"
+        }
     if len(rates) > 1:
         raise UnsupportedError(
             "bodies that turn at several speeds have no common frame of reference: give one "

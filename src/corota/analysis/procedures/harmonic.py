@@ -1,0 +1,220 @@
+"""Harmonic response over a range of frequencies: by modes, or of the whole model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from corota.analysis.procedures.linear_fields import LinearFields
+from corota.analysis.procedures.modal import supported
+from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
+from corota.analysis.terms.conditions import Conditions
+from corota.analysis.terms.linearized import Factor, LinearMotion
+from corota.errors import ModelError, SingularError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.observers import Observers
+    from corota.analysis.state import State
+    from corota.model.steps import SteadyState
+
+    Floats = NDArray[np.float64]
+    Complex = NDArray[np.complex128]
+    Answer = Callable[[float, Complex, Complex], Complex]
+
+#: An undamped system whose matrix is as small as this at a frequency is in resonance.
+RESONANCE = 1e-12
+
+
+def steady_state_step(
+    system: System,
+    step: SteadyState,
+    number: int,
+    state: State,
+    observers: Observers,
+    save: Callable[[State, int, float, dict[str, float]], None],
+    stops: list[float],
+) -> None:
+    """Harmonic response to the step's loads and moves of supports, frequency by frequency.
+
+    Each frame is one frequency, which is its step time. Displacement, velocity and acceleration
+    are those of the instant at which loads in phase are largest: ``U`` holds the real part of the
+    complex amplitude and ``-V`` over the circular frequency the imaginary part.
+
+    Raises
+    ------
+    ModelError
+        If there are no modes, or an undamped mode is hit.
+    """
+    u0, at0 = state.u.copy(), state.at
+    v0, a0 = state.v, state.a
+    own = np.zeros(0)
+    if step.direct:
+        lin = LinearMotion(system, u0, step.mass)
+        found = [m for m in state.modes if m.kind == "frequency"]
+        if found and state.linear is not None:
+            own, lin.turns = found[-1].factors, state.linear.turns
+    else:
+        modes, lin = last_modes(system, state, step, number)
+        own = modes.factors
+    frequencies = step.sweep(own)
+    loads, moves = _amplitudes(system, lin, step, number, frequencies)
+    answer: Answer
+    if step.direct:
+        answer = _direct(lin, step, number)
+    else:
+        answer = _by_modes(system, state, step, number, loads, moves)
+    fields = LinearFields(system, lin.u)
+    moves_only = ~system.is_rotation
+    for i, f in enumerate(frequencies, start=1):
+        w = 2.0 * math.pi * f
+        load, move = loads[i - 1], moves[i - 1]
+        response = answer(w, load, move)
+        state.u = lin.u + response.real
+        state.v, state.a = (1j * w * response).real, -(w**2) * response.real
+        z = lin.restrict(response)
+        forces = (lin.stiffness - w**2 * lin.mass) @ z + 1j * w * (lin.damping(step.rayleigh) @ z)
+        state.at = supported(lin, forces.real, lin.at.external + load.real)
+        state.step_time = f
+        state.recover = lambda x=response.real: fields.at(x)
+        size = np.abs(response)
+        largest = int(np.where(moves_only, size, 0.0).argmax())
+        save(
+            state,
+            i,
+            1.0,
+            {
+                "frequency": f,
+                "largest amplitude": float(size[moves_only].max(initial=0.0)),
+                "phase at largest": float(np.angle(response[largest])),
+            },
+        )
+    state.u, state.at, state.v, state.a = u0, at0, v0, a0
+    state.recover = None
+    state.step_time = 0.0
+
+
+def _amplitudes(
+    system: System, lin: LinearMotion, step: SteadyState, number: int, frequencies: Floats
+) -> tuple[Complex, Complex]:
+    """Complex loads and moves of held dofs at each frequency, shapes (k, n_dofs).
+
+    Amplitudes of loads are tables over the frequency here.
+    """
+    conditions = system.conditions
+    conditions.time = 0.0
+    behind = Conditions(system)
+    behind.ramp = False
+    behind.add(step.imaginary_loads, step.imaginary_supports)
+    loose = behind.held & ~conditions.held
+    if loose.any():
+        raise ModelError(
+            f"{system.describe(int(np.flatnonzero(loose)[0]))} is moved out of phase in step "
+            f"{number}, but not held: hold it in phase too, with the value 0",
+            step.where,
+        )
+    shape = (len(frequencies), system.n_dofs)
+    loads, moves = np.zeros(shape, complex), np.zeros(shape, complex)
+    held = conditions.held
+    none = np.zeros(system.n_dofs)
+    for k, f in enumerate(frequencies):
+        loads[k] = conditions.external(f, lin.u)[0] - lin.at.internal
+        loads[k] += 1j * behind.external(f, lin.u)[0]
+        moves[k] = np.where(held, conditions.prescribed(f, lin.u) - lin.u, 0.0)
+        moves[k] += 1j * behind.prescribed(f, none)
+    # What the supports carry of the state is no load.
+    loads[:, held] += lin.at.residual[held]
+    return loads, moves
+
+
+def _by_modes(
+    system: System, state: State, step: SteadyState, number: int, loads: Complex, moves: Complex
+) -> Answer:
+    """Response by superposition of the modes of the last frequency step."""
+    patterns = [Patterns(system.n_dofs), Patterns(system.n_dofs)]
+    for found, vectors in zip(patterns, (loads, moves), strict=True):
+        for vector in vectors:
+            found.add(vector.real.copy())
+            found.add(vector.imag.copy())
+    forces, held = (found.matrix for found in patterns)
+    model = Reduced(system, state, step, number, forces, held)
+    one = np.eye(len(model.stiffness))
+
+    def answer(w: float, load: Complex, move: Complex) -> Complex:
+        matrix = model.stiffness - w**2 * one + 1j * w * model.damping
+        scale = np.maximum(np.abs(np.diag(model.stiffness)), w**2)
+        c, s = forces.T @ load, held.T @ move
+        rhs = model.load @ c + (w**2 * model.carried - 1j * w * model.dragged) @ s
+        if (np.abs(np.diag(matrix)) <= RESONANCE * scale).any():
+            raise _resonance(step, number, w)
+        try:
+            q = np.linalg.solve(matrix, rhs)
+        except np.linalg.LinAlgError:
+            raise _resonance(step, number, w) from None
+        found: Complex = model.displacement(q, s)
+        return found
+
+    return answer
+
+
+def _direct(lin: LinearMotion, step: SteadyState, number: int) -> Answer:
+    """Response of the whole model: a real system of twice the size at each frequency."""
+    c = lin.damping(step.rayleigh)
+    k, m, damping = (lin.sub(x) for x in (lin.stiffness, lin.mass, c))
+    damped = bool(damping.nnz) and bool(np.any(damping.data))
+    symmetric = lin.symmetric and abs(damping - damping.T).max() <= 1e-12 * abs(damping).max()
+    n = len(lin.active)
+    # Real and imaginary parts of an unknown stand together.
+    order = np.arange(2 * n).reshape(2, n).T.ravel()
+    node = np.repeat(lin.node[lin.active], 2)
+    multiplier = np.repeat(lin.multiplier[lin.active], 2)
+    threads = getattr(lin.system.solver, "threads", 1)
+
+    def answer(w: float, load: Complex, move: Complex) -> Complex:
+        h = lin.restrict(move)
+        z = h.copy()
+        dynamic = lin.stiffness - w**2 * lin.mass
+        rhs = _complex_gather(lin, load) - (dynamic @ h + 1j * w * (c @ h))[lin.active]
+        a = k - w**2 * m
+        try:
+            if not damped or w == 0.0:
+                factor = lin.factor(a, lin.symmetric)
+                both = factor.solve(np.asfortranarray(np.stack([rhs.real, rhs.imag], axis=1)))
+                x = both[:, 0] + 1j * both[:, 1]
+            else:
+                b = w * damping
+                whole = sp.block_array([[a, -b], [-b, -a]], format="csr")
+                whole = whole[order][:, order].tocsc()
+                factor = Factor(whole, symmetric, node, multiplier, threads)
+                both = factor.solve(np.concatenate([rhs.real, -rhs.imag])[order])
+                x = both[0::2] + 1j * both[1::2]
+        except SingularError:
+            raise _resonance(step, number, w) from None
+        z[lin.active] = x
+        found: Complex = lin.expand(z)
+        return found
+
+    return answer
+
+
+def _complex_gather(lin: LinearMotion, force: Complex) -> Complex:
+    found: Complex = lin.gather(force.real) + 1j * lin.gather(force.imag)
+    return found
+
+
+def _resonance(step: Any, number: int, w: float) -> ModelError:
+    return ModelError(
+        f"frequency {w / (2.0 * math.pi):g} hits an undamped mode in step {number}: give a damping",
+        step.where,
+    )
+
+
+__all__ = ["steady_state_step"]

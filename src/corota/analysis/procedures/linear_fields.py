@@ -1,0 +1,79 @@
+"""Stress and strain of a linear response about a state."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.results.results import PointFields
+
+    Floats = NDArray[np.float64]
+
+#: Displacement of the differences, as a share of the model's size.
+SIZE = 3e-5
+#: Fields of second order in the displacement.
+QUADRATIC = ("ENER",)
+
+
+class LinearFields:
+    """Recovers what a change of displacement gives to first order (energy: to second).
+
+    Parameters
+    ----------
+    system : System
+    u : ndarray, shape (n_dofs,)
+        The state about which the response is linear.
+    """
+
+    def __init__(self, system: System, u: Floats) -> None:
+        self.system, self.u = system, u.copy()
+        self.base, self.sums = system.recover(u.copy())
+
+    def at(self, change: Floats) -> tuple[list[PointFields], dict[str, float]]:
+        """Fields and sums at a change of displacement, as :meth:`System.recover` gives them."""
+        system = self.system
+        moved = float(np.abs(change[system.counted]).max(initial=0.0))
+        turned = float(np.abs(change[~system.counted]).max(initial=0.0))
+        largest = max(moved, turned * system.cell_size)
+        if largest == 0.0:
+            return self.base, dict(self.sums)
+        h = min(1.0, SIZE * system.length / largest)
+        ahead, sums_ahead = self._recover(self.u + h * change)
+        behind, sums_behind = self._recover(self.u - h * change)
+        fields = [_combine(*three, h) for three in zip(self.base, ahead, behind, strict=True)]
+        sums = dict(self.sums)
+        name = "strain energy"
+        sums[name] = _second(self.sums[name], sums_ahead[name], sums_behind[name], h)
+        return fields, sums
+
+    def _recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
+        if self.system.ties is not None:
+            self.system.ties.complete(u)
+        return self.system.recover(u)
+
+
+def _combine(base: PointFields, ahead: PointFields, behind: PointFields, h: float) -> PointFields:
+    values = {}
+    for name, value in base.values.items():
+        a, b = ahead.values[name], behind.values[name]
+        values[name] = _second(value, a, b, h) if name in QUADRATIC else value + (a - b) / (2 * h)
+    if "MISES" in values and "S" in values:
+        x, y, z, t = np.moveaxis(values["S"], -1, 0)
+        values["MISES"] = np.sqrt(0.5 * ((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) + 3.0 * t**2)
+    points = base.points + (ahead.points - behind.points) / (2.0 * h)
+    return replace(base, points=points, values=values)
+
+
+def _second(base: Floats | float, ahead: Floats | float, behind: Floats | float, h: float):  # type: ignore[no-untyped-def]
+    """Expansion to second order from values a step ahead and behind."""
+    return base + (ahead - behind) / (2.0 * h) + (ahead - 2.0 * base + behind) / (2.0 * h * h)
+
+
+__all__ = ["LinearFields"]
