@@ -73,12 +73,67 @@ def test_frequency_and_modal_steps(tmp_path):
     assert isinstance(frequency, Frequency)
     assert frequency.modes == 3
     assert isinstance(modal, ModalDynamic)
-    assert (modal.first_increment, modal.period, modal.damping) == (0.01, 0.5, 0.02)
+    assert (modal.first_increment, modal.period) == (0.01, 0.5)
+    assert modal.damping == [(1, 3, 0.02)]
     assert isinstance(steady, SteadyState)
     assert (steady.lowest, steady.highest, steady.points) == (0.1, 20.0, 5)
     results = ct.solve(model, threads=1)
     assert results.modes[0].factors.shape == (3,)
     assert np.isfinite(results.frames[-1].U).all()
+
+
+STEADY = "*STEP\n*STEADY STATE DYNAMICS{}\n.1, 20., 5\n{}*END STEP\n"
+
+
+def harmonic(folder, card, cards, head=HEAD):
+    """Frequencies and complex displacements of node 6 of a harmonic step."""
+    model = read(folder, head + FREQUENCY + STEADY.format(card, cards))
+    frames = ct.solve(model, threads=1, fields=False).frames
+    frames = [f for f in frames if "frequency" in f.scalars]
+    f = np.array([x.scalars["frequency"] for x in frames])
+    node = int(np.flatnonzero(model.mesh.node_labels == 6)[0])
+    w = 2.0 * np.pi * f
+    return f, np.array([x.U[node] - 1j * x.V[node, :2] / v for x, v in zip(frames, w, strict=True)])
+
+
+def test_ranges_of_modal_damping_are_read(tmp_path):
+    text = HEAD + FREQUENCY + "*STEP\n*MODAL DYNAMIC\n.01, .5\n*MODAL DAMPING\n"
+    model = read(tmp_path, text + "1, 2, .02\n3, , .05\n*END STEP\n")
+    assert model.steps[1].damping == [(1, 2, 0.02), (3, 3, 0.05)]
+    with pytest.raises(CorotaError, match="first mode"):
+        read(tmp_path, text + "3, 2, .02\n*END STEP\n")
+
+
+@pytest.mark.parametrize("card", ["", ", DIRECT"])
+def test_load_case_2_is_a_quarter_of_a_period_out_of_phase(tmp_path, card):
+    head = HEAD + "*DAMPING, ALPHA=.5, BETA=.0001\n"
+    _, real = harmonic(tmp_path, card, "*CLOAD\n6, 2, -1.\n", head)
+    _, late = harmonic(tmp_path, card, "*CLOAD, LOAD CASE=2\n6, 2, -1.\n", head)
+    assert late == pytest.approx(1j * real, rel=1e-9)
+    with pytest.raises(CorotaError, match="LOAD CASE"):
+        read(tmp_path, HEAD + "*STEP\n*STATIC\n*CLOAD, LOAD CASE=2\n6, 2, -1.\n*END STEP\n")
+
+
+def test_the_direct_response_needs_no_modes(tmp_path):
+    text = HEAD + STEADY.format(", DIRECT", "*CLOAD\n6, 2, -1.\n")
+    model = read(tmp_path, text)
+    assert model.steps[0].direct
+    assert len([f for f in ct.solve(model, threads=1).frames if "frequency" in f.scalars]) == 5
+
+
+def test_amplitudes_of_a_harmonic_step_are_over_the_frequency(tmp_path):
+    head = HEAD + "*DAMPING, ALPHA=.5\n*AMPLITUDE, NAME=A\n0., 0., 20., 40.\n"
+    f, plain = harmonic(tmp_path, ", DIRECT", "*CLOAD\n6, 2, -1.\n", head)
+    _, table = harmonic(tmp_path, ", DIRECT", "*CLOAD, AMPLITUDE=A\n6, 2, -1.\n", head)
+    assert table == pytest.approx(2.0 * f[:, None] * plain, rel=1e-9)
+
+
+def test_complex_frequencies_have_the_damping_of_the_deck(tmp_path):
+    """Damping by mass alone takes alpha / 2 from every mode."""
+    head = HEAD + "*DAMPING, ALPHA=.5\n"
+    model = read(tmp_path, head + FREQUENCY.replace("*FREQUENCY", "*COMPLEX FREQUENCY, CORIOLIS"))
+    modes = ct.solve(model, threads=1).modes[0]
+    assert modes.growth == pytest.approx(-0.25, rel=1e-6)
 
 
 def test_damping_and_initial_velocity(tmp_path):

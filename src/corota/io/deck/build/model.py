@@ -24,7 +24,7 @@ from corota.io.deck.lexer import key
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
 from corota.model.model import Model
 from corota.model.sections import Section
-from corota.model.steps import Static
+from corota.model.steps import Static, SteadyState
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -398,14 +398,25 @@ class ModelBuilder:
         deck = self.deck
         if draft.procedure is None:
             return None
-        supports = self._supports(draft.supports)
-        loads = [load for load in map(self._load, draft.loads) if load is not None]
+        behind = {id(d) for d in (*draft.supports, *draft.loads) if self._is_imaginary(d, draft)}
+        supports = self._supports([d for d in draft.supports if id(d) not in behind])
+        ahead = [d for d in draft.loads if id(d) not in behind]
+        loads = [load for load in map(self._load, ahead) if load is not None]
         for request in draft.outputs:
             self._check_target(request.kind, request.where, draft)
         first, period, least, most = draft.times
         try:
             make = draft.make or Static
             options = draft.options or {"ramp": draft.ramp}
+            if behind:
+                late = [self._load(d) for d in draft.loads if id(d) in behind]
+                options = {
+                    **options,
+                    "imaginary_supports": self._supports(
+                        [d for d in draft.supports if id(d) in behind]
+                    ),
+                    "imaginary_loads": [load for load in late if load is not None],
+                }
             return make(
                 nlgeom=draft.nlgeom if draft.preload is None else draft.preload,
                 period=period,
@@ -425,6 +436,21 @@ class ModelBuilder:
         except InputError as error:
             deck.error(draft.procedure, draft.procedure.where, error.message)
             return None
+
+    def _is_imaginary(self, item: Draft, draft: StepDraft) -> bool:
+        """Whether ``LOAD CASE=2`` makes a load of a harmonic step act out of phase."""
+        case = item.card.value("LOADCASE") or "1"
+        if case not in ("1", "2"):
+            self.deck.error(
+                item.card, item.card.at("LOADCASE"), f"LOAD CASE must be 1 or 2, not {case}"
+            )
+        elif case == "2" and draft.make is not SteadyState:
+            self.deck.error(
+                item.card,
+                item.card.at("LOADCASE"),
+                "LOAD CASE=2 (out of phase) belongs to *STEADY STATE DYNAMICS",
+            )
+        return case == "2" and draft.make is SteadyState
 
     def _check_target(self, kind: str, where: str, draft: StepDraft) -> None:
         known: dict[str, Mapping[str, object]] = {

@@ -58,6 +58,13 @@ def dynamic(deck: Deck, card: Card) -> None:
         now.times = (min(first, period), period, least, most)
 
 
+def complex_frequency(deck: Deck, card: Card) -> None:
+    """``*COMPLEX FREQUENCY[, CORIOLIS]``: the number of modes, with damping and Coriolis forces."""
+    frequency(deck, card)
+    if deck.step is not None and deck.step.make is Frequency:
+        deck.step.options.update(complex_modes=True, rayleigh=deck.damping)
+
+
 def frequency(deck: Deck, card: Card) -> None:
     """``*FREQUENCY``: the number of modes."""
     now = _procedure(deck, card)
@@ -90,7 +97,7 @@ def modal_dynamic(deck: Deck, card: Card) -> None:
 
 
 def steady_state(deck: Deck, card: Card) -> None:
-    """``*STEADY STATE DYNAMICS``: lowest and highest frequency, points between modes."""
+    """``*STEADY STATE DYNAMICS[, DIRECT]``: lowest, highest frequency, points between modes."""
     now = _procedure(deck, card)
     if now is None:
         return
@@ -111,7 +118,7 @@ def steady_state(deck: Deck, card: Card) -> None:
         now.make = SteadyState
         now.options = {
             "lowest": low, "highest": high, "points": points, "rayleigh": deck.damping,
-            "ramp": False,
+            "ramp": False, "direct": card.has("DIRECT"),
         }  # fmt: skip
 
 
@@ -137,12 +144,18 @@ def modal_damping(deck: Deck, card: Card) -> None:
         share = deck.real(card, row, 2, "the damping")
         if share is None:
             return
-        if now.options.get("damping", share) != share:
-            deck.row_error(card, row, 2, "one damping for all modes is expected")
+        first = deck.integer(card, row, 0, "the first mode", 1)
+        last = deck.integer(card, row, 1, "the last mode", first)
+        if first is None or last is None:
+            return
+        if not 1 <= first <= last:
+            deck.row_error(
+                card, row, 0, f"expected a first mode >= 1 and a last one, not {first}, {last}"
+            )
         elif share < 0.0:
             deck.row_error(card, row, 2, f"the damping must be >= 0, not {share:g}")
         else:
-            now.options["damping"] = share
+            now.options.setdefault("damping", []).append((first, last, share))
 
 
 def damping(deck: Deck, card: Card) -> None:
