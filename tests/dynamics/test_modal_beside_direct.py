@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 import corota as ct
 from corota.model.loads import Amplitude, BodyForce, EdgeLoad, NodalForce
-from tests.support.lines import lines
+from support.lines import lines
 
 PERIOD, STEPS = 0.4, 100
 TIMES = np.linspace(0.0, PERIOD, 201)

@@ -12,7 +12,7 @@ import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.lanczos import largest
 from corota.analysis.linear.solvers import Faer
-from corota.model.loads import NodalForce
+from corota.model.loads import EdgeLoad, NodalForce
 from support.frames import column, euler_load, node_at, williams_toggle
 from support.tied import with_nodes
 
@@ -199,3 +199,42 @@ def test_rigid_extension_of_a_column_buckles_by_its_own_equation():
     critical = ct.solve(model, ct.Static(path=path)).critical_points
     assert [p.kind for p in critical] == ["bifurcation"]
     assert critical[0].factor == pytest.approx(found[0], rel=2e-4)
+
+
+@pytest.mark.parametrize("joint", ["tie", "rough contact", "open contact"])
+def test_a_column_of_two_parts_buckles_as_what_holds_it_says(joint):
+    """Tied or pressed together a column of two meshes has Euler's load of the whole length.
+
+    Across an open joint beside it the column does not see the other body.
+    """
+    length, h, young = 10.0, 0.5, 1e4
+    if joint == "open contact":
+        first = ct.mesh.rectangle(length, h, 16, 2, "quad8")
+        second = ct.mesh.rectangle(length, h, 16, 2, "quad8", origin=(0.0, 2.0 * h))
+        mesh = ct.mesh.assembly(left=first, right=second)
+        end = "left.right"
+    else:
+        first = ct.mesh.rectangle(length / 2, h, 8, 2, "quad8")
+        second = ct.mesh.rectangle(length / 2, h, 8, 2, "quad8", origin=(length / 2, 0.0))
+        mesh = ct.mesh.assembly(left=first, right=second)
+        end = "right.right"
+    model = ct.Model(mesh)
+    model.section("all", element="Q8", material=ct.Elastic(E=young, nu=0.0))
+    model.fix("left.left")
+    euler = np.pi**2 * young * h**3 / 12.0 / (4.0 * length**2)
+    if joint == "tie":
+        model.tie("right.left", "left.right")
+        steps = [ct.Buckle()]
+    elif joint == "rough contact":
+        model.contact("right.left", "left.right", friction=0.5)
+        steps = [ct.Static(loads=[EdgeLoad(end, "traction", (-0.2 * euler / h, 0.0))])]
+        steps.append(ct.Buckle(loads=[EdgeLoad(end, "traction", (-euler / h, 0.0))]))
+    else:
+        model.fix("right.left")
+        model.contact("right.bottom", "left.top")
+        steps = [ct.Buckle()]
+    if joint != "rough contact":
+        model.traction(end, x=-euler / h)
+    found = ct.solve(model, steps, threads=1, fields=False).modes[-1].factors[0]
+    exact = 0.8 if joint == "rough contact" else 1.0
+    assert found == pytest.approx(exact, rel=0.02)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 #: Procedures that know contact and ties between surfaces.
-WITH_CONTACT = ("static", "dynamic", "frequency", "modal dynamic", "steady state")
+WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
 #: Local strain above which the linear one of ``simplified`` is no longer a good measure.
 LARGE_STRAIN = 0.05
 

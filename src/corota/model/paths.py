@@ -65,6 +65,9 @@ class ArcLength:
         Leave the path at the first bifurcation point along the branch that turns off.
     side : {1, -1}
         To which side of the mode, whose largest component is positive.
+    branch : int
+        Which branch to take, from 1, where several leave a multiple bifurcation point; they are
+        listed in :attr:`CriticalPoint.branches`.
     stop_at_limit : bool
         End at the first limit point.
 
@@ -82,6 +85,7 @@ class ArcLength:
     locate: bool = True
     switch: bool = False
     side: Literal[1, -1] = 1
+    branch: int = 1
     stop_at_limit: bool = False
 
     def __post_init__(self) -> None:
@@ -89,6 +93,8 @@ class ArcLength:
             raise InputError(f"shape must be 'cylindrical' or 'spherical', not {self.shape!r}")
         if self.side not in (1, -1):
             raise InputError(f"side must be 1 or -1, not {self.side!r}")
+        if self.branch < 1:
+            raise InputError(f"branches are counted from 1, not {self.branch!r}")
         if self.increments is not None and self.increments < 1:
             raise InputError(f"a path needs at least one increment, not {self.increments}")
         if self.factor is not None and not math.isfinite(self.factor):
@@ -175,6 +181,8 @@ class CriticalPoint:
         of order one at a limit point, 0 at a bifurcation.
     negative : tuple of int
         Negative pivots before and after; -1 where unknown.
+    branches : ndarray, shape (m, n_nodes, 3)
+        Directions in which branches leave, as far as they were looked for (``switch=True``).
     """
 
     kind: Literal["limit", "bifurcation"]
@@ -184,6 +192,7 @@ class CriticalPoint:
     mode: Floats
     projection: float
     negative: tuple[int, int]
+    branches: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)))
 
     def __str__(self) -> str:
         before, after = self.negative

@@ -18,6 +18,7 @@ import numpy as np
 
 from corota.analysis.equations import Evaluation
 from corota.analysis.linear.lanczos import BLOCK, largest
+from corota.analysis.procedures.buckling_contact import factors_with_contact
 from corota.analysis.terms.conditions import Conditions
 from corota.errors import ConvergenceError, ModelError, UnsupportedError
 from corota.model.paths import Modes
@@ -97,6 +98,9 @@ def _check_unloaded(system: System, step: Buckle) -> None:
 
 def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats, Floats]:
     force, move, loads = _perturbation(system, step, number, u)
+    if system.touching is not None:
+        factors, shapes = factors_with_contact(system, u, force, move, loads, step.modes)
+        return factors, _largest_one(system, shapes)
     base = _symmetric(system, system.evaluate(u, 0.0))
     values = _unknowns(system, base, base.residual)
     response, negative = system.correct(replace(base, values=base.values.copy()), force, move)
@@ -152,11 +156,15 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
         wanted = step.modes + missed
         system.correct(replace(base, values=base.values.copy()), force, move)
     factors, shapes = factors[: step.modes], shapes[:, : min(step.modes, len(factors))]
-    counted = system.counted
-    for k in range(len(factors)):
-        moved = np.where(counted, shapes[:, k], 0.0)
-        shapes[:, k] /= moved[np.abs(moved).argmax()]
-    return factors, shapes
+    return factors, _largest_one(system, shapes)
+
+
+def _largest_one(system: System, shapes: Floats) -> Floats:
+    """Shapes whose largest displacement is 1, in place."""
+    for shape in shapes.T:
+        moved = np.where(system.counted, shape, 0.0)
+        shape /= moved[np.abs(moved).argmax()]
+    return shapes
 
 
 def _free(system: System) -> slice | NDArray[np.int64]:

@@ -120,7 +120,13 @@ class Linearized:
     ----------
     system : System
     u : ndarray, shape (n_dofs,)
-        The committed displacement.
+        The committed displacement, or a neighbor of it.
+    multipliers : ndarray, shape (n_multipliers,), optional
+        Of contact and ties; the committed ones by default.
+    states : list of ndarray, optional
+        Of their constraints; the committed ones by default, with what slips stuck.
+    load : ndarray, shape (n_dofs,), optional
+        Forces that act beside those of the steps, under which constraints bend.
 
     Attributes
     ----------
@@ -132,9 +138,22 @@ class Linearized:
         Whether the stiffness of the active unknowns is.
     """
 
-    def __init__(self, system: System, u: Floats) -> None:
+    def __init__(
+        self,
+        system: System,
+        u: Floats,
+        multipliers: Floats | None = None,
+        states: list[NDArray[np.int8]] | None = None,
+        load: Floats | None = None,
+    ) -> None:
         self.system = system
         self.u = u.copy()
+        self.states = states
+        touching = system.touching
+        self.multipliers = np.zeros(0) if touching is None else touching.committed
+        if multipliers is not None:
+            self.multipliers = multipliers
+        self._load = load
         with system.conditions.as_reached():
             self.at, coupling = self._evaluate(u)
         self.link: Link | None = self.at.link
@@ -159,14 +178,17 @@ class Linearized:
         if touching is None:
             return system.evaluate(u.copy(), 0.0), None
         contact = TouchingSystem(system, system)
-        found = contact.evaluate(contact.start(u.copy()), 0.0)
-        if touching.at is not None and touching.at.states:
+        found = contact.evaluate(np.concatenate([u, self.multipliers]), 0.0)
+        if self.states is not None:
+            states = self.states
+        elif touching.at is not None and touching.at.states:
             states = touching.at.states
         else:
             states = [
                 pair.states(terms, p, q) for pair, terms, (p, q) in contact._pairs(found.touch)
             ]
         states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
+        self.states = states
         contact.senses = {p.first: np.ones(p.n) for p in touching.pairs}
         coupling = contact._coupling(found.touch, states)[0]
         own = np.zeros(touching.n)
@@ -190,7 +212,8 @@ class Linearized:
             triplets = more if triplets is None else tuple(
                 np.concatenate(pair) for pair in zip(triplets, more, strict=True)
             )  # fmt: skip
-        k = self.reduce(at.values, triplets, at.residual)
+        residual = at.residual if self._load is None else at.residual - self._load
+        k = self.reduce(at.values, triplets, residual)
         if coupling is None:
             return k
         shape = (self.system.n_dofs, self.n_multipliers)
@@ -324,8 +347,6 @@ class LinearMotion(Linearized):
     Attributes
     ----------
     mass : scipy CSC array, shape (n, n)
-    softening : float
-        Square of the angular velocity of the frame of reference [1/time^2].
     turns : bool
         Whether Coriolis forces of that frame count among the damping.
     """
@@ -343,7 +364,6 @@ class LinearMotion(Linearized):
         self.inertia = Inertia(system, kind)
         self.mass_values = self.inertia.tangent(u)
         self.mass = self.padded(self.reduce(self.mass_values))
-        self.softening = spin(system)
         self.turns = False
         system.conditions.set_mass(STATIC_MASS)
         self._damping: dict[tuple[float, float], Any] = {}
@@ -373,7 +393,7 @@ class LinearMotion(Linearized):
         Exact for displacements; drilling rotations and beams take the mean of the masses along
         both axes, which converges with the mesh.
         """
-        rate = math.sqrt(self.softening)
+        rate = math.sqrt(spin(self.system))
         system = self.system
         n = system.n_dofs
         x = np.flatnonzero(system.component == 0)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from corota.analysis.equations import System
     from corota.analysis.newton import Judgement
     from corota.analysis.observers import Observers
+    from corota.analysis.procedures.path.stability import Critical
     from corota.analysis.procedures.path.tracer import Increment
     from corota.analysis.state import State
     from corota.model.paths import Where
@@ -95,6 +96,8 @@ class PathStep:
         self.observers, self.save = observers, save
         self.factor, self.increment = factor, increment
         self.along = path_system(system, state.notes)
+        #: The critical point that was found last, as the path and as results know it.
+        self.located: tuple[Critical, CriticalPoint] | None = None
 
     def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
         """Follow the path to its end."""
@@ -198,11 +201,30 @@ class PathStep:
             )  # fmt: skip
             state.critical.append(critical)
             state.notes.append(str(critical))
+        if found.control == "mode" and self.located is not None:
+            self._tell_branches(*self.located)
+        if found.critical is not None and critical is not None:
+            self.located = (found.critical, critical)
         self.save(state, self.increment, self.factor, scalars)
         return critical
 
+    def _tell_branches(self, critical: Critical, point: CriticalPoint) -> None:
+        """Give a bifurcation point its branches."""
+        system = self.system
+        point.branches = np.array([system.by_node(b[: system.n_dofs]) for b in critical.branches])
+        if len(point.branches) > 1:
+            self.state.notes.append(
+                f"{len(point.branches)} branches leave the bifurcation point at load factor "
+                f"{point.factor:.6g}: branch=1 to {len(point.branches)} takes each of them"
+            )
+
     def _check(self, found: Increment) -> None:
         """End for reasons that are not of the path."""
+        if found.closed and not found.last:
+            raise PathStalled(
+                "the branch is closed: it has come back to the bifurcation point where it began "
+                "without an end of the path on it"
+            )
         if self.observers.stop_requested:
             raise Interrupted(
                 f"stopped at step {self.number}, load factor {self.factor:.6g}; everything up "
@@ -276,7 +298,7 @@ class PathStep:
             plan.ends.append(End(value, self._row([(where, dof, 1.0)])))
         plan.increments = path.increments or 0
         plan.spherical = path.shape == "spherical"
-        plan.switch, plan.side = path.switch, path.side
+        plan.switch, plan.side, plan.branch = path.switch, path.side, path.branch
         plan.stop_at_limit = path.stop_at_limit
         return plan
 

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Mask = NDArray[np.bool_]
 
+#: Displacements below this share of the structure's size are rounding.
+STILL = 1e-12
+
 
 @dataclass
 class Point:
@@ -227,8 +230,9 @@ def tangent_at(
     x, negative = system.rate(point.at, force, move)
     if metric is None:
         metric = Metric(system.counted, float(np.sqrt(product(x, x, system.counted))))
-        if metric.length == 0.0:
-            metric.length = 1.0
+        if metric.length <= STILL * system.length:
+            # Nothing moves under the load, as in a bar that is held and heated.
+            metric.length = system.length
     size = metric.size(x, 1.0)
     return Tangent(x / size, 1.0 / size, negative), metric
 

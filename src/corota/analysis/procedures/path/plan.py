@@ -55,6 +55,8 @@ class Plan:
     spherical, locate, switch, stop_at_limit : bool
     side : int
         Sign of the mode along which another branch is entered.
+    branch : int
+        Which of several branches, from 1.
     """
 
     first: float = 0.05
@@ -68,6 +70,7 @@ class Plan:
     locate: bool = True
     switch: bool = False
     side: int = 1
+    branch: int = 1
     stop_at_limit: bool = False
 
 
@@ -89,6 +92,8 @@ class Increment:
     critical : Critical or None
     last : bool
         Whether the path ends here.
+    closed : bool
+        Whether a branch has come back to where it began.
     """
 
     point: Point
@@ -100,6 +105,7 @@ class Increment:
     control: Literal["arc", "displacement", "load", "mode"] = "arc"
     critical: Critical | None = None
     last: bool = False
+    closed: bool = False
 
 
 __all__ = ["End", "Increment", "PathStalled", "Plan"]

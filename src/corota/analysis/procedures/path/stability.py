@@ -11,7 +11,7 @@ Source: W. Wagner and P. Wriggers, Engineering Computations 5 (1988) 103-109; R.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -79,6 +79,8 @@ class Critical:
         See :func:`work_share`.
     negative : tuple of int
         Negative pivots before and behind.
+    branches : list of ndarray, shape (n,)
+        Directions in which branches leave, once they were looked for.
     """
 
     point: Point
@@ -87,6 +89,7 @@ class Critical:
     mode: Floats
     projection: float
     negative: tuple[int, int]
+    branches: list[Floats] = field(default_factory=list)
 
 
 def softest_mode(system: PathSystem, start: Floats | None) -> tuple[float, Floats]:

@@ -16,8 +16,16 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.analysis.procedures.path.branches import returned, switch
 from corota.analysis.procedures.path.controls import Arc, Factor, Plane, Row
-from corota.analysis.procedures.path.corrector import Metric, Point, Tangent, correct, tangent_at
+from corota.analysis.procedures.path.corrector import (
+    STILL,
+    Metric,
+    Point,
+    Tangent,
+    correct,
+    tangent_at,
+)
 from corota.analysis.procedures.path.kinks import direction, shares
 from corota.analysis.procedures.path.plan import End, Increment, PathStalled, Plan
 from corota.analysis.procedures.path.stability import Critical, Station, has_event, locate
@@ -58,11 +66,6 @@ KINK = 3
 MAX_ATTEMPTS = 16
 #: ... and the attempt from which a single displacement replaces the arc.
 OTHER_CONTROL = 6
-
-#: Largest displacement by which a branch is entered, as a share of the structure's size ...
-MODE = 0.02
-#: ... and shares of it that are tried.
-MODE_SHARES = (1.0, 0.3, 0.1, 3.0, 0.03, 0.01)
 
 
 class Follower:
@@ -107,6 +110,8 @@ class Follower:
         #: Tangent against which events are told: behind a critical point, not at it.
         self.mark: Tangent
         self.guess: Point | None = None
+        #: Where the branch that is followed began.
+        self.origin: Point | None = None
         #: Predicted point behind kinks, and the direction there.
         self.aim: tuple[Point, Tangent] | None = None
         #: Ways of displacements and load factor so far.
@@ -131,7 +136,10 @@ class Follower:
         self.mark = self.tangent
         while True:
             count += 1
+            before = self.base
             found = self._increment()
+            if self.origin is not None and returned(self, before, self.base, self.origin):
+                found.closed = True
             if self._ends_after(found, count):
                 found.last = True
             yield found
@@ -142,7 +150,7 @@ class Follower:
             if critical is not None and bifurcation and self.plan.switch and not self.switched:
                 self.switched = True
                 count += 1
-                found = self._switch(critical)
+                found = switch(self, critical)
                 found.last = self._ends_after(found, count)
                 yield found
                 if found.last:
@@ -261,10 +269,10 @@ class Follower:
             if value * row.value > 0.0:
                 return replace(row, value=value), "displacement"
         moved = self.metric.displacement(du)
-        if self.attempt >= OTHER_CONTROL or moved == 0.0:
+        if self.attempt >= OTHER_CONTROL or self._still(moved):
             counted = np.where(self.system.counted, np.abs(du), 0.0)
             dof = int(counted.argmax())
-            if counted[dof] == 0.0:
+            if self._still(counted[dof]):
                 return Factor(df), "load"
             return Row(np.array([dof]), np.ones(1), float(du[dof])), "displacement"
         # Behind a kink the structure may be so stiff that displacements alone are no measure.
@@ -379,6 +387,10 @@ class Follower:
         else:
             self.guess, self.tangent = None, end.tangent
 
+    def _still(self, moved: float) -> bool:
+        """Whether a displacement is rounding: what is held all round only takes up load."""
+        return moved <= STILL * self.system.length
+
     def _resize(self, size: float, iterations: int, turn: float) -> None:
         if self.plan.fixed:
             return
@@ -394,7 +406,7 @@ class Follower:
         if self.plan.fixed:
             return
         self.way = (self.way[0] + moved, self.way[1] + raised)
-        if min(self.way) <= 0.0:
+        if min(self.way) <= 0.0 or self._still(self.way[0]):
             return
         self.metric = Metric(self.metric.counted, self.way[0] / self.way[1])
         t = self.tangent
@@ -428,6 +440,8 @@ class Follower:
         kink = end.behind and min(whole, before - SHARP, behind - SHARP) > 0.0
 
         def place(share: float) -> tuple[Floats, float, Control]:
+            if not kink and self._still(metric.displacement(du)):
+                return share * du, share * df, Factor(share * df)
             if not kink:
                 moved = share * metric.displacement(du)
                 weight = metric.length if self.plan.spherical else 0.0
@@ -493,41 +507,6 @@ class Follower:
             or (self.plan.increments > 0 and count >= self.plan.increments)
             or (self.plan.stop_at_limit and at_limit)
         )
-
-    # -- branches ----------------------------------------------------------------------
-
-    def _switch(self, critical: Critical) -> Increment:
-        """Leave along the mode: its amplitude is held, load and shape adapt."""
-        counted = np.flatnonzero(self.system.counted & (critical.mode != 0.0))
-        weights = critical.mode[counted] / np.linalg.norm(critical.mode[counted])
-        along = critical.mode / np.linalg.norm(critical.mode[counted])
-        # Near the point the branch is as singular as the point; a larger mode is regular.
-        largest = float(np.abs(along[counted]).max())
-        first = self.plan.side * MODE * self.system.length / largest
-        reason = ""
-        for self.attempt, share in enumerate(MODE_SHARES, start=1):
-            amplitude = share * first
-            guess = Point(self.base.u + amplitude * along, self.base.factor, None)
-            done = self._solve(guess, Row(counted, weights, amplitude), self.size)
-            self.guess = guess  # the branch turns off: the angle is not judged
-            found, reason = None, done.reason
-            if done.point is not None:
-                found, reason = self._judge(done.point, self.size)
-            if found is not None:
-                self._commit(found.point)
-                du = found.point.u - self.base.u
-                df = found.point.factor - self.base.factor
-                self.size = self.metric.size(du, df)
-                length = self.first_metric.size(du, df)
-                self.base, self.guess = found.point, None
-                self.tangent = self.mark = found.tangent
-                self._measure(self.metric.displacement(du), abs(df))
-                negative = found.tangent.negative
-                return Increment(
-                    found.point, found.tangent, done.iterations, self.attempt, length,
-                    negative, "mode",
-                )  # fmt: skip
-        raise PathStalled(f"the other branch could not be entered: {reason}")
 
 
 def _arc_cosine(x: float) -> float:
