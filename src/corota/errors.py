@@ -102,14 +102,19 @@ class SingularError(CorotaError):
         Index of the equation of the worst pivot, -1 if unknown.
     mode : numpy.ndarray or None
         Null vector over all equations, shape (n_dofs,), when it was found.
+    modes : numpy.ndarray or None
+        All null vectors that were found, shape (n_modes, n_dofs); the first is `mode`.
     """
 
     exit_code = 3
 
-    def __init__(self, message: str, equation: int = -1, mode: Any = None) -> None:
+    def __init__(
+        self, message: str, equation: int = -1, mode: Any = None, modes: Any = None
+    ) -> None:
         super().__init__(message)
         self.equation = equation
         self.mode = mode
+        self.modes = modes
 
 
 class ConvergenceError(CorotaError):

@@ -128,6 +128,29 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
                 "counter-clockwise with every angle below 180 degrees",
                 block.section.where,
             )
+        _check_middles(model, block)
+
+
+def _check_middles(model: Model, block: BlockOfCells) -> None:
+    """Refuse mid-side nodes beyond the quarter points: the element folds at a corner there."""
+    points, labels = model.mesh.points, model.mesh.cell_labels
+    n = 3 if "tri" in _cell(block) else 4
+    if block.nodes.shape[1] < 2 * n:
+        return
+    corners = points[block.nodes[:, :n]]
+    side = np.roll(corners, -1, axis=1) - corners
+    middle = points[block.nodes[:, n : 2 * n]] - corners
+    share = (middle * side).sum(axis=2) / (side**2).sum(axis=2)
+    bad = np.argwhere(np.abs(share - 0.5) > 0.25 + 1e-6)
+    if len(bad):
+        cell, k = (int(i) for i in bad[0])
+        label = model.mesh.node_labels[block.nodes[cell, n + k]]
+        raise ModelError(
+            f"element {labels[block.cells[cell]]}: mid-side node {label} lies at "
+            f"{share[cell, k]:.3g} of its side; between .25 and .75 the element is folded "
+            "nowhere: move the node towards the middle",
+            block.section.where,
+        )
 
 
 def _cell(block: BlockOfCells) -> str:

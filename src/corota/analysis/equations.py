@@ -18,12 +18,14 @@ from corota import _core
 from corota.analysis.blocks import blocks_of, check_shapes
 from corota.analysis.constraints.elimination import Link, Ties, extra_dofs
 from corota.analysis.constraints.setup import carry_curves
+from corota.analysis.free_motion import name_motion
 from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
 from corota.analysis.memory import require_model
-from corota.analysis.newton import ElementFailure, Judgement, larger
+from corota.analysis.newton import ElementFailure, Judgement
+from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.thermal import FreeStrains
-from corota.analysis.terms.user_material import UserBlocks
+from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
 from corota.analysis.timer import Timer
 from corota.errors import ModelError, SingularError
 from corota.model import elements
@@ -40,12 +42,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Forces below this many rounding errors of the coordinates are none.
-NOTHING = 1e3
-#: Rounding counts as such up to this share of the forces (and moments over the length), and up to
-#: forces of none this many times over, for bodies that have moved far.
-LARGEST_NOISE, FARTHEST = 1e-5, 1e3
-EPS = float(np.finfo(float).eps)
 #: Tangents whose memory is kept for the next ones.
 SPARE = 2
 #: Values of a tangent that was given back.
@@ -70,6 +66,11 @@ class Evaluation:
         Triplets (row, column, value) of the derivative of the external force.
     link : Link or None
         The constraints linearised at the state.
+    added : ndarray, shape (n_dofs,), or None
+        What damping added to the diagonal of the tangent: no stiffness.
+    heft, momentum : float
+        In motion: inertia per displacement [force/length], and the largest of the terms of
+        which the acceleration is a difference [force].
     """
 
     internal: Floats
@@ -78,6 +79,9 @@ class Evaluation:
     values: Floats
     load_stiffness: tuple[Ints, Ints, Floats] | None = None
     link: Link | None = None
+    added: Floats | None = None
+    heft: float = 0.0
+    momentum: float = 0.0
 
     @property
     def residual(self) -> Floats:
@@ -151,17 +155,17 @@ class System:
         self.ties: Ties | None = None
         if model.constraints or model.axes:
             self.ties = Ties(model, self.start, carried, self.indptr, self.indices)
-        self._link: Link | None = None
+        self.link: Link | None = None
         self.conditions = Conditions(self)
         self.touching: Touching | None = None
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
         self._timers: defaultdict[str, Timer] = defaultdict(Timer)
         self._analyzed = False
+        #: Whether the structure without its loads was seen to have no free motion in this step.
+        self.held_for_sure = False
         self._last: LinearSolver | MaskedLu = solver
-        self._stiffest = 0.0
-        #: Largest force and moment of the state judged last, and of the committed one.
-        self._sizes = self._committed_sizes = [0.0, 0.0]
+        self.scales = Scales(self)
         self._lu = MaskedLu()
         self._spare: list[Floats] = []
         if model.contacts or model.ties:
@@ -208,6 +212,8 @@ class System:
             self.ties.set_turning(step.nlgeom)
             self.ties.complete(u)
         self.conditions.begin(step, time, u, reaction)
+        self.scales.begin(getattr(step, "tolerance", 1e-9), u)
+        self.held_for_sure = False
         if self.touching is not None:
             self.touching.begin(step)
 
@@ -245,7 +251,9 @@ class System:
                 else:
                     self.core.assemble(here, self.turning, internal, scale, values)
         except RuntimeError as error:
-            raise failure(self._labels(error.args[1])) from None
+            raise failure(self._labels(error.args[1]), error.args[0]) from None
+        if not self.scales.stiffest:
+            self.scales.measure(values)
         external, stiffness = self.conditions.external(step_time, u, values)
         link = None if self.ties is None else self.ties.link(u)
         return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
@@ -299,56 +307,8 @@ class System:
         return {phase: timer.seconds for phase, timer in self._timers.items()}
 
     def judge(self, at: Evaluation, u: Floats) -> Judgement:
-        """Size of the residual against its scale, forces and moments apart.
-
-        The scale is the largest of external forces and sums of absolute element forces, here
-        and in the committed state: a body that is unloaded altogether has no forces of its own
-        to compare with. A moment is also small against the forces times a millionth of the
-        model's size, and a force against the moments so, since either may vanish altogether.
-        """
-        scale, internal, external = at.scale, at.internal, at.external
-        if at.link is not None:
-            internal = self.reaction(at)
-            scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
-        size, residual, worst, displacement = self.core.sizes(
-            internal, scale, external, u, self.conditions.held, at.link is None
-        )
-        self._sizes = size
-        force = larger(size[0], self._committed_sizes[0])
-        moment = larger(size[1], self._committed_sizes[1])
-        moment, force = (
-            max(moment, 1e-6 * force * self.length),
-            max(force, 1e-6 * moment / self.length),
-        )
-        if not self._stiffest:
-            self._stiffest = float(np.abs(at.values[self.indptr[1:] - 1]).max(initial=0.0))
-        # Forces that rounding of the coordinates alone would give, where nothing is loaded; a
-        # load as small as that still bends what is slender enough.
-        if max(force, moment / self.length) <= self.nothing and not at.external.any():
-            return Judgement(0.0, 0.0, 0.0, 0)
-        relative = (residual[0] / force, residual[1] / moment)
-        # Rotations round like the displacements they give an element.
-        moved = max(displacement[0], self.cell_size * displacement[1])
-        noise = EPS * self._stiffest * moved
-        # Displacements that run away, as of a mechanism, round so badly that any residual passed.
-        whole = max(force, moment / self.length)
-        noise = min(noise, max(LARGEST_NOISE * whole, FARTHEST * self.nothing))
-        return Judgement(
-            *relative,
-            noise / force,
-            worst[0] if relative[0] >= relative[1] else worst[1],
-            noise * self.cell_size / moment,
-        )
-
-    @property
-    def nothing(self) -> float:
-        """Force that rounding of the coordinates alone would give."""
-        return NOTHING * EPS * self._stiffest * self.length
-
-    @property
-    def force_scale(self) -> float:
-        """Largest force of the state judged last or of the committed one."""
-        return max(self._sizes[0], self._committed_sizes[0])
+        """Size of the residual against its scale; see :class:`corota.analysis.scales.Scales`."""
+        return self.scales.judge(at, u)
 
     def plastic_increment(self) -> float:
         """Largest growth of the equivalent plastic strain since the last commit."""
@@ -358,7 +318,7 @@ class System:
         """Accept the last evaluated state."""
         self.core.commit()
         self.user.commit()
-        self._committed_sizes = self._sizes
+        self.scales.commit()
 
     def _labels(self, failed: list[tuple[int, int]]) -> list[int]:
         labels = self.model.mesh.cell_labels
@@ -423,6 +383,9 @@ class System:
         held = self.conditions.held
         unsymmetric = None
         if at.load_stiffness is not None:
+            if not (self.held_for_sure or at.heft):
+                # Loads that follow give a free motion stiffness that is none.
+                self._refuse_free(at)
             _, unsymmetric = self._add_load_stiffness(at)
         if at.link is not None:
             return self._correct_tied(at, at.link, rhs, du_held, unsymmetric)
@@ -446,12 +409,37 @@ class System:
         du[fixed] = du_held[fixed]
         return du, (inertia[1] if inertia is not None else -1)
 
+    def _refuse_free(self, at: Evaluation) -> None:
+        """Refuse a structure whose stiffness without that of its loads lets a motion free."""
+        held = self.conditions.held
+        if at.link is None:
+            indptr, indices, node = self.indptr, self.indices, self.node_of_dof
+            values, none = at.values.copy(), np.zeros(self.n_dofs)
+            self.core.reduce(values, none, none.copy(), held)
+        else:
+            places = at.link.ties.places
+            indptr, indices = places.indptr, places.indices
+            node = self.node_of_dof[at.link.ties.free]
+            values = at.link.reduce(at.values, self.at_nodes(at.internal))
+            places.mask(values, held[at.link.ties.free])
+            self.link = at.link
+        if not self._analyzed:
+            with self.timed("order"):
+                self.solver.analyze(indptr, indices, node)
+            self._analyzed = True
+        try:
+            with self.timed("factor"):
+                self.solver.factorize(values)
+        except SingularError as error:
+            raise self.singular(error) from None
+        self.held_for_sure = True
+
     def solve_again(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation, held dofs at rest; shape as in `correct`."""
         held = self.conditions.held
-        if self._link is not None and self.ties is not None:
+        if self.link is not None and self.ties is not None:
             free = self.ties.free
-            rhs = self._link.gather(rhs)[free]
+            rhs = self.link.gather(rhs)[free]
             held = held[free]
         else:
             rhs = rhs.copy(order="K")
@@ -459,7 +447,7 @@ class System:
         with self.timed("solve"):
             x = self._last.solve(rhs)
         x[held] = 0.0
-        return x if self._link is None else self.expand(self._link, x)
+        return x if self.link is None else self.expand(self.link, x)
 
     def expand(self, link: Link, x: Floats) -> Floats:
         """Changes of all dofs from those of the unknowns that constraints leave."""
@@ -471,7 +459,7 @@ class System:
         self, at: Evaluation, link: Link, rhs: Floats, du_held: Floats, unsymmetric: Any
     ) -> tuple[Floats, int]:
         """Solve for the unknowns that constraints leave; see :meth:`correct`."""
-        ties, places, self._link = link.ties, link.ties.places, link
+        ties, places, self.link = link.ties, link.ties.places, link
         free = ties.free
         held = self.conditions.held[free]
         force, moved = np.asfortranarray(link.gather(rhs)[free]), du_held[free]
@@ -504,20 +492,7 @@ class System:
 
     def singular(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
-        equation, mode = error.equation, error.mode
-        if self.ties is not None and 0 <= equation < len(self.ties.free):
-            equation = int(self.ties.free[equation])
-            if mode is not None and self._link is not None:
-                mode = self.expand(self._link, np.asarray(mode))
-        if not 0 <= equation < self.n_dofs:
-            return SingularError(str(error), equation, mode)
-        where = self.describe(equation)
-        return SingularError(
-            f"the structure can move freely: {where} is held by nothing; add a support, or "
-            "remove the mechanism that contains it",
-            equation,
-            mode,
-        )
+        return name_motion(self, error)
 
     def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Any]:
         import scipy.sparse as sp
@@ -567,6 +542,15 @@ class System:
         fields, energy, strain = [], 0.0, 0.0
         raw = self.core.recover(self.in_space(u), self.turning)
         for block, own in zip(self.blocks, raw, strict=True):
+            for name, values in own["values"].items():
+                if not np.isfinite(values).all():
+                    bad = int(np.argwhere(~np.isfinite(values))[0][0])
+                    label = self.model.mesh.cell_labels[block.cells[bad]]
+                    raise ElementFailure(
+                        f"{name} of element {label} is no number at the equilibrium that was "
+                        "found: its strain is beyond what its material and plane allow, as a "
+                        "thickness that vanishes; look at loads, moduli and units"
+                    )
             energy += own["total_energy"]
             if self.turning and block.section.local_strain == "simplified":
                 strain = max(strain, own["largest_strain"])
@@ -584,10 +568,11 @@ class System:
         return fields, {"strain energy": energy, "largest simplified strain": strain}
 
 
-def failure(labels: list[int]) -> ElementFailure:
+def failure(labels: list[int], why: str = "") -> ElementFailure:
     """Name the elements that failed."""
     shown = ", ".join(str(n) for n in labels[:5]) + (", ..." if len(labels) > 5 else "")
-    return ElementFailure(f"turned inside out or not converged: element {shown}")
+    known = why if why == NO_NUMBER else "turned inside out or not converged"
+    return ElementFailure(f"{known}: element {shown}")
 
 
 def _columns(x: Floats) -> list[Floats]:

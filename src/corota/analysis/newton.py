@@ -81,6 +81,10 @@ class Judgement:
     floor: float  # relative size of rounding errors of forces
     worst: int  # dof with the largest relative residual
     moment_floor: float = 0.0  # and of moments, whose scale may be much smaller
+    #: Whether nothing acts that is above rounding, in a motion that may be as slow as that.
+    idle: bool = False
+    #: Residuals of forces and moments over all that acts, be it force, moment or inertia.
+    honest: tuple[float, float] = (0.0, 0.0)
 
     @property
     def size(self) -> float:
@@ -182,7 +186,7 @@ def newton(
     size = judged.size
     outcome.sizes.append(size)
     # With moving supports the first residual says nothing about the one to be reached.
-    if not moved and size <= settings.tolerance:
+    if not moved and size <= settings.tolerance and not judged.idle:
         outcome.converged = True
         return outcome
     best, least, waited = size, math.inf, 0
@@ -217,6 +221,12 @@ def newton(
             moved = bool(np.any(du_held))
         judged = system.judge(at, u)
         size = judged.size
+        settled = not moved and size > settings.tolerance and size >= 0.1 * before
+        settled = settled and judged.rounding(settings.tolerance)
+        if settled:
+            # Against the smaller of forces and moments alone it could look large.
+            judged.force, judged.moment = judged.honest
+            size = judged.size
         outcome.u, outcome.at, outcome.iterations = u, at, iteration
         outcome.sizes.append(size)
         if report is not None:
@@ -227,12 +237,10 @@ def newton(
         if not math.isfinite(size):
             outcome.reason = "the residual is not finite"
             return outcome
-        if not moved and size <= settings.tolerance:
+        if settled or (not moved and size <= settings.tolerance):
             outcome.converged = True
-            return outcome
-        if not moved and judged.rounding(settings.tolerance) and size >= 0.1 * before:
-            outcome.converged = True
-            outcome.note = f"residual {size:.1e} is at the rounding floor"
+            if settled:
+                outcome.note = f"residual {size:.1e} is at the rounding floor"
             return outcome
         if iteration > 1 and size > DIVERGED * max(best, 1e-6):
             outcome.reason = f"diverges: the residual grew to {size:.1e}"

@@ -13,12 +13,13 @@ import numpy as np
 
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import SOLVERS
+from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
 from corota.analysis.procedures.localization import localised
 from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
-from corota.errors import CorotaError, InputError, UnsupportedError
+from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
 from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
@@ -175,7 +176,13 @@ class Analysis:
             )
             reaction = None
             for number, step in enumerate(self.steps, start=1):
-                reaction = self._step(step, number, state, reaction)
+                try:
+                    reaction = self._step(step, number, state, reaction)
+                except ElementFailure as failure:
+                    raise ConvergenceError(
+                        f"step {number} stopped at step time {state.step_time:g} of "
+                        f"{step.period:g}: {failure}. All increments before are kept"
+                    ) from None
         except CorotaError as caught:
             error = caught
             if hasattr(caught, "results"):

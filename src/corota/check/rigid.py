@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.free_motion import plain
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of, part_of_cells, stiff_part_of_cells
 from corota.model import elements
@@ -153,7 +154,7 @@ def _describe(
     n_bodies: int,
 ) -> list[Diagnostic]:
     found = []
-    for mode in _plain(modes):
+    for mode in plain(modes):
         motion = mode.reshape(-1, 3)[local]
         offset = (points - centre) / size
         u = motion[:, :2] + motion[:, 2:] * np.stack([-offset[:, 1], offset[:, 0]], axis=1)
@@ -179,23 +180,3 @@ def _describe(
                 text += f" (the part of node {label})"
         found.append(Diagnostic("error", text, hint=hint))
     return found
-
-
-def _plain(modes: Floats) -> Floats:
-    """Basis of the free modes with as many zeros as it can have, one mode a row."""
-    rows = np.array(modes.T)
-    lead = 0
-    for column in [c for d in range(3) for c in range(d, rows.shape[1], 3)]:
-        if lead == len(rows):
-            break
-        pivot = lead + int(np.abs(rows[lead:, column]).argmax())
-        if abs(rows[pivot, column]) < 1e-7:
-            continue
-        rows[[lead, pivot]] = rows[[pivot, lead]]
-        rows[lead] /= rows[lead, column]
-        for other in range(len(rows)):
-            if other != lead:
-                rows[other] -= rows[other, column] * rows[lead]
-        lead += 1
-    rows[np.abs(rows) < 1e-9] = 0.0
-    return rows

@@ -75,7 +75,10 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         name = f"{error.filename}: " if error.filename else ""
         terminal.error(f"{name}{error.strerror or error}")
         return 5 if error.errno == errno.ENOMEM else 6
-    except Exception as error:
+    except BaseException as error:
+        # A panic of the core is no Exception.
+        if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
+            raise
         _trace()
         if "can't start new thread" in str(error):
             terminal.error("the system gives no more threads or memory for them")

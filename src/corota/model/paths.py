@@ -196,9 +196,11 @@ class CriticalPoint:
 
     def __str__(self) -> str:
         before, after = self.negative
+        known = min(before, after) >= 0
+        pivots = f"; negative pivots {before} before, {after} after" if known else ""
         return (
             f"{self.kind} point at load factor {self.factor:.6g} (step {self.step}, increment "
-            f"{self.increment}; negative pivots {before} before, {after} after)"
+            f"{self.increment}{pivots})"
         )
 
 

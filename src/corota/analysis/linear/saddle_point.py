@@ -11,7 +11,7 @@ the rest in; where they do not converge, a factorisation LU of the whole does.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -191,6 +191,12 @@ class Bordered:
             Negative pivots, -1 if unknown.
         """
         system, link = self.system, at.link
+        if at.load_stiffness is not None and not (system.held_for_sure or at.heft):
+            # Loads that follow give a free motion stiffness that is none.
+            bare = replace(at, load_stiffness=None)
+            self.solve(bare, coupling, np.zeros_like(force), np.zeros_like(rhs), 0.0 * du_held)
+            system.held_for_sure = True
+        system.link = link
         held = np.zeros(self.size, bool)
         held[: self.nf] = system.conditions.held[self.free]
         with system.timed("border"):
@@ -293,7 +299,8 @@ class Bordered:
         if not 0 <= equation < self.nf:
             return SingularError("the constraints of contact depend on each other")
         own = None if mode is None else np.asarray(mode).reshape(self.size, -1)[: self.nf]
-        return self.system.singular(SingularError(str(error), equation, own))
+        every = None if error.modes is None else np.asarray(error.modes)[:, : self.nf]
+        return self.system.singular(SingularError(str(error), equation, own, every))
 
     def _load(self, at: Evaluation) -> Triplets:
         """Minus the derivative of the external force."""

@@ -84,6 +84,7 @@ class MaskedLu:
     def __init__(self) -> None:
         self._solver = Faer(symmetric=False)
         self._indptr = self._indices = np.zeros(0, np.int64)
+        self._held = np.zeros(0, bool)
 
     def factorize(self, matrix: Any, held: NDArray[np.bool_], node: Ints) -> None:
         """Factorise a scipy CSC matrix with the rows and columns of held dofs made diagonal.
@@ -104,9 +105,11 @@ class MaskedLu:
         own = np.flatnonzero((rows == columns) & held[columns])
         size = np.abs(matrix.data[own])
         data[own] = np.where(size > 0.0, size, 1.0)
-        if not self._same(matrix):
+        if not self._same(matrix) or not np.array_equal(held, self._held):
+            # What is held anew, or no more, is looked at for free motions with the pattern.
             self._solver.analyze(matrix.indptr, matrix.indices, node)
             self._indptr, self._indices = matrix.indptr, matrix.indices
+            self._held = held.copy()
         self._solver.factorize(data)
 
     def _same(self, matrix: Any) -> bool:

@@ -90,9 +90,20 @@ class Inertia:
             self.light &= self.attached.mass == 0.0
         coupled = kind == "consistent" and bool(system.is_rotation.any())
         zero = np.zeros(system.n_dofs)
-        self.matrix: Floats | None = None
-        if not coupled:
-            self.matrix = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
+        values = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
+        self.matrix: Floats | None = None if coupled else values
+        self._own = np.abs(values[self.attached.diagonal])
+        moves = self._own[~system.is_rotation]
+        self._largest = float(moves.max(initial=0.0))
+
+    def weigh(self, at: Evaluation, du: Floats, weight: float) -> None:
+        """Tell an evaluation the sizes of inertia: `weight` times the mass of a change `du`."""
+        at.heft = weight * self._largest
+        terms = weight * self._own * np.abs(du)
+        turn = self.system.is_rotation
+        at.momentum = float(terms[~turn].max(initial=0.0))
+        if turn.any():
+            at.momentum = max(at.momentum, float(terms[turn].max()) / self.system.length)
 
     def settle(self, begin: Moving, end: Moving, dt: float) -> None:
         """Give displacements without mass the mean velocity of the increment, in place.
@@ -285,6 +296,7 @@ class NewmarkMotion:
             at.load_stiffness = (rows, columns, share * values)
         weights = (share, share * self.c_v, share * self.c_a)
         force = self.inertia.add(at, u, v, a, weights)
+        self.inertia.weigh(at, u - self.start.u, weights[2])
         damping = self.inertia.damping(at, u, v, share * self.c_v, self.rayleigh, self.stiffness)
         self.end = Moving(u, v, a, internal, external, force, damping, at.link, carried)
         at.internal = share * (internal + damping + force)
@@ -364,10 +376,13 @@ class ConservingMotion:
         v = 2.0 / dt * d - begun
         a = (v - begun) / dt
         attached = self.inertia.attached
-        force += attached.mass * a
+        hung = attached.mass * a
+        force += hung
+        scale += np.abs(hung)
         values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
         link = None if system.ties is None else system.ties.secant(b.u, u)
         at = Evaluation(force, external, scale, values, stiffness, link)
+        self.inertia.weigh(at, d, 2.0 / (dt * dt))
         damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
         at.internal = force + damping
         held = self.driven.held

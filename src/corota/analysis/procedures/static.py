@@ -6,11 +6,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from corota.analysis.equations import Evaluation
 from corota.analysis.increments import Increments
 from corota.analysis.newton import Outcome, Settings, newton
 from corota.analysis.procedures.localization import softening
 from corota.analysis.procedures.path.arc_length import path_step
+from corota.analysis.procedures.stopping import at_limit, collapse, driven, reason
 from corota.analysis.terms.contact.newton import newton_with_contact
 from corota.errors import (
     ConvergenceError,
@@ -24,7 +27,6 @@ from corota.results.observer import Iteration
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
@@ -63,6 +65,7 @@ def static_step(
         return
     control = Increments(step, stops)
     settings = Settings(step.tolerance, step.max_iterations)
+    first = rate = 0.0  # displacement per time, of the first increment and the last
     while not control.finished:
         if control.number >= step.max_increments:
             raise ConvergenceError(
@@ -97,6 +100,8 @@ def static_step(
             outcome = Outcome(False, state.u, None, reason=f"the tangent is singular: {error}")
         count = state.counters
         count["iterations"] = count.get("iterations", 0) + outcome.iterations
+        if outcome.converged and (problem := system.scales.senseless(outcome.u)):
+            outcome.converged, outcome.reason = False, problem
         grown = 0.0
         if outcome.converged and step.plastic_increment:
             grown = system.plastic_increment()
@@ -111,19 +116,23 @@ def static_step(
             softer = outcome.negative > max(state.negative, 0)
             end = control.cut(target)
             if (end or (softer and control.attempt > STALLED)) and _go_along_path(
-                system, step, number, state, observers, save, control
+                system, step, number, state, observers, save, control, (first, rate)
             ):
                 return
             if end:
-                raise ConvergenceError(_reason(system, number, control, outcome, state, end))
+                raise ConvergenceError(
+                    reason(system, number, control, outcome, state, end, (first, rate))
+                )
             observers.cut_back(
                 number, control.number + 1, control.attempt - 1, outcome.reason, control.size
             )
             continue
         if system.touching is not None:
             state.notes += touching.accept(outcome.u, target)
-        _accept(system, state, outcome, target)
         dt = target - control.time
+        rate = float(np.abs(outcome.u - state.u).max(initial=0.0)) / dt
+        first = first or rate
+        _accept(system, state, outcome, target)
         attempts = control.attempt
         control.accept(target, outcome.iterations)
         if grown > 0.0 and not step.fixed_increments:
@@ -153,6 +162,7 @@ def _go_along_path(
     observers: Observers,
     save: Callable[[State, int, float, dict[str, float]], None],
     control: Increments,
+    rates: tuple[float, float],
 ) -> bool:
     """Go on by arc length from where load control stalls; False where that is no help.
 
@@ -176,23 +186,36 @@ def _go_along_path(
         largest_increment=0.0,
         fixed_increments=False,
     )
-    before = control.number
+    before, here = control.number, state.u
+    kept = [control.time / step.period]
+
+    def keep(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
+        kept.append(factor)
+        save(state, increment, factor, scalars)
+
     try:
         limit = path_step(
-            system, along, number, state, observers, save, path,
+            system, along, number, state, observers, keep, path,
             factor=control.time / step.period, increment=before,
         )  # fmt: skip
-    except (ConvergenceError, SingularError, ModelError):
+    except (ConvergenceError, SingularError, ModelError) as error:
+        if state.u is not here:
+            # The states that the path found are kept: there the step stops.
+            factor = kept[-1]
+            said = str(error).removesuffix(". All converged increments are kept")
+            fails = ""
+            if not driven(system, step, state):
+                fails = collapse(system, number, factor, rates, said)
+            raise ConvergenceError(
+                f"{fails + '. ' if fails else ''}step {number} stopped at step time "
+                f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
+                f"{said}{softening(system.blocks)}. All converged increments are kept"
+            ) from None
         return False
     state.counters["arc length took over"] = 1
     if limit is None:
         return True
-    raise ConvergenceError(
-        f"limit point at load factor {limit.factor:.6g} of step {number}: in equilibrium the "
-        "structure carries no more this way. The states up to it are kept; to go on, follow "
-        "the path (Static(path=ArcLength(...)) or at_limit='follow', *STATIC, RIKS), prescribe "
-        "a displacement instead of the load, or compute the jump as dynamics"
-    )
+    raise ConvergenceError(at_limit(system, step, number, limit.factor, state))
 
 
 def _with_loads(system: System, at: Evaluation, u: Floats, time: float) -> Evaluation:
@@ -243,30 +266,3 @@ def iteration_reporter(
         )
 
     return report
-
-
-def _reason(
-    system: System,
-    number: int,
-    control: Increments,
-    outcome: Outcome[Evaluation],
-    state: State,
-    end: str,
-) -> str:
-    """Say what happened, where, why, and what helps."""
-    period = control.step.period
-    where = (
-        f"step {number} stopped at step time {control.time:g} of {period:g} "
-        f"(load factor {control.time / period:.6g}): {end}; last attempt: {outcome.reason}"
-    )
-    if outcome.at is not None:
-        judged = system.judge(outcome.at, outcome.u)
-        where += f"; largest residual at {system.describe(judged.worst)}"
-    if outcome.negative > 0:
-        where += (
-            f". The tangent has {outcome.negative} negative pivot"
-            f"{'s' if outcome.negative > 1 else ''}: a limit or bifurcation point lies just "
-            "ahead, the structure cannot carry more this way; prescribe a displacement "
-            "instead of the load"
-        )
-    return where + softening(system.blocks) + ". All converged increments are kept"

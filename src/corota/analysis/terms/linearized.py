@@ -330,7 +330,7 @@ class Linearized:
                 shown = self.from_active(np.asarray(mode, float).reshape(len(a), -1)[:, 0])[
                     : self.nf
                 ]
-            self.system._link = self.link
+            self.system.link = self.link
             raise self.system.singular(SingularError(str(error), int(a[equation]), shown)) from None
 
 

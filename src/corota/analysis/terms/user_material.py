@@ -24,6 +24,10 @@ SETTLED = 1e-9
 MAX_CALLS = 30
 
 
+#: What failed where the function of a material returns what is not finite.
+NO_NUMBER = "the function of the material gives stress or tangent that is no number"
+
+
 @dataclass
 class _Block:
     index: int
@@ -115,6 +119,11 @@ class UserBlocks:
         stress, tangent, block.trial, extra = block.material.call(
             strain, block.committed, block.plane
         )
+        right = np.isfinite(stress).all(axis=(1, 2)) & np.isfinite(tangent).all(axis=(1, 2, 3))
+        if not right.all():
+            # As the core names elements that failed: they may not at a shorter increment.
+            wrong = [(block.index, int(e)) for e in np.flatnonzero(~right)]
+            raise RuntimeError(NO_NUMBER, wrong)
         values = np.zeros((*block.shape, 16))
         values[..., :3], values[..., 3:6] = strain, stress
         symmetric = 0.5 * (tangent + np.swapaxes(tangent, -1, -2))

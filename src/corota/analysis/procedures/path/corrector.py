@@ -176,6 +176,11 @@ def _search(
             done.reason = str(error)
             return at
         before, judged = judged, system.judge(at, u)
+        settled = judged.size <= settings.tolerance
+        if not settled and before is not None and judged.size >= 0.1 * before.size:
+            settled = judged.rounding(settings.tolerance)
+            if settled:
+                judged.force, judged.moment = judged.honest
         done.sizes.append(judged.size)
         done.iterations = iteration
         if iteration and report is not None:
@@ -183,8 +188,7 @@ def _search(
         if not np.isfinite(judged.size):
             done.reason = "the residual is not finite"
             return at
-        stalled = before is not None and judged.size >= 0.1 * before.size
-        if judged.size <= settings.tolerance or (stalled and judged.rounding(settings.tolerance)):
+        if settled:
             done.point = Point(u, factor, at)
             return at
         if iteration > 1 and judged.size > DIVERGED * max(best, 1e-6):

@@ -140,8 +140,8 @@ class SmoothPath:
         """Nothing is kept between attempts."""
 
     def refuse(self, at: Evaluation, u: Floats) -> str:
-        """Every equilibrium is taken."""
-        return ""
+        """A body that nothing holds and that is far away is in no equilibrium."""
+        return self.system.scales.senseless(u)
 
     def explain(self, at: Evaluation) -> str:
         """The residual says all."""

@@ -127,6 +127,7 @@ class TouchingSystem:
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
         self.single = self.sliding = self.corrections = 0
+        self.loose = ""  # what nothing held until contact was closed for it
         self.senses: dict[int, Floats] = {}  # of slipping tractions, by the pair's first multiplier
 
     # -- the protocol of Newton's method -----------------------------------------------
@@ -144,6 +145,7 @@ class TouchingSystem:
         at.scale = at.scale + self.weight * touch.size
         if touch.damping is not None:
             at.internal += touch.damping * (u - self.touching.u)
+            at.added = touch.damping
             at.values[self.system.indptr[1:].astype(np.int64) - 1] += touch.damping
         return Touched(at, touch)
 
@@ -151,14 +153,11 @@ class TouchingSystem:
         """Size of the residual, of equilibrium and of the contact conditions."""
         judged: Judgement = self.inner.judge(at.at, z[: self.n])
         lack, pair, constraint = self.lack(at)
-        # Where nothing is loaded yet, forces of rounding size are the measure.
-        force = max(self.system.force_scale, self.system.nothing)
-        size = lack / force if force > 0.0 else float(lack > 0.0)
-        if size > judged.force:
+        before = judged.force
+        self.system.scales.add_lack(judged, lack)
+        if judged.force > before:
             node = self.touching.pairs[pair].nodes[constraint]
             judged.worst = int(self.system.start[node])
-            # Where all surfaces part the forces vanish, and with them the measure.
-            judged.force = max(judged.force, min(size, 1.0))
         return judged
 
     def release(self, at: Touched) -> None:
@@ -327,7 +326,7 @@ class TouchingSystem:
                 du, dp, negative = self._solve(at, tried, asked)
             except SingularError:
                 continue
-            self.last = tried
+            self.last, self.loose = tried, str(error)
             return du, dp, negative, tried
         open_pairs = [
             pair.name for pair, s in zip(self.touching.pairs, states, strict=True)
@@ -492,7 +491,14 @@ class TouchingSystem:
         return settled
 
     def refuse(self, at: Touched, z: Floats) -> str:
-        """Why an equilibrium is not taken, or nothing: nodes went through the other surface."""
+        """Why an equilibrium is not taken, or nothing.
+
+        Nodes went through the other surface, or a body that nothing holds is far away.
+        """
+        if self.inner is self.system:
+            far: str = self.system.scales.senseless(z)
+            if far:
+                return far
         if not self.system.turning:
             return ""
         old, new = self.touching.positions(self.touching.u), self.touching.positions(z[: self.n])
@@ -551,6 +557,8 @@ class TouchingSystem:
                 said += "; friction does not hold the bodies: they slide"
             if self.single:
                 said += f"; {self.single} single changes were tried"
+        if self.loose:
+            said += f"; where contact does not press, {self.loose}"
         return said
 
 

@@ -1,0 +1,115 @@
+"""Why a static step stopped, in words, and advice that fits what was done."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.procedures.localization import softening
+from corota.model.plasticity import Mises
+
+if TYPE_CHECKING:
+    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.increments import Increments
+    from corota.analysis.newton import Outcome
+    from corota.analysis.state import State
+    from corota.model.steps import Static, Step
+
+#: Displacement per load that has grown by this factor since the first increment is collapse.
+SOFT = 10.0
+#: Words by which a tangent without stiffness is told.
+FREE = "can move freely"
+
+
+def driven(system: System, step: Step, state: State) -> bool:
+    """Whether supports move in the step."""
+    held = system.conditions.held
+    ends = [system.conditions.prescribed(t, state.u)[held] for t in (0.0, step.period)]
+    return bool(np.any(ends[0] != ends[1]))
+
+
+def at_limit(system: System, step: Static, number: int, factor: float, state: State) -> str:
+    """Message of a limit point."""
+    ways = []
+    if step.at_limit == "stop":
+        ways.append(
+            "follow the path (Static(path=ArcLength(...)) or at_limit='follow', *STATIC, RIKS)"
+        )
+    if not driven(system, step, state):
+        ways.append("prescribe a displacement instead of the load")
+    ways.append("compute the jump as dynamics")
+    return (
+        f"limit point at load factor {factor:.6g} of step {number}: in equilibrium the structure "
+        "carries no more this way. The states up to it are kept; to go on, "
+        + (", ".join(ways[:-1]) + f", or {ways[-1]}" if len(ways) > 1 else ways[0])
+    )
+
+
+def collapse(
+    system: System, number: int, factor: float, rates: tuple[float, float], why: str
+) -> str:
+    """What to say of plastic collapse under loads, or nothing where it is none.
+
+    Parameters
+    ----------
+    rates : tuple of float
+        Displacement per unit of time in the first and in the last increment of the step.
+    why : str
+        Why the last attempt failed: where all yields at once, by a mechanism.
+    """
+    grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
+    yields = any(isinstance(b.section.material, Mises) for b in system.blocks)
+    if not yields or not (grown > SOFT or (grown > 0.0 and FREE in why)):
+        return ""
+    how = f", where displacements grow {grown:.0f} times as fast as at first" * (grown > SOFT)
+    return (
+        f"plastic collapse: the limit load of step {number} is reached at load factor "
+        f"{factor:.6g}{how}; yielding makes the structure a mechanism that carries no more"
+    )
+
+
+def reason(
+    system: System,
+    number: int,
+    control: Increments,
+    outcome: Outcome[Evaluation],
+    state: State,
+    end: str,
+    rates: tuple[float, float],
+) -> str:
+    """Say what happened, where, why, and what helps.
+
+    Parameters
+    ----------
+    rates : tuple of float
+        Displacement per unit of time in the first and in the last increment of the step.
+    """
+    period = control.step.period
+    moves = driven(system, control.step, state)
+    instead = "" if moves else "; prescribe a displacement instead of the load"
+    where = (
+        f"step {number} stopped at step time {control.time:g} of {period:g} "
+        f"(load factor {control.time / period:.6g}): {end}; last attempt: {outcome.reason}"
+    )
+    collapses = (
+        "" if moves else collapse(system, number, control.time / period, rates, outcome.reason)
+    )
+    if collapses:
+        where = f"{collapses}: {end}; last attempt: {outcome.reason}"
+    if outcome.at is not None:
+        judged = system.judge(outcome.at, outcome.u)
+        where += f"; largest residual at {system.describe(judged.worst)}"
+    if outcome.negative > 0:
+        where += (
+            f". The tangent has {outcome.negative} negative pivot"
+            f"{'s' if outcome.negative > 1 else ''}: a limit or bifurcation point lies just "
+            f"ahead, the structure cannot carry more this way{instead}"
+        )
+    elif collapses:
+        where += ". To see beyond, prescribe a displacement instead of the load"
+    return where + softening(system.blocks) + ". All converged increments are kept"
+
+
+__all__ = ["at_limit", "collapse", "driven", "reason"]

@@ -1,0 +1,204 @@
+"""How large a residual may be: its scale, its rounding, and displacements without sense.
+
+The scale of a residual must not grow with the failure it is to tell. It is the largest of
+external forces, element forces, contact forces and inertia forces, here and in the committed
+state. What is above the tolerance counts as rounding if it is no more than rounding of the
+positions makes of it at the dof's own stiffness, and never above a millionth of the scale.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.newton import FLOOR, Judgement, larger
+from corota.model import elements
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import Evaluation, System
+
+    Floats = NDArray[np.float64]
+
+#: Forces below this many rounding errors of the coordinates are none.
+NOTHING = 1e3
+#: Rounding counts as such up to this share of all that acts, and where nothing is loaded up to
+#: forces of none this many times over.
+LARGEST_NOISE, FARTHEST = 1e-6, 10.0
+#: Share of the moments over the size of the model that forces are measured by at least, and
+#: of the forces times that size for moments: either may vanish altogether.
+LEAST = 1e-6
+#: A body that moves this many sizes of the model and supports is held by nothing.
+FAR = 1e3
+EPS = float(np.finfo(float).eps)
+
+
+class Scales:
+    """Sizes that residuals of a system are compared with.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    stiffest : float
+        Largest stiffness of a displacement at the start; elements alone [force/length].
+    ratio : float
+        Of the largest and the smallest of these.
+    tolerance : float
+        Of the current step.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.stiffest, self.ratio = 0.0, 1.0
+        self.tolerance = 1e-9
+        #: Of the state judged last: inertia per displacement [force/length], all that acts, the
+        #: largest rounding and the rounding of the stiffest dof [force].
+        self._heft = self.whole = self._most = self._noise = 0.0
+        #: Largest force and moment of the state judged last, and of the committed one.
+        self._sizes = self._committed = [0.0, 0.0]
+        self._begun: Floats | None = None
+        self._bodies = any(not elements.find(b.section.element).line for b in system.blocks)
+
+    def begin(self, tolerance: float, u: Floats) -> None:
+        """Start a step at a displacement."""
+        self.tolerance, self._begun = tolerance, u.copy()
+
+    def measure(self, values: Floats) -> None:
+        """Take the stiffness from a tangent of the elements, before anything is added to it."""
+        diagonal = np.abs(self._diagonal(values))[~self.system.is_rotation]
+        self.stiffest = float(diagonal.max(initial=0.0))
+        some = diagonal[diagonal > 0.0]
+        self.ratio = self.stiffest / float(some.min()) if len(some) else 1.0
+
+    def _diagonal(self, values: Floats) -> Floats:
+        out: Floats = values[self.system.indptr[1:].astype(np.int64) - 1]
+        return out
+
+    def commit(self) -> None:
+        """The state judged last is accepted."""
+        self._committed = self._sizes
+
+    @property
+    def nothing(self) -> float:
+        """Force that rounding of the coordinates alone would give."""
+        return NOTHING * EPS * (self.stiffest + self._heft) * self.system.length
+
+    @property
+    def force(self) -> float:
+        """Largest force of the state judged last or of the committed one."""
+        return max(self._sizes[0], self._committed[0])
+
+    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+        """Size of the residual against its scale, forces and moments apart.
+
+        The committed state counts because a body that is unloaded altogether has no forces of
+        its own to compare with. In motion `at.momentum` is the largest of the terms that the
+        acceleration is a difference of: it measures rounding, not the residual.
+        """
+        system, length = self.system, self.system.length
+        scale, internal, external = at.scale, at.internal, at.external
+        if at.link is not None:
+            internal = system.reaction(at)
+            scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
+        self._sizes, residual, worst, displacement = system.core.sizes(
+            internal, scale, external, u, system.conditions.held, at.link is None
+        )
+        self._heft = at.heft
+        force = larger(self._sizes[0], self._committed[0])
+        moment = larger(self._sizes[1], self._committed[1])
+        moment, force = max(moment, LEAST * force * length), max(force, LEAST * moment / length)
+        self.whole = whole = max(force, moment / length, at.momentum)
+        # Rotations round like the displacements they give an element.
+        moved = max(displacement[0], system.cell_size * displacement[1])
+        self._noise = EPS * (self.stiffest + at.heft) * moved
+        loaded = bool(at.external.any())
+        if whole <= self.nothing and not loaded:
+            # A slow motion may be as small as that: nothing is known before a correction.
+            return Judgement(0.0, 0.0, 0.0, 0, idle=at.heft > 0.0 and bool(max(residual)))
+        relative = (_ratio(residual[0], force), _ratio(residual[1], moment))
+        judged = Judgement(*relative, 0.0, worst[0] if relative[0] >= relative[1] else worst[1])
+        judged.honest = (_ratio(residual[0], whole), _ratio(residual[1], whole * length))
+        most = LARGEST_NOISE * whole
+        if not loaded:
+            most = max(most, FARTHEST * self.nothing)
+        self._most = most
+        if judged.size > self.tolerance and max(residual[0], residual[1] / length) <= most:
+            excess = self._beyond_noise(at, internal, moved, force, moment)
+            judged.floor, judged.moment_floor = (
+                r / e if e > 0.0 else r for r, e in zip(relative, excess, strict=True)
+            )
+        return judged
+
+    def _beyond_noise(
+        self, at: Evaluation, internal: Floats, moved: float, force: float, moment: float
+    ) -> tuple[float, float]:
+        """Residuals above the tolerance over their rounding, the largest of each kind."""
+        system = self.system
+        if not len(at.values):
+            return np.inf, np.inf
+        left = np.abs(internal if at.link is not None else internal - at.external)
+        left[system.conditions.held] = 0.0
+        stiffness = self._diagonal(at.values)
+        if at.added is not None:
+            stiffness = stiffness - at.added
+        noise = EPS * moved * np.abs(stiffness)
+        turn = system.is_rotation
+        noise[turn] /= system.cell_size
+        if at.link is not None:
+            noise = at.link.gather_sizes(noise)
+        out = []
+        for mask, size in ((~turn, force), (turn, moment)):
+            above = left[mask] > self.tolerance * size
+            over = left[mask][above] / np.maximum(noise[mask][above], np.finfo(float).tiny)
+            out.append(float(over.max(initial=0.0)))
+        return out[0], out[1]
+
+    def add_lack(self, judged: Judgement, lack: float) -> None:
+        """Judge what contact conditions lack, as a force, with the residual judged last."""
+        # Where nothing is loaded yet, and where all surfaces part, forces of rounding size are
+        # the measure.
+        force = max(self.force, self.nothing)
+        judged.force = max(judged.force, min(_ratio(lack, force), 1.0))
+        least, moment = judged.honest
+        judged.honest = (max(least, _ratio(lack, max(self.whole, self.nothing))), moment)
+        if judged.force > self.tolerance:
+            # The stiffness by which gaps become forces is that of the nodes.
+            rounding = min(self._noise, self._most / FLOOR)
+            judged.floor = max(judged.floor, _ratio(rounding, force))
+
+    def senseless(self, u: Floats) -> str:
+        """Why a static displacement makes no sense, or nothing.
+
+        What is held moves at most as its supports and its own deformation do.
+        """
+        system = self.system
+        if not self._bodies or not (system.turning or system.touching is not None):
+            return ""
+        begun = np.zeros(system.n_dofs) if self._begun is None else self._begun
+        moved = np.where(system.is_rotation, 0.0, np.abs(u[: system.n_dofs] - begun))
+        held = moved[system.conditions.held].max(initial=0.0)
+        far = FAR * (system.length + float(held))
+        worst = int(moved.argmax())
+        if moved[worst] <= far:
+            return ""
+        node = system.model.mesh.node_labels[system.node_of_dof[worst]]
+        return (
+            f"node {node} moves by {moved[worst]:.3g}, {moved[worst] / system.length:.2g} times "
+            "the size of the model: its body can move freely, nothing holds it; add a support"
+        )
+
+
+def _ratio(size: float, scale: float) -> float:
+    """``size / scale`` where the scale may be zero."""
+    if scale == 0.0:
+        return 0.0 if size == 0.0 else np.inf
+    return size / scale
+
+
+__all__ = ["Scales"]

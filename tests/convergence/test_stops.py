@@ -1,0 +1,101 @@
+"""Stops say what stopped, where, and the way out; each has its exit code."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.cli import main
+from corota.model.paths import CriticalPoint
+from corota.model.steps import Static
+from support.models import cell
+
+DECKS = Path(__file__).parent / "decks"
+
+
+@pytest.mark.parametrize("name", ["explicit_element_failure", "recover_nan"])
+def test_elements_beyond_sense_are_no_internal_error(name, tmp_path, capsys):
+    shutil.copy(DECKS / f"{name}.inp", tmp_path / "job.inp")
+    code = main(["run", str(tmp_path / "job.inp"), "--output", str(tmp_path), "--quiet"])
+    text = capsys.readouterr().err
+    assert code == 4, text
+    assert "element " in text
+    assert "internal error" not in text
+
+
+@pytest.mark.parametrize("element", ["T3", "Q4I", "Q4D", "Q8"])
+@pytest.mark.parametrize("wrong", ["stress", "tangent"])
+def test_a_user_material_that_gives_no_number_cuts_back_and_is_named(element, wrong):
+    c = np.array([[1000.0, 300.0, 0.0], [300.0, 1000.0, 0.0], [0.0, 0.0, 350.0]])
+
+    def law(strain, state, plane):
+        bad = np.nan if np.abs(strain).max() > 1e-4 else 1.0
+        stress = (strain @ c) * (bad if wrong == "stress" else 1.0)
+        tangent = np.broadcast_to(c, (*strain.shape, 3)) * (bad if wrong == "tangent" else 1.0)
+        return stress, tangent, state
+
+    mesh = ct.mesh.rectangle(2.0, 1.0, 2, 1, cell(element))
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.UserMaterial(law))
+    model.fix("left", rotation=True)
+    model.force("right", x=1.0)
+    with pytest.raises(ct.ConvergenceError, match=r"function of the material .* no number"):
+        ct.solve(model, Static(), threads=1)
+
+
+@pytest.mark.parametrize(("element", "share"), [("T6", 0.1), ("Q8", 0.2), ("Q9", 0.85)])
+def test_mid_side_nodes_beyond_the_quarter_points_are_refused(element, share):
+    mesh = ct.mesh.rectangle(1.0, 1.0, 1, 1, cell(element))
+    points = mesh.points.copy()
+    middle = np.flatnonzero((points == [0.5, 0.0]).all(axis=1))
+    points[middle, 0] = share
+    mesh.points = points
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=1.0, nu=0.3))
+    model.fix("left")
+    with pytest.raises(ct.errors.ModelError, match=r"mid-side node \d+ lies at"):
+        ct.solve(model, Static(), threads=1)
+    points[middle, 0] = 0.25  # as in elements at the tip of a crack
+    mesh.points = points
+    ct.solve(model, Static(), threads=1)
+
+
+@pytest.mark.parametrize("at_limit", ["stop", "follow"])
+def test_plastic_collapse_is_named_with_its_load(at_limit):
+    """Limit load of a bar: yield stress times area, 200 of 230 (closed form)."""
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1))
+    material = ct.Mises(E=2e5, nu=0.3, yield_stress=200.0)
+    model.section("all", element="Q4I", material=material)
+    model.fix("left", y=None)
+    model.fix("bottom", x=None)
+    model.traction("right", x=230.0)
+    step = Static(first_increment=0.2, at_limit=at_limit)
+    with pytest.raises(ct.ConvergenceError, match="plastic collapse: the limit load") as error:
+        ct.solve(model, step, threads=1, fields=False)
+    last = error.value.results.frames[-1].factor
+    assert last == pytest.approx(200.0 / 230.0, rel=2e-3)
+    assert f"at load factor {last:.6g}" in str(error.value)
+
+
+def test_unknown_pivots_are_not_told():
+    point = CriticalPoint("limit", 1, 3, 0.5, np.zeros((1, 3)), 0.0, (-1, -1))
+    assert "pivots" not in str(point)
+    point = CriticalPoint("limit", 1, 3, 0.5, np.zeros((1, 3)), 0.0, (0, 1))
+    assert "negative pivots 0 before, 1 after" in str(point)
+
+
+def test_a_panic_of_the_core_is_an_internal_error(monkeypatch, capsys):
+    class PanicException(BaseException):  # the name under which the core's panics come
+        pass
+
+    def panics(args, terminal):
+        raise PanicException("index out of bounds")
+
+    monkeypatch.setattr("corota.cli.info.run", panics)
+    assert main(["info", "none.inp"]) == 70
+    assert "please report it" in capsys.readouterr().err
