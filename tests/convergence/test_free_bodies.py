@@ -74,14 +74,6 @@ def test_pressure_that_follows_holds_nothing(element, size):
         ct.solve(model, Static(), threads=1, fields=False)
 
 
-def test_all_motions_of_a_body_without_supports_are_named():
-    model = block()
-    model.pressure("top", 1.0)
-    with pytest.raises(ct.SingularError, match=r"can move in x, move in y and turn about") as error:
-        ct.solve(model, Static(), threads=1, fields=False)
-    assert error.value.modes.shape == (3, 2 * model.mesh.n_nodes)
-
-
 def test_a_hinged_body_can_turn_about_its_hinge():
     model = block()
     corner = int(np.flatnonzero((model.mesh.points == 0.0).all(axis=1))[0])
