@@ -15,7 +15,7 @@ from corota.io.finite import check_frame
 from corota.io.requests import due_now, left_over, wants_file
 from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.dat import check_requests, dat_blocks
-from corota.io.tables.dat_modes import buckling_table
+from corota.io.tables.dat_modes import buckling_table, eigenvalue_tables
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
 from corota.results.observer import Silent
 
@@ -130,7 +130,7 @@ class JobFiles(Silent):
         self._text: dict[str, TextFile] = {}
         endings = ["sta", "cvg", "jsonl"]
         printed = any(o.kind.endswith("print") for s in steps for o in s.outputs)
-        if printed or any(s.procedure == "buckle" for s in steps):
+        if printed or any(s.procedure in ("buckle", "frequency") for s in steps):
             endings.insert(0, "dat")
         for ending in endings:
             self._text[ending] = TextFile(self._path(name, ending))
@@ -307,7 +307,7 @@ class JobFiles(Silent):
             self._text["sta"].append(sta_line(frame, attempts, row["dt"]))
         self._csv.add(row)
         if "dat" in self._text:
-            self._text["dat"].append(buckling_table(frame))
+            self._text["dat"].append(buckling_table(frame) + eigenvalue_tables(frame))
         self._answer(due_now(self.model, self.steps, frame), frame)
         filed = wants_file(self.model, self.steps, frame)
         if filed:

@@ -150,6 +150,30 @@ def _scalars(lin: LinearMotion, modes: Modes) -> dict[str, float]:
         share = (shapes.T @ system.product(lin.mass_values, rigid)) ** 2 / total
         for k, value in enumerate(share, start=1):
             scalars[f"effective mass {'xy'[axis]} {k}"] = float(value)
+    return {**scalars, **_participation(lin, shapes)}
+
+
+def _participation(lin: LinearMotion, shapes: Floats) -> dict[str, float]:
+    """Participation of modes in rigid motions of the free dofs, and the mass of these.
+
+    As CalculiX prints them: along x, y and about the origin, what is held stays at rest.
+    """
+    system = lin.system
+    x = system.model.mesh.points
+    one, zero = np.ones(len(x)), np.zeros(len(x))
+    fields = {
+        "x": np.stack([one, zero, zero], axis=1),
+        "y": np.stack([zero, one, zero], axis=1),
+        "rotation": np.stack([-x[:, 1], x[:, 0], one], axis=1),
+    }
+    scalars: dict[str, float] = {}
+    for name, field in fields.items():
+        rigid = system.from_nodes(field.ravel())
+        rigid[system.conditions.held] = 0.0
+        force = system.product(lin.mass_values, rigid)
+        for k, value in enumerate(shapes.T @ force, start=1):
+            scalars[f"participation {name} {k}"] = float(value)
+        scalars[f"moving mass {name}"] = float(rigid @ force)
     return scalars
 
 
