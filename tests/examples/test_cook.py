@@ -26,6 +26,8 @@ ROWS = {
     "Q9": (23.2887, 23.8397, 23.9254, 23.9494),
 }
 ROUNDED = {"Q4D": (22.27, 23.36, 23.77, 23.90)}
+#: Not conforming, and by accident closer on 2 cells a side (0.8 %) than on 4 (0.9 %).
+ACCIDENTAL = {"Q4DI": 1}
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +59,7 @@ def test_linear_rows_of_drilling_elements(linear: dict, element: str) -> None:
 def test_finer_meshes_are_softer_and_approach_the_reference(
     cook: ModuleType, linear: dict, element: str
 ) -> None:
-    values = np.array(linear[element])
+    values = np.array(linear[element])[ACCIDENTAL.get(element, 0) :]
     assert (np.diff(values) > 0.0).all()
     errors = cook.REFERENCE - values
     assert errors[-1] < 0.6 * errors[-2]
@@ -67,7 +69,7 @@ def test_finer_meshes_are_softer_and_approach_the_reference(
 @pytest.mark.parametrize("element", elements.names())
 def test_large_rotation_approaches_the_same_limit(large: dict, element: str) -> None:
     """Limit 9.68620 of the Biot-linear continuum (biquadratic elements, 32 x 32)."""
-    errors = np.abs(np.array(large[element]) - 9.68620)
+    errors = np.abs(np.array(large[element]) - 9.68620)[ACCIDENTAL.get(element, 0) :]
     assert (np.diff(errors) < 0.0).all()
 
 

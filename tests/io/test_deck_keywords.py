@@ -78,7 +78,8 @@ def test_empty_fields_are_zero_and_comments_are_skipped(tmp_path: Path) -> None:
         ("CPS8R", "Q8R", "stress", 8), ("CPE8R", "Q8R", "strain", 8),
         ("S3", "T3", "stress", 3), ("S4", "Q4", "stress", 4),
         ("T3", "T3", "stress", 3), ("T6", "T6", "stress", 6), ("Q4", "Q4", "stress", 4),
-        ("Q4I", "Q4I", "stress", 4), ("Q4D", "Q4D", "stress", 4), ("OPT", "OPT", "stress", 3),
+        ("Q4I", "Q4I", "stress", 4), ("Q4S", "Q4S", "stress", 4), ("Q4R", "Q4R", "stress", 4),
+        ("Q4D", "Q4D", "stress", 4), ("Q4DI", "Q4DI", "stress", 4), ("OPT", "OPT", "stress", 3),
         ("Q8", "Q8", "stress", 8), ("Q8R", "Q8R", "stress", 8), ("Q9", "Q9", "stress", 9),
     ],
 )  # fmt: skip
@@ -101,6 +102,24 @@ def test_element_names(tmp_path: Path, deck: str, element: str, plane: str, size
     assert model.mesh.cells[0].nodes.tolist() == [list(range(size))]
     assert model.mesh.cells[0].labels.tolist() == [5]
     assert (model.sections[0].element, model.sections[0].plane) == (element, plane)
+
+
+@pytest.mark.parametrize(
+    ("deck", "literal"), [("CPS4R", "Q4R"), ("CPE4R", "Q4R"), ("S4R", "Q4R"), ("CPS4I", "Q4I")]
+)
+def test_reduced_integration_is_literal_where_it_is_asked_for(
+    tmp_path: Path, deck: str, literal: str
+) -> None:
+    """Claim: what stands for CPS4R is named in a note; as_written takes it literally."""
+    nodes = "1,0,0\n2,2,0\n3,2,2\n4,0,2\n"
+    text = f"*NODE\n{nodes}*ELEMENT, TYPE={deck}, ELSET=eall\n5, 1, 2, 3, 4\n{SECTION}"
+    path = tmp_path / "literal.inp"
+    path.write_text(text)
+    assert ct.read(path, as_written=True).sections[0].element == literal
+    model = ct.read(path)
+    assert model.sections[0].element == "Q4I"
+    assert any(f"{deck} becomes Q4I" in n for n in model.notes) == (deck != "CPS4I")
+    assert ct.read(path, element_map={deck: "Q4D"}, as_written=True).sections[0].element == "Q4D"
 
 
 def test_a_long_element_line_continues_after_a_comma(tmp_path: Path) -> None:

@@ -66,6 +66,20 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     /// Names of its resultants, at most four; line elements only.
     const OUTPUTS: &'static [&'static str] = &[];
 
+    /// Whether the volume can stay constant (plastic flow, Poisson's ratio of a half) in plane
+    /// strain without locking.
+    const FREE_VOLUME: bool = false;
+    /// Cells through the width of a slender part below which the element is too stiff in bending;
+    /// 0 for none.
+    const BENDING_CELLS: usize = 0;
+    /// Whether nonlinear strains are linear about the mean gradient, see
+    /// [`crate::kinematics::about_mean`].
+    const ABOUT_MEAN: bool = false;
+
+    /// Numbers of history of the element as a whole, beside those of its points, where the law
+    /// has a history.
+    const MEMORY: usize = 0;
+
     type Op<T: Real>: Operator<T, N, M>;
     /// What is computed once per element before its points.
     type Prepared<T: Real>: Copy;
@@ -95,6 +109,12 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         point: &Point<N>,
     ) -> Sample<T, Self::Op<T>, A>;
 
+    /// Operator of the mean gradient, of elements with [`Element::ABOUT_MEAN`]; internal modes
+    /// must not have one.
+    fn mean<T: Real>(_x: &Nodal<T, N, 2>, _prepared: &Self::Prepared<T>) -> Self::Op<T> {
+        unreachable!("an element that is linear about the mean gradient gives its operator")
+    }
+
     /// Area (length of line elements) that belongs to a point.
     #[inline(always)]
     fn measure<T: Real>(x: &Nodal<T, N, 2>, point: &Point<N>) -> T {
@@ -112,6 +132,17 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         out: &mut Local<T, N, M>,
     ) {
         integrate::local_into::<Self, T, N, M, A>(x, q, section, history, tangent, out);
+    }
+    /// Energy of what keeps an element of a reduced rule from deforming freely between its points;
+    /// `memory` of the state, empty where the law has none.
+    #[inline(always)]
+    fn stabilization<T: Real>(
+        _x: &Nodal<T, N, 2>,
+        _q: &Nodal<T, N, M>,
+        _section: &Section<N>,
+        _memory: &[f64],
+    ) -> T {
+        T::zero()
     }
     /// Resultants of line elements with an initial axial strain.
     fn resultants(

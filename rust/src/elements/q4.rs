@@ -12,6 +12,7 @@ pub struct Q4;
 impl Element<4, 2, 0> for Q4 {
     const NAME: &'static str = "Q4";
     const CELL: &'static str = "quad4";
+    const BENDING_CELLS: usize = 8;
     type Op<T: Real> = Grad<T, 4>;
     type Prepared<T: Real> = ();
 

@@ -14,13 +14,14 @@ pub struct Q4i;
 /// Inverse Jacobian and determinant at the centre.
 #[derive(Clone, Copy)]
 pub struct Centre<T> {
-    inverse: [[T; 2]; 2],
+    pub inverse: [[T; 2]; 2],
     det: T,
 }
 
 impl Element<4, 2, 2> for Q4i {
     const NAME: &'static str = "Q4I";
     const CELL: &'static str = "quad4";
+    const FREE_VOLUME: bool = true;
     type Op<T: Real> = Grad<T, 4>;
     type Prepared<T: Real> = Centre<T>;
 

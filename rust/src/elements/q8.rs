@@ -40,6 +40,7 @@ pub struct Q8r;
 impl Element<8, 2, 0> for Q8r {
     const NAME: &'static str = "Q8R";
     const CELL: &'static str = "quad8";
+    const FREE_VOLUME: bool = true;
     const HOURGLASS: usize = 1;
     type Op<T: Real> = Grad<T, 8>;
     type Prepared<T: Real> = ();

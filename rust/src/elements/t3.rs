@@ -12,6 +12,7 @@ pub struct T3;
 impl Element<3, 2, 0> for T3 {
     const NAME: &'static str = "T3";
     const CELL: &'static str = "tri3";
+    const BENDING_CELLS: usize = 16;
     type Op<T: Real> = Grad<T, 3>;
     type Prepared<T: Real> = ();
 

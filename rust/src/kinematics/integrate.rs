@@ -2,10 +2,12 @@
 //! written once for every element, material and local strain.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::about_mean::AboutMean;
 use super::dilatation::Dilatation;
 use super::local_strain::LocalStrain;
+use super::modes::{condense, relax};
 use crate::base::Real;
-use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_forward, ldlt_solve, nodal};
+use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
 use crate::elements::{Element, Operator, Point, Sample};
 use crate::materials::{Law, Plane, PointState};
 
@@ -13,17 +15,8 @@ use crate::materials::{Law, Plane, PointState};
 /// of an element flow alike without hardening, a mode may have none at all; then its coupling
 /// with the nodes vanishes too, and the lifted pivot only keeps it where it is.
 const LEAST_PIVOT: f64 = 1e-6;
-/// Longest first step of an internal mode, relative to the largest local dof.
-const MODE_STEP: f64 = 2.0;
-/// Share of its slope at the start beyond which a step has run past the minimum.
-const OVERSHOT: f64 = 0.5;
 /// Most internal components of an element (two for each mode).
-const INTERNAL: usize = 4;
-/// Local iterations before the increment is given up.
-const MAX_LOCAL: usize = 50;
-/// Local step, relative to the largest local dof, below which one linear correction is exact
-/// to round-off (its error is the square of this).
-const LOCAL_STEP: f64 = 1e-8;
+pub(super) const INTERNAL: usize = 4;
 
 /// What all elements of a block share.
 #[derive(Clone, Debug)]
@@ -96,7 +89,7 @@ impl History<'_> {
     }
     /// Largest initial strain of the element.
     #[inline(always)]
-    fn largest<T: Real, const N: usize>(&self, section: &Section<N>) -> T {
+    pub(super) fn largest<T: Real, const N: usize>(&self, section: &Section<N>) -> T {
         let mut size = T::zero();
         if self.initial.is_empty() {
             return size;
@@ -109,6 +102,11 @@ impl History<'_> {
             size = size.max(self.spherical::<T, N>(p, section).scale(softness).abs());
         }
         size
+    }
+    /// History of the element as a whole.
+    #[inline(always)]
+    pub fn memory<const N: usize>(&mut self, section: &Section<N>) -> PointState<'_> {
+        self.point(section.points.len(), section.law.n_state())
     }
     #[inline(always)]
     fn point(&mut self, p: usize, members: usize) -> PointState<'_> {
@@ -185,21 +183,23 @@ fn mode_drill<T: Real>(mode: &[T; 2], i: usize) -> T {
 }
 
 /// Sums over the points for the internal modes; of the symmetric matrix the lower triangle.
-struct Internal<T: Real, const N: usize, const M: usize> {
-    force: [T; INTERNAL],
-    stiffness: Mat<T, INTERNAL>,
+pub(super) struct Internal<T: Real, const N: usize, const M: usize> {
+    pub(super) force: [T; INTERNAL],
+    pub(super) stiffness: Mat<T, INTERNAL>,
     /// Least pivots: see [`LEAST_PIVOT`].
-    least: [T; INTERNAL],
+    pub(super) least: [T; INTERNAL],
     /// Largest component of the stress.
-    stress: T,
-    coupling: [Nodal<T, N, M>; INTERNAL],
-    failed: T::Mask,
+    pub(super) stress: T,
+    pub(super) coupling: [Nodal<T, N, M>; INTERNAL],
+    /// Tangent of the material at the last point.
+    pub(super) tangent: Mat<T, 3>,
+    pub(super) failed: T::Mask,
 }
 
 /// One pass over the points. Adds to `out`, if given, nodal force and, with `tangent`, nodal
 /// stiffness; without it the coupling stays zero.
 #[inline(always)]
-fn pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
+pub(super) fn pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
     x: &Nodal<T, N, 2>,
     q: &Nodal<T, N, M>,
     alpha: &Nodal<T, A, 2>,
@@ -218,6 +218,7 @@ where
         least: [o; INTERNAL],
         stress: o,
         coupling: [nodal(); INTERNAL],
+        tangent: [[o; 3]; 3],
         failed: T::none(),
     };
     let members = section.law.n_state();
@@ -226,11 +227,13 @@ where
     let mut bar = section
         .mean_dilatation
         .then(|| Dilatation::<T, N, M>::new::<E, A>(x, q, &prepared, section));
-    if section.finite && (A > 0 || M == 3) && (N == 3 || N == 4) {
+    let mut about = AboutMean::<T, E::Op<T>, N, M>::new::<E, A>(x, q, &prepared, section);
+    if section.finite && (A > 0 || M == 3 || E::MEMORY > 0) && (N == 3 || N == 4) {
         sums.failed = folded(x, q);
     }
-    // Coupling of the internal modes with the mean trace.
+    // Coupling of the internal modes with the mean trace, and with the mean gradient.
     let mut trace = [o; INTERNAL];
+    let mut to_mean = [[o; 4]; INTERNAL];
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let w = s.weight.scale(section.thickness);
@@ -238,24 +241,41 @@ where
         if let Some(bar) = &bar {
             bar.apply(&mut h);
         }
-        let strain = history.elastic(p, section.strain.strain(&h));
+        let strain = match &about {
+            Some(about) => about.strain(&h),
+            None => section.strain.strain(&h),
+        };
+        let strain = history.elastic(p, strain);
         let mut answer = section.law.update(strain, &mut history.point(p, members));
         if !history.initial.is_empty() {
             let pressure = history.spherical::<T, N>(p, section);
             answer.stress[0] += pressure;
             answer.stress[1] += pressure;
         }
+        sums.tangent = answer.tangent;
         for v in &answer.stress {
             sums.stress = sums.stress.max(v.abs());
         }
         sums.failed = T::or(sums.failed, answer.failed);
         if section.finite {
-            let det = (h[0] + T::one()) * (h[3] + T::one()) - h[1] * h[2];
+            let seen = if let Some(about) = &about { &about.h } else { &h };
+            let det = (seen[0] + T::one()) * (seen[3] + T::one()) - seen[1] * seen[2];
             sums.failed = T::or(sums.failed, det.lt(o));
         }
-        let mut stress = section.strain.pull(&h, &answer.stress);
+        let mut stress = match &about {
+            Some(about) => about.pull(&answer.stress),
+            None => section.strain.pull(&h, &answer.stress),
+        };
         for v in &mut stress {
             *v = *v * w;
+        }
+        if let Some(about) = &mut about
+            && out.is_some()
+        {
+            for v in &mut answer.stress {
+                *v = *v * w;
+            }
+            about.keep(&h, &answer.stress, &stress);
         }
         if let Some(bar) = &mut bar {
             bar.split_stress(&mut stress);
@@ -277,11 +297,27 @@ where
         if A == 0 && !tangent {
             continue;
         }
-        let mut a = section.strain.tangent(&h, &answer.stress, &answer.tangent);
+        let mut a = match &about {
+            Some(about) => about.tangent(&answer.tangent),
+            None => section.strain.tangent(&h, &answer.stress, &answer.tangent),
+        };
         for row in &mut a {
             for v in row {
                 *v = *v * w;
             }
+        }
+        let mut by_mean = None;
+        if let Some(about) = &mut about
+            && out.is_some()
+        {
+            for row in &mut answer.tangent {
+                for v in row {
+                    *v = *v * w;
+                }
+            }
+            let part = about.mixed(&h, &answer.stress, &answer.tangent);
+            about.add(&s.op, &part);
+            by_mean = Some(part.mixed);
         }
         let mut mixed = [o; 4];
         if let Some(bar) = &mut bar {
@@ -308,6 +344,12 @@ where
                     trace[r] = mode[0].fma(mixed[2 * i], trace[r]);
                     trace[r] = mode[1].fma(mixed[2 * i + 1], trace[r]);
                 }
+                if let Some(by_mean) = &by_mean {
+                    for c in 0..4 {
+                        to_mean[r][c] = mode[0].fma(by_mean[2 * i][c], to_mean[r][c]);
+                        to_mean[r][c] = mode[1].fma(by_mean[2 * i + 1][c], to_mean[r][c]);
+                    }
+                }
                 // Row of A H for this mode.
                 let mut t = [o; 4];
                 for c in 0..4 {
@@ -332,6 +374,17 @@ where
                     s.op.add_force(&t, skew, &mut sums.coupling[r]);
                 }
             }
+        }
+    }
+    if let Some(about) = &about
+        && let Some(out) = out.as_deref_mut()
+    {
+        about.finish_force(&mut out.force);
+        if tangent {
+            about.finish_stiffness(&mut out.stiffness);
+        }
+        for r in 0..2 * A {
+            about.add_rows(&to_mean[r], &mut sums.coupling[r]);
         }
     }
     if let Some(bar) = &bar
@@ -422,134 +475,6 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
     out.failed = T::or(failed, sums.failed);
 }
 
-/// `K -= (L^-1 C)^T D^-1 (L^-1 C)`, blocks `a <= b`.
-#[inline(always)]
-fn condense<T: Real, const N: usize, const M: usize, const A: usize>(
-    factor: &Mat<T, INTERNAL>,
-    coupling: &[Nodal<T, N, M>; INTERNAL],
-    k: &mut Blocks<T, N, M>,
-) {
-    let mut reduced = [[[T::zero(); INTERNAL]; M]; N];
-    for b in 0..N {
-        for j in 0..M {
-            let c = &mut reduced[b][j];
-            for r in 0..2 * A {
-                c[r] = coupling[r][b][j];
-            }
-            ldlt_forward(factor, 2 * A, c);
-            let mut d = *c;
-            for r in 0..2 * A {
-                d[r] = d[r] * -factor[r][r];
-            }
-            for a in 0..=b {
-                for i in 0..M {
-                    if a == b && i > j {
-                        // Below the diagonal; copied from above it afterwards.
-                        continue;
-                    }
-                    let mut v = k[a][b][i][j];
-                    for r in 0..2 * A {
-                        v = reduced[a][i][r].fma(d[r], v);
-                    }
-                    k[a][b][i][j] = v;
-                }
-            }
-        }
-        for i in 0..M {
-            for j in 0..i {
-                k[b][b][i][j] = k[b][b][j][i];
-            }
-        }
-    }
-}
-
-/// Newton iteration for the internal modes at fixed nodal dofs. A plastic element may have
-/// next to no stiffness left in them, so steps are bounded by the size of the nodal dofs, and
-/// one that runs past the minimum along it is shortened to where the slope vanishes. Returns
-/// the lanes that did not settle.
-#[inline(always)]
-fn relax<E, T: Real, const N: usize, const M: usize, const A: usize>(
-    x: &Nodal<T, N, 2>,
-    q: &Nodal<T, N, M>,
-    section: &Section<N>,
-    history: &mut History<'_>,
-    alpha: &mut Nodal<T, A, 2>,
-) -> T::Mask
-where
-    E: Element<N, M, A>,
-{
-    let (mut size, mut extent) = (T::zero(), T::zero());
-    for a in 0..N {
-        for i in 0..2 {
-            size = size.max(q[a][i].abs());
-            extent = extent.max((x[a][i] - x[0][i]).abs());
-        }
-    }
-    // What is held and heated, or has come back to its shape after flow, has no displacement
-    // to measure the modes with: the elastic strain of its stress does.
-    let softness = 1.0 / section.law.moduli()[0][0];
-    size = size.max(extent * history.largest::<T, N>(section));
-    let (mut tolerance, mut radius) = (T::zero(), T::zero());
-    let mut base = *alpha;
-    let mut direction = [T::zero(); INTERNAL];
-    let mut length = T::one();
-    let mut reach = T::zero();
-    // Work of the internal force along the step at its start.
-    let mut start = T::real(-f64::MAX);
-    let mut settled = T::none();
-    for round in 0..MAX_LOCAL {
-        let sums = pass::<E, T, N, M, A>(x, q, alpha, section, history, None, false);
-        if round == 0 {
-            size = size.max(extent * sums.stress.scale(softness));
-            tolerance = size.scale(LOCAL_STEP).max(T::real(f64::MIN_POSITIVE));
-            radius = size.scale(MODE_STEP);
-        }
-        let mut factor = sums.stiffness;
-        ldlt(&mut factor, 2 * A, &sums.least);
-        let mut step = sums.force;
-        ldlt_solve(&factor, 2 * A, &mut step);
-        let (mut along, mut work) = (T::zero(), T::zero());
-        let mut largest = T::zero();
-        for r in 0..2 * A {
-            along = sums.force[r].fma(direction[r], along);
-            work = sums.force[r].fma(step[r], work);
-            largest = largest.max(step[r].abs());
-        }
-        let better = along.lt(start.scale(-OVERSHOT));
-        let small = T::and(better, largest.lt(tolerance));
-        let held = settled;
-        settled = T::or(settled, small);
-        let share = T::select(radius.lt(largest), radius / largest, T::one());
-        let shorter = start / (start - along);
-        let shorter = T::select(shorter.lt(T::real(0.7)), shorter, T::real(0.7));
-        let shorter = shorter.max(T::real(0.1));
-        // What was too far once bounds the next steps as well: a mode without stiffness may
-        // have to stop at the kink where a point begins to unload.
-        length = T::select(better, T::one(), length * shorter);
-        reach = T::select(better, largest.min(radius), reach);
-        radius = T::select(better, radius.scale(2.0), length * reach);
-        start = T::select(better, -(work * share), start);
-        for r in 0..2 * A {
-            step[r] = step[r] * share;
-        }
-        for r in 0..2 * A {
-            let at = &mut alpha[r / 2][r % 2];
-            let origin = &mut base[r / 2][r % 2];
-            *origin = T::select(better, *at, *origin);
-            direction[r] = T::select(better, -step[r], direction[r]);
-            // The small step is still taken, so that the tangent too is exact; lanes that had
-            // settled before stay where they are.
-            *at = T::select(held, *at, length.fma(direction[r], *origin));
-        }
-        let done = T::select(settled, T::one(), T::zero());
-        if !T::any(done.lt(T::real(0.5))) {
-            return T::none();
-        }
-    }
-    let open = T::select(settled, T::zero(), T::one());
-    T::real(0.5).lt(open)
-}
-
 /// Recoverable energy of an element with local dofs `q` and the stored internal modes.
 pub fn stored<E, const N: usize, const M: usize, const A: usize>(
     x: &Nodal<f64, N, 2>,
@@ -571,7 +496,8 @@ where
     let bar = section
         .mean_dilatation
         .then(|| Dilatation::<f64, N, M>::new::<E, A>(x, q, &prepared, section));
-    let mut energy = 0.0;
+    let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
+    let mut energy = E::stabilization(x, q, section, &[]);
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let w = s.weight * section.thickness;
@@ -579,7 +505,11 @@ where
         if let Some(bar) = &bar {
             bar.apply(&mut h);
         }
-        let strain = history.elastic(p, section.strain.strain(&h));
+        let strain = match &about {
+            Some(about) => about.strain(&h),
+            None => section.strain.strain(&h),
+        };
+        let strain = history.elastic(p, strain);
         let mut state = history.point(p, members);
         let stress = section.law.update(strain, &mut state).stress;
         let values: Vec<f64> = (0..members).map(|m| state.new[m * state.stride]).collect();

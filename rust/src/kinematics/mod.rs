@@ -2,10 +2,13 @@
 //! integration over the points with the condensation of internal modes.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod about_mean;
 pub mod conserving;
 pub mod corotation;
 pub mod dilatation;
 pub mod hencky;
+pub mod hourglass;
 pub mod inertia;
 pub mod integrate;
 pub mod local_strain;
+mod modes;

@@ -149,7 +149,9 @@ where
         let nodes: Vec<[u32; N]> = elements.iter().map(|&e| all_nodes[e as usize]).collect();
         let stride = nodes.len().div_ceil(PAD) * PAD;
         let section = &shared.section;
-        let state = section.points.len() * section.law.n_state() * stride;
+        let members = section.law.n_state();
+        let memory = if members > 0 { E::MEMORY } else { 0 };
+        let state = (section.points.len() * members + memory) * stride;
         let rates = if M == 3 { 2 * N * nodes.len() } else { 0 };
         let mut slots = Vec::with_capacity(nodes.len() * N * (N + 1) / 2);
         for element in &nodes {

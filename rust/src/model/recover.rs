@@ -3,6 +3,7 @@
 
 use super::chunk::{ChunkOf, Context};
 use crate::elements::Element;
+use crate::kinematics::about_mean::AboutMean;
 use crate::kinematics::corotation::Frame;
 use crate::kinematics::dilatation::Dilatation;
 use crate::kinematics::integrate::{History, gradient, local};
@@ -121,7 +122,9 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     let section = chunk.shared.section(context.turning);
     let members = section.law.n_state();
     let n_points = section.points.len();
-    let mut new = vec![0.0; members * n_points];
+    let memory = members * n_points;
+    let kept = memory + if members > 0 { E::MEMORY } else { 0 };
+    let mut new = vec![0.0; kept];
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
         let frame = Frame::new(&x, &u, context.turning && E::TURNS);
@@ -162,7 +165,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             out.rotation[e] = frame.angle();
             continue;
         }
-        let old: Vec<f64> = (0..members * n_points).map(|m| chunk.old[m * stride + e]).collect();
+        let old: Vec<f64> = (0..kept).map(|m| chunk.old[m * stride + e]).collect();
         let mut alpha: Vec<f64> = (0..2 * A).map(|m| chunk.alpha[m * stride + e]).collect();
         {
             // The internal modes that belong to these nodal dofs.
@@ -183,13 +186,19 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         let bar = section
             .mean_dilatation
             .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
+        let about =
+            AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
         for (p, point) in section.points.iter().enumerate() {
             let s = E::sample(&x, &prepared, point);
             let mut h = gradient(&s, &frame.q, &modes);
             if let Some(bar) = &bar {
                 bar.apply(&mut h);
             }
-            let total = section.strain.strain(&h);
+            let mut total = section.strain.strain(&h);
+            if let Some(about) = &about {
+                total = about.strain(&h);
+                h = about.h;
+            }
             let offset = |row: usize| initial.get(4 * p + row).copied().unwrap_or(0.0);
             // What the law sees; output is the total strain.
             let strain = [total[0] - offset(0), total[1] - offset(1), total[2] - offset(2)];
@@ -255,6 +264,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 out.penalty[e] += 0.5 * gamma * drill * drill;
             }
         }
+        out.penalty[e] += E::stabilization(&x, &frame.q, section, &new[memory..]);
         out.rotation[e] = frame.angle();
     }
 }
@@ -282,6 +292,8 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
         let bar = section
             .mean_dilatation
             .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
+        let about =
+            AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
         for (p, point) in section.points.iter().enumerate() {
             let s = E::sample(&x, &prepared, point);
             let mut h = gradient(&s, &frame.q, &modes);
@@ -289,7 +301,11 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
                 bar.apply(&mut h);
             }
             let at = 3 * (chunk.elements[e] as usize * n_points + p);
-            out[at..at + 3].copy_from_slice(&section.strain.strain(&h));
+            let strain = match &about {
+                Some(about) => about.strain(&h),
+                None => section.strain.strain(&h),
+            };
+            out[at..at + 3].copy_from_slice(&strain);
         }
     }
 }

@@ -9,11 +9,14 @@ macro_rules! for_each_planar_element {
         $then!($crate::elements::t6::T6, 6, 2, 0);
         $then!($crate::elements::q4::Q4, 4, 2, 0);
         $then!($crate::elements::q4i::Q4i, 4, 2, 2);
+        $then!($crate::elements::q4s::Q4s, 4, 2, 2);
+        $then!($crate::elements::q4r::Q4r, 4, 2, 0);
         $then!($crate::elements::q8::Q8, 8, 2, 0);
         $then!($crate::elements::q8::Q8r, 8, 2, 0);
         $then!($crate::elements::q9::Q9, 9, 2, 0);
         $then!($crate::elements::opt::Opt, 3, 3, 0);
         $then!($crate::elements::q4d::Q4d, 4, 3, 1);
+        $then!($crate::elements::q4di::Q4di, 4, 3, 2);
     };
 }
 
@@ -45,6 +48,16 @@ pub struct Facts {
     pub n_points: usize,
     pub hourglass_modes: usize,
     pub alpha_b: f64,
+    /// Whether the volume can stay constant without locking.
+    pub free_volume: bool,
+    /// Cells through a slender part below which it is too stiff in bending; 0 for none.
+    pub bending_cells: usize,
+    /// Whether its higher-order stiffness has a weight.
+    pub weighted: bool,
+    /// Whether nonlinear strains are linear about the mean gradient.
+    pub about_mean: bool,
+    /// Whether it has one point and a stabilized hourglass.
+    pub stabilized: bool,
     /// Structural companion.
     pub line: bool,
     /// Whether its frame turns with it.
@@ -65,6 +78,11 @@ pub fn facts() -> Vec<Facts> {
             n_points: E::rule().len(),
             hourglass_modes: E::HOURGLASS,
             alpha_b: E::ALPHA_B,
+            free_volume: E::FREE_VOLUME,
+            bending_cells: E::BENDING_CELLS,
+            weighted: E::parameter_of(1.0).is_some(),
+            about_mean: E::ABOUT_MEAN,
+            stabilized: E::MEMORY > 0,
             line: E::LINE,
             turns: E::TURNS,
             outputs: E::OUTPUTS,

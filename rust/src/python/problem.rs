@@ -467,8 +467,14 @@ fn elements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         d.set_item("n_nodes", f.n_nodes)?;
         d.set_item("dofs_per_node", f.dofs_per_node)?;
         d.set_item("n_points", f.n_points)?;
+        d.set_item("n_internal_modes", f.n_internal_modes)?;
         d.set_item("hourglass_modes", f.hourglass_modes)?;
         d.set_item("alpha_b", f.alpha_b)?;
+        d.set_item("free_volume", f.free_volume)?;
+        d.set_item("bending_cells", f.bending_cells)?;
+        d.set_item("weighted", f.weighted)?;
+        d.set_item("about_mean", f.about_mean)?;
+        d.set_item("stabilized", f.stabilized)?;
         d.set_item("line", f.line)?;
         d.set_item("turns", f.turns)?;
         all.push(d);

@@ -178,7 +178,7 @@ where
 {
     let x = x.map(|p| p.map(T::real));
     let frame = Frame::new(&x, u, turning);
-    let state = section.points.len() * section.law.n_state();
+    let state = section.points.len() * section.law.n_state() + E::MEMORY;
     let (old, mut new, mut alpha) = (vec![0.0; state], vec![0.0; state], vec![0.0; 2 * A]);
     let mut history =
         History { old: &old, new: &mut new, alpha: &mut alpha, initial: &[], stride: 1 };

@@ -89,6 +89,25 @@ fn definition<const D: usize>(kind: LocalStrain, h: &[Dual<D>; 4]) -> [Dual<D>; 
     [middle + slope * half, middle - slope * half, slope * c12.scale(2.0)]
 }
 
+/// Strain that is linear about the mean gradient: `E(H0) + sym(G (H - H0))`.
+fn about_mean<const D: usize>(
+    kind: LocalStrain,
+    mean: &[Dual<D>; 4],
+    h: &[Dual<D>; 4],
+) -> [Dual<D>; 3] {
+    let f = [[mean[0] + Dual::one(), mean[1]], [mean[2], mean[3] + Dual::one()]];
+    let det = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+    let g = if kind == LocalStrain::Modified {
+        [[f[0][0], f[1][0]], [f[0][1], f[1][1]]]
+    } else {
+        [[f[1][1] / det, -f[0][1] / det], [-f[1][0] / det, f[0][0] / det]]
+    };
+    let k = [[h[0] - mean[0], h[1] - mean[1]], [h[2] - mean[2], h[3] - mean[3]]];
+    let times = |i: usize, j: usize| g[i][0] * k[0][j] + g[i][1] * k[1][j];
+    let e = definition(kind, mean);
+    [e[0] + times(0, 0), e[1] + times(1, 1), e[2] + times(0, 1) + times(1, 0)]
+}
+
 /// Strain energy with the internal modes held at their values: stationary with respect to
 /// them, so its gradient is the nodal force.
 fn energy<E, const N: usize, const M: usize, const A: usize, const D: usize>()
@@ -107,11 +126,16 @@ where
         let x = x.map(|p| p.map(Dual::<D>::real));
         let prepared = E::prepare(&x, section.parameter);
         let moduli = section.law.moduli();
-        let mut total = Dual::<D>::real(0.0);
+        let mut total = E::stabilization(&x, &dual.frame.q, section, &[]);
+        let mean = (E::ABOUT_MEAN && section.strain != LocalStrain::Simplified)
+            .then(|| E::mean(&x, &prepared).gradient(&dual.frame.q));
         for point in &section.points {
             let s = E::sample(&x, &prepared, point);
             let h = gradient(&s, &dual.frame.q, &modes);
-            let strain = definition(section.strain, &h);
+            let strain = match &mean {
+                Some(mean) => about_mean(section.strain, mean, &h),
+                None => definition(section.strain, &h),
+            };
             let weight = s.weight.scale(section.thickness);
             for i in 0..3 {
                 for j in 0..3 {

@@ -20,10 +20,6 @@ if TYPE_CHECKING:
 
 #: Squared outline over area above which a part counts as slender (a strip 4 times its width).
 SLENDER = 25.0
-#: Cells through the width below which plain elements are too stiff in bending.
-ENOUGH = {"Q4": 8, "T3": 16}
-#: Elements that lock when the volume cannot change.
-VOLUMETRIC = ("T3", "Q4", "OPT", "Q4D", "T6", "Q8", "Q9")
 
 
 def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
@@ -72,11 +68,12 @@ def _locking(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
     found = []
     name = section.element
     material = section.material
+    element = elements.find(name)
     if (
         section.plane == "strain"
         and isinstance(material, Elastic)
         and material.nu > 0.49
-        and name in VOLUMETRIC
+        and not element.free_volume
     ):
         found.append(
             Diagnostic(
@@ -86,7 +83,7 @@ def _locking(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
                 hint="use Q4I or Q8R",
             )
         )
-    if name in ENOUGH:
+    if element.bending_cells:
         found += _bending(mesh, section, cells)
     return found
 
@@ -99,22 +96,24 @@ def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
         outline[part[cell]] += math.dist(mesh.points[nodes[0]], mesh.points[nodes[1]])
     areas = np.bincount(part, area, len(outline))
     name = section.element
+    element = elements.find(name)
+    triangle = element.n_nodes == 3
     for number in np.unique(part[cells]):
         mine = cells[part[cells] == number]
         if outline[number] ** 2 < SLENDER * areas[number]:
             continue
         width = 2.0 * areas[number] / outline[number]
-        factor = 2.0 if name == "T3" else 1.0
+        factor = 2.0 if triangle else 1.0
         size = float(np.sqrt(factor * area[mine].mean()))
-        if width < ENOUGH[name] * size:
-            better = "Q4I or Q4D" if name == "Q4" else "OPT or T6"
+        if width < element.bending_cells * size:
+            better = "OPT or T6" if triangle else "Q4I or Q4D"
             return [
                 Diagnostic(
                     "warning",
                     f"{name} is too stiff in bending: about {max(width / size, 1.0):.0f} cells "
                     f"through the width of the part of element {mesh.cell_labels[mine[0]]}",
                     section.where,
-                    hint=f"use {better}, or at least {ENOUGH[name]} cells",
+                    hint=f"use {better}, or at least {element.bending_cells} cells",
                 )
             ]
     return []

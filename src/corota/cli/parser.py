@@ -129,6 +129,11 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         type=_pair,
         help="replace an element type, such as CPS4=Q4D, repeatable",
     )
+    parser.add_argument(
+        "--as-written",
+        action="store_true",
+        help="take reduced integration literally: CPS4R becomes Q4R instead of Q4I",
+    )
     parser.add_argument("--lenient", action="store_true", help="unknown keywords are warnings")
     parser.add_argument(
         "--allow-include", action="store_true", help="*INCLUDE may leave the folder of the deck"

@@ -19,7 +19,7 @@ def run(args: Any, terminal: Terminal) -> int:
     """Draw what was asked for and tell the file."""
     from corota import plots
 
-    args.elements, args.lenient, args.allow_include = [], True, True
+    args.elements, args.lenient, args.allow_include, args.as_written = [], True, True, False
     source = Path(args.file)
     if not is_result(args.file):
         if not args.model and source.suffix.lower() == ".inp":

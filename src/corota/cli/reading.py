@@ -39,6 +39,7 @@ def read_input(name: str, args: Any) -> Model:
         element_map=dict(args.elements),
         lenient=args.lenient,
         allow_include=args.allow_include,
+        as_written=args.as_written,
     )
 
 

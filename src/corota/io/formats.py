@@ -40,6 +40,7 @@ def read(
     element_map: Mapping[str, str] | None = None,
     lenient: bool = False,
     allow_include: bool = False,
+    as_written: bool = False,
 ) -> Model:
     """Read a model from a deck.
 
@@ -53,6 +54,8 @@ def read(
         Warn about unknown keywords and parameters instead of refusing them.
     allow_include : bool, optional
         Let ``*INCLUDE`` leave the deck's folder.
+    as_written : bool, optional
+        Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
 
     Returns
     -------
@@ -74,8 +77,9 @@ def read(
             f"known: {', '.join(MODEL_READERS)} (meshes: corota.mesh.read)"
         )
     return MODEL_READERS[suffix](
-        path, element_map=element_map, lenient=lenient, allow_include=allow_include
-    )
+        path, element_map=element_map, lenient=lenient, allow_include=allow_include,
+        as_written=as_written,
+    )  # fmt: skip
 
 
 def write(model: Model, path: str | os.PathLike[str]) -> Path:

@@ -20,10 +20,23 @@ class Element:
     cell : str
         Kind of cell that it fits.
     n_nodes, dofs_per_node, n_points : int
+    n_internal_modes : int
+        Modes of displacement that no other element shares.
     hourglass_modes : int
         Zero-energy modes beyond the three rigid ones.
     alpha_b : float
         Share of a normal edge traction that goes into end moments.
+    free_volume : bool
+        Does not lock in plane strain where the volume cannot change.
+    bending_cells : int
+        Cells through a slender part below which it is too stiff in bending; 0 for none.
+    weighted : bool
+        Whether its higher-order stiffness has a weight (``beta0``).
+    about_mean : bool
+        Nonlinear strains are linear about the mean gradient of the element, so that its internal
+        modes are stable at large strain.
+    stabilized : bool
+        Has one point, and a stiffness of its own for the hourglass.
     line : bool
         Structural companion (truss, beam, spring) and no part of the plane.
     turns : bool
@@ -35,10 +48,26 @@ class Element:
     n_nodes: int
     dofs_per_node: int
     n_points: int
+    n_internal_modes: int
     hourglass_modes: int
     alpha_b: float
+    free_volume: bool
+    bending_cells: int
+    weighted: bool
+    stabilized: bool
     line: bool = False
     turns: bool = True
+    about_mean: bool = False
+
+    @property
+    def drilling(self) -> bool:
+        """Whether its nodes have rotations; planar elements."""
+        return self.dofs_per_node == 3 and not self.line
+
+    @property
+    def loose_modes(self) -> bool:
+        """Whether large plastic strain can run into its incompatible modes."""
+        return self.n_internal_modes > 0 and not (self.drilling or self.about_mean)
 
 
 @cache
@@ -54,6 +83,16 @@ def names() -> tuple[str, ...]:
 def line_names() -> tuple[str, ...]:
     """Names of all structural companions: trusses, beams, springs."""
     return tuple(name for name, element in _all().items() if element.line)
+
+
+def weighted_names() -> tuple[str, ...]:
+    """Names of the elements whose higher-order stiffness has a weight."""
+    return tuple(name for name, element in _all().items() if element.weighted)
+
+
+def known(name: str) -> Element | None:
+    """Facts of the element of that name, if there is one."""
+    return _all().get(name)
 
 
 def find(name: str) -> Element:

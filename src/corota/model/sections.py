@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.errors import InputError, Location
+from corota.model import elements
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,23 +79,26 @@ class Section:
                 "change and nothing locks: leave it out",
                 self.where,
             )
-        if self.mean_dilatation and self.element.upper() == "Q4I":
+        fact = elements.known(self.element.upper())
+        if self.mean_dilatation and fact and fact.n_internal_modes > 1:
             raise InputError(
-                "Q4I does not lock: its incompatible modes give the volume its freedom, and with "
-                "mean dilatation they would have no stiffness; leave it out",
+                f"{self.element} does not lock: its incompatible modes give the volume its "
+                "freedom, and with mean dilatation they would have no stiffness; leave it out",
                 self.where,
             )
-        if self.mean_dilatation and not self.element.upper().startswith("Q"):
+        if self.mean_dilatation and not (
+            fact and fact.cell.startswith("quad") and not fact.stabilized
+        ):
             raise InputError(
                 f"mean dilatation is for quadrilaterals, not {self.element}, whose volume strain "
                 "is constant or nearly so already: use Q4I, Q8R or Q4D instead",
                 self.where,
             )
         if self.beta0 is not None and not (
-            self.element.upper() == "OPT" and np.isfinite(self.beta0) and self.beta0 > 0.0
+            fact and fact.weighted and np.isfinite(self.beta0) and self.beta0 > 0.0
         ):
             raise InputError(
-                f"beta0 = {self.beta0} for {self.element}: only OPT has this weight, and it must "
-                "be > 0",
+                f"beta0 = {self.beta0} for {self.element}: only "
+                f"{', '.join(elements.weighted_names())} has this weight, and it must be > 0",
                 self.where,
             )

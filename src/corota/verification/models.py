@@ -36,9 +36,13 @@ if TYPE_CHECKING:
 #: Every registered planar element.
 ELEMENTS = elements.names()
 #: Elements with drilling rotations.
-DRILLING = tuple(n for n in ELEMENTS if elements.find(n).dofs_per_node == 3)
+DRILLING = tuple(n for n in ELEMENTS if elements.find(n).drilling)
 #: Elements whose only displacement is the interpolation of the nodes'.
-ISOPARAMETRIC = tuple(n for n in ELEMENTS if n not in (*DRILLING, "Q4I"))
+ISOPARAMETRIC = tuple(
+    e.name
+    for e in map(elements.find, ELEMENTS)
+    if not (e.drilling or e.n_internal_modes or e.stabilized)
+)
 #: Elements of second order.
 QUADRATIC = tuple(n for n in ELEMENTS if elements.find(n).cell in ("tri6", "quad8", "quad9"))
 #: Corners of Cook's membrane.

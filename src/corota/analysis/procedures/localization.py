@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.model import elements
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
     law = section.material
     flow = own.values.get("PEEQ")
     if (
-        section.element != "Q4I"
+        not elements.find(section.element).loose_modes
         or section.local_strain == "simplified"
         or flow is None
         or not isinstance(law, Mises)
@@ -50,10 +51,10 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
     if slope > stress[-1]:
         return None
     return int(block.cells[cell]), (
-        f"the plastic strain differs by {spread:.2g} within a Q4I element, and its material "
-        f"hardens by less ({slope:.3g}) than its stress ({stress[-1]:.3g}): incompatible modes "
-        "let flow run into half an element then, and a finer mesh makes it worse; compare with "
-        "Q8 or Q8R"
+        f"the plastic strain differs by {spread:.2g} within a {section.element} element, and its "
+        f"material hardens by less ({slope:.3g}) than its stress ({stress[-1]:.3g}): incompatible "
+        "modes let flow run into half an element then, and a finer mesh makes it worse; take Q4S, "
+        "whose modes are stable, or Q8R"
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.newton import ElementFailure
+from corota.model import elements
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
@@ -55,9 +56,6 @@ class UserBlocks:
     """
 
     def __init__(self, core: Any, blocks: Sequence[Any]) -> None:
-        from corota import _core
-
-        facts = {e["name"]: e for e in _core.elements()}
         self.core = core
         # Largest strain so far: a body may come back to its shape.
         self.largest = 0.0
@@ -65,15 +63,15 @@ class UserBlocks:
         for index, block in enumerate(blocks):
             material = block.section.material
             if isinstance(material, UserMaterial):
-                fact = facts[block.section.element]
-                shape = (len(block.cells), fact["n_points"])
+                fact = elements.find(block.section.element)
+                shape = (len(block.cells), fact.n_points)
                 self.blocks.append(
                     _Block(
                         index,
                         material,
                         block.section.plane,
                         shape,
-                        block.section.element in ("Q4I", "Q4D"),
+                        fact.n_internal_modes > 0,
                         material.start(*shape),
                     )
                 )

@@ -231,6 +231,7 @@ class Deck:
 
     lenient: bool = False
     element_map: dict[str, str] = field(default_factory=dict)
+    literal: bool = False
     root: Scope = field(default_factory=Scope)
     parts: dict[str, Scope] = field(default_factory=dict)
     instances: dict[str, Instance] = field(default_factory=dict)

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from corota.model import elements
+
 
 @dataclass(frozen=True, slots=True)
 class DeckElement:
@@ -13,28 +15,31 @@ class DeckElement:
     kind: str
     element: str
     plane: str = ""
+    #: What the name says to the letter, where another element stands for it.
+    literal: str = ""
 
 
 #: Elements under their own names; plane stress unless the section says otherwise.
-OWN = {
-    "T3": "tri3", "OPT": "tri3", "T6": "tri6", "Q4": "quad4", "Q4I": "quad4", "Q4D": "quad4",
-    "Q8": "quad8", "Q8R": "quad8", "Q9": "quad9",
-}  # fmt: skip
+OWN = {name: elements.find(name).cell for name in elements.names()}
 
 #: CalculiX and Abaqus names, without the prefix CPS (plane stress) or CPE (plane strain).
 ALIASES = {
     "3": "T3", "4": "Q4", "4I": "Q4I", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R",
 }  # fmt: skip
 
+#: What reduced integration means to the letter; the element above is the default, see the page
+#: of keywords.
+LITERAL = {"4R": "Q4R"}
+
 ELEMENTS: dict[str, DeckElement] = {
     **{
-        prefix + suffix: DeckElement(OWN[name], name, plane)
+        prefix + suffix: DeckElement(OWN[name], name, plane, LITERAL.get(suffix, ""))
         for prefix, plane in (("CPS", "stress"), ("CPE", "strain"))
         for suffix, name in ALIASES.items()
     },
     # FreeCAD and Gmsh write faces of a planar part as shells.
     **{
-        shell: DeckElement(OWN[name], name, "stress")
+        shell: DeckElement(OWN[name], name, "stress", LITERAL.get(shell[1:], ""))
         for shell, name in {
             "S3": "T3", "S4": "Q4", "S4R": "Q4I", "S6": "T6", "S8": "Q8", "S8R": "Q8R",
         }.items()
@@ -43,7 +48,7 @@ ELEMENTS: dict[str, DeckElement] = {
 }  # fmt: skip
 
 #: Elements that have rotations at their nodes.
-DRILLING = ("OPT", "Q4D")
+DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 
 #: Line elements that mesh generators write for curves, with their number of nodes; trusses
 #: where a section names them.

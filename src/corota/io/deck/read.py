@@ -26,6 +26,7 @@ def read_deck(
     element_map: Mapping[str, str] | None = None,
     lenient: bool = False,
     allow_include: bool = False,
+    as_written: bool = False,
 ) -> Model:
     """Read a CalculiX or Abaqus deck.
 
@@ -38,6 +39,8 @@ def read_deck(
         Whether unknown keywords and parameters are warned about instead of refused.
     allow_include : bool, optional
         Whether ``*INCLUDE`` may leave the deck's folder.
+    as_written : bool, optional
+        Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
 
     Returns
     -------
@@ -53,7 +56,7 @@ def read_deck(
     """
     lexer = Lexer(Path(path), allow_include)
     cards = lexer.read()
-    deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}))
+    deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}), literal=as_written)
     deck.diagnostics = lexer.diagnostics
     for card in cards:
         interpret(deck, card)

@@ -231,7 +231,16 @@ class ModelBuilder:
 
     def _element(self, type_: str) -> str:
         mapped = self.deck.element_map.get(type_)
-        return mapped or ELEMENTS[type_].element
+        own, literal = ELEMENTS[type_].element, ELEMENTS[type_].literal
+        if mapped or not literal:
+            return mapped or own
+        if self.deck.literal:
+            return literal
+        self.deck.note(
+            f"{type_} becomes {own}, which is more accurate on coarse meshes than one point with "
+            f"a stabilized hourglass ({literal}); --as-written (as_written=True) takes {literal}"
+        )
+        return own
 
     def _rows(self, cells: Ints) -> list[tuple[int, Ints]]:
         offsets = self.mesh.offsets

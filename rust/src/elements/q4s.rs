@@ -1,0 +1,46 @@
+//! [`Q4i`] with strains that are linear about the mean gradient.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::element::{Element, Grad, Point, Sample};
+use super::q4i::{Centre, Q4i};
+use super::shapes;
+use crate::base::Real;
+use crate::base::small::Nodal;
+
+#[derive(Clone, Copy)]
+pub struct Q4s;
+
+impl Element<4, 2, 2> for Q4s {
+    const NAME: &'static str = "Q4S";
+    const CELL: &'static str = "quad4";
+    const FREE_VOLUME: bool = true;
+    const ABOUT_MEAN: bool = true;
+    type Op<T: Real> = Grad<T, 4>;
+    type Prepared<T: Real> = Centre<T>;
+
+    fn rule() -> Vec<[f64; 3]> {
+        Q4i::rule()
+    }
+    fn mass_rule() -> Vec<[f64; 3]> {
+        Q4i::mass_rule()
+    }
+    fn shape(xi: [f64; 2]) -> ([f64; 4], [[f64; 2]; 4]) {
+        Q4i::shape(xi)
+    }
+    #[inline(always)]
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, parameter: f64) -> Centre<T> {
+        Q4i::prepare(x, parameter)
+    }
+    #[inline(always)]
+    fn sample<T: Real>(
+        x: &Nodal<T, 4, 2>,
+        centre: &Centre<T>,
+        point: &Point<4>,
+    ) -> Sample<T, Grad<T, 4>, 2> {
+        Q4i::sample(x, centre, point)
+    }
+    #[inline(always)]
+    fn mean<T: Real>(_: &Nodal<T, 4, 2>, centre: &Centre<T>) -> Grad<T, 4> {
+        Grad(shapes::push(&centre.inverse, &shapes::square_linear([0.0, 0.0]).1))
+    }
+}
