@@ -38,6 +38,8 @@ macro_rules! for_each_element {
 use crate::elements::Element;
 
 /// Facts of an element that the outside needs.
+// Facts are independent of each other: no state machine hides in them.
+#[allow(clippy::struct_excessive_bools)]
 #[derive(Clone, Debug)]
 pub struct Facts {
     pub name: &'static str,
