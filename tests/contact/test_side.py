@@ -63,3 +63,12 @@ def test_a_body_beside_the_end_of_a_curve_is_on_no_side():
 def test_turning_a_curve_round_twice_gives_it_back():
     curve = CURVES["fillet"](1.0)
     np.testing.assert_allclose(reversed_(reversed_(curve)).segments, curve.segments, atol=1e-15)
+
+
+@pytest.mark.parametrize(("fillet", "said"), [(0.3, True), (0.6, False), (0.0, False)])
+def test_a_round_corner_of_few_slave_edges_is_said_before_the_run(fillet, said):
+    """Edges of 0.25: a radius of 0.3 is 1.2 of them, two are advised."""
+    points = [(2, 1.01), (2, 4), (8, 4), (8, 1.01)]
+    results = ct.solve(block(ct.RigidCurve.polyline(points, closed=True, fillet=fillet), -0.02))
+    notes = [note for note in results.notes if "1.2 slave edges" in note]
+    assert bool(notes) is said

@@ -85,6 +85,7 @@ class Judgement:
     idle: bool = False
     #: Residuals of forces and moments over all that acts, be it force, moment or inertia.
     honest: tuple[float, float] = (0.0, 0.0)
+    note: str = ""  # how the correction before was found, for the log
 
     @property
     def size(self) -> float:
@@ -232,7 +233,7 @@ def newton(
         if report is not None:
             # Unknowns beyond the dofs are multipliers, of another unit.
             largest = float(np.abs(du[: len(at.internal)]).max())
-            note = f"step {length:.3g}" if length != 1.0 else ""
+            note = "; ".join(filter(None, [f"step {length:.3g}" * (length != 1.0), judged.note]))
             report(iteration, judged, length * largest, note)
         if not math.isfinite(size):
             outcome.reason = "the residual is not finite"

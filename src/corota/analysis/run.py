@@ -161,13 +161,14 @@ class Analysis:
         """Run all steps; observers hear the end whatever happens."""
         results, begin = self.results, clock.perf_counter()
         error: BaseException | None = None
+        stands: State | None = None
         counters: dict[str, int] = {}
         try:
             self.system = System(self.model, self.solver, self.threads)
             results.info["n_dofs"] = self.system.n_dofs
             results.info["threads"] = self.threads
             self.observers.start(self.model, self.steps)
-            state = State(
+            state = stands = State(
                 np.zeros(self.system.n_dofs),
                 counters=counters,
                 critical=results.critical_points,
@@ -187,6 +188,8 @@ class Analysis:
             error = caught
             if hasattr(caught, "results"):
                 caught.results = results
+                if stands is not None and stands.failed is not None:
+                    self._keep_iterate(stands)
             raise
         except BaseException as caught:
             error = caught
@@ -237,6 +240,18 @@ class Analysis:
             # Nothing was loaded yet: the loads and supports of the model are the next step's.
             return None
         return system.reaction(state.at)
+
+    def _keep_iterate(self, state: State) -> None:
+        """Where the last attempt ended, as a frame of its own."""
+        system, failed = self.system, state.failed
+        if failed is None or failed.at is None or not np.isfinite(failed.u).all():
+            return
+        moved, last = system.by_node(failed.u), self.results.frames[-1]
+        self.results.last_iterate = Frame(
+            last.step, last.increment + 1, last.time, last.step_time, last.factor,
+            moved[:, :2].copy(), moved[:, 2].copy(),
+            system.by_node(system.reaction(failed.at)), system.by_node(failed.at.external),
+        )  # fmt: skip
 
     def _warn(self, kind: str, note: str) -> None:
         """Say a thing once, and keep it."""

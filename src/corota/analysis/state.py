@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation
+    from corota.analysis.newton import Outcome
     from corota.analysis.terms.linearized import LinearMotion
     from corota.model.paths import CriticalPoint, Modes
     from corota.results.results import PointFields
@@ -52,6 +53,8 @@ class State:
         Matrices that the last vibration modes belong to.
     recover : callable or None
         Gives fields and sums of a linear response, in place of those of `u`.
+    failed : Outcome or None
+        The last attempt at an increment that did not converge.
     """
 
     u: Floats
@@ -69,3 +72,4 @@ class State:
     notes: list[str] = field(default_factory=list)
     linear: LinearMotion | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
+    failed: Outcome[Evaluation] | None = None

@@ -99,6 +99,10 @@ def make_parser() -> Parser:
     plot.add_argument("--response", action="store_true", help="steady-state response")
     plot.add_argument("--energies", action="store_true", help="energies of a motion over time")
     plot.add_argument("--animate", action="store_true", help="all frames as a GIF or MP4")
+    plot.add_argument(
+        "--last-iterate", action="store_true",
+        help="where the last attempt of a run that stopped ended; what is out of balance as RF",
+    )  # fmt: skip
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
 
     info = command("info", "Describe a deck, a mesh or a result file.")

@@ -33,6 +33,8 @@ def run(args: Any, terminal: Terminal) -> int:
         return _tell(path, terminal)
     from corota.io.result_reader import read_results
 
+    if args.last_iterate:
+        source = _iterate(source)
     with read_results(source) as results:
         if args.model:
             path = Path(args.output or f"{source.stem}_model.png")
@@ -63,6 +65,17 @@ def run(args: Any, terminal: Terminal) -> int:
             path = Path(args.output or f"{source.stem}_{field}.png")
             plots.contour(results, field, frame=args.frame, path=path, dpi=args.dpi, **options)
     return _tell(path, terminal)
+
+
+def _iterate(source: Path) -> Path:
+    """File with the last attempt of a run that stopped."""
+    beside = source.with_name(f"{source.stem}.last_iterate{source.suffix}")
+    if not beside.exists():
+        raise InputError(
+            f"{beside}: no such file; it is written beside the results of a run that stopped "
+            "without convergence"
+        )
+    return beside
 
 
 def _of_motion(args: Any, source: Path, results: Results, terminal: Terminal) -> int:

@@ -208,9 +208,22 @@ class JobFiles(Silent):
 
             path = self._path(self.name or self.model.name, "modes.vtkhdf")
             self._finish(lambda: write_modes(results, path))
+        self._iterate(results)
         self.close(results.info)
         if self.error is not None and error is None:
             raise self.error
+
+    def _iterate(self, results: Results) -> None:
+        """Write where the last attempt ended; after a run that converged there is no such file."""
+        from corota.io.modes import write_iterate
+
+        name = f"{self.name or self.model.name}.last_iterate.vtkhdf"
+        if results.last_iterate is None or "vtkhdf" not in self._formats:
+            (self.folder / name).unlink(missing_ok=True)
+            return
+        path = self.folder / name
+        self.paths.append(path)
+        self._finish(lambda: write_iterate(results, path))
 
     def close(self, info: dict[str, Any] | None = None) -> None:
         """Write what waits and close the files; errors stay in :attr:`error`."""

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,4 +73,15 @@ def write_modes(results: Results, path: Path) -> None:
     writer.close(found.info)
 
 
-__all__ = ["as_results", "write_modes"]
+def write_iterate(results: Results, path: Path) -> None:
+    """Write the last converged state and where the last attempt ended, two time steps."""
+    from corota.io.vtk.vtkhdf import VtkhdfWriter
+
+    assert results.last_iterate is not None
+    writer = VtkhdfWriter(path, results.model, points=False)
+    for frame in (results.frames[-1], results.last_iterate):
+        writer.add(replace(frame, scalars={}, fields=[], V=None, A=None, C=None))
+    writer.close({})
+
+
+__all__ = ["as_results", "write_iterate", "write_modes"]

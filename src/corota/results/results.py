@@ -127,6 +127,9 @@ class Results:
         Those of each buckling step.
     keep : {"all", "last"}
         ``"last"`` holds one frame only, for large models whose frames go to disk.
+    last_iterate : Frame or None
+        Where the last attempt ended, if the analysis did not converge: no equilibrium, to look
+        at. Its ``RF`` holds what is out of balance.
     """
 
     model: Model
@@ -136,6 +139,7 @@ class Results:
     keep: Literal["all", "last"] = "all"
     critical_points: list[CriticalPoint] = field(default_factory=list)
     modes: list[Modes] = field(default_factory=list)
+    last_iterate: Frame | None = None
 
     def add(self, frame: Frame) -> None:
         """Take a frame; with ``keep="last"`` it replaces the one before."""

@@ -126,6 +126,7 @@ def dynamic_step(
             if error > 1.0:
                 reason = f"local error {error:.2g} times the allowed one"
         if reason:
+            state.failed = outcome
             count["cut-backs"] = count.get("cut-backs", 0) + 1
             end = control.cut(target)
             if end:

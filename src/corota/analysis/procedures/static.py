@@ -15,6 +15,7 @@ from corota.analysis.procedures.localization import softening
 from corota.analysis.procedures.path.arc_length import path_step
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, reason
 from corota.analysis.terms.contact.newton import newton_with_contact
+from corota.analysis.terms.contact.relaxation import relax
 from corota.errors import (
     ConvergenceError,
     Interrupted,
@@ -33,12 +34,17 @@ if TYPE_CHECKING:
     from corota.analysis.newton import Judgement
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.analysis.terms.contact.equations import TouchingSystem
     from corota.model.steps import Static
 
     Floats = NDArray[np.float64]
 
 #: Failed attempts under growing negative pivots after which a limit point is looked for.
 STALLED = 3
+#: Increments that are tried by relaxation where none that is shorter is found, of the period.
+RELAXED = (1e-3, 1e-2)
+#: Attempt from which an increment is tried by relaxation before it is cut further.
+RESTS = 4
 
 
 def static_step(
@@ -113,8 +119,16 @@ def static_step(
                 )
         if not outcome.converged:
             count["cut-backs"] = count.get("cut-backs", 0) + 1
+            state.failed = outcome
             softer = outcome.negative > max(state.negative, 0)
             end = control.cut(target)
+            early = control.attempt == RESTS and not end
+            if (end or early) and (
+                rested := _relaxed(system, control, state, settings, report, early)
+            ) is not None:
+                outcome, touching, target = rested
+                count["iterations"] += outcome.iterations
+        if not outcome.converged:
             if (end or (softer and control.attempt > STALLED)) and _go_along_path(
                 system, step, number, state, observers, save, control, (first, rate)
             ):
@@ -152,6 +166,49 @@ def static_step(
             raise Interrupted(
                 f"stopped at step {number}, step time {target:g}; everything up to there is kept"
             )
+
+
+def _relaxed(
+    system: System,
+    control: Increments,
+    state: State,
+    settings: Settings,
+    report: Callable[[int, Judgement, float, str], None] | None,
+    early: bool,
+) -> tuple[Outcome[Evaluation], TouchingSystem, float] | None:
+    """The increment by relaxation, where contact is driven by supports; None where it fails.
+
+    Where loads drive, an equilibrium that ends is a limit point, which is for the user to judge.
+    While increments may still be cut (`early`), what is far away is not taken.
+    """
+    if system.touching is None or not control.number:
+        return None
+    period = control.step.period
+    force, _ = system.load_rate(state.u)
+    if np.any(force):
+        return None
+    sizes = [control.size] if early or control.step.fixed_increments else []
+    for size in sizes or [share * period for share in RELAXED]:
+        target = min([control.time + size, *(s for s in control.stops if s > control.time)])
+        prescribed = system.conditions.prescribed(target, state.u)
+        try:
+            outcome, touching = relax(system, state.u, prescribed, target, settings, report)
+        except SingularError:
+            continue
+        if outcome.converged and early and not touching.near(outcome.u):
+            system.touching.restore()
+            return None
+        if outcome.converged:
+            jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
+            if not touching.near(outcome.u):
+                state.notes.append(
+                    f"step time {target:.6g}: the equilibrium before ended and the bodies moved "
+                    f"on to another, by up to {jump:.3g} ({outcome.note}); statics has no path "
+                    "between, and there may be others: Dynamic follows the motion"
+                )
+            control.size = max(target - control.time, control.step.smallest_increment)
+            return outcome, touching, target
+    return None
 
 
 def _go_along_path(
@@ -237,7 +294,7 @@ def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: 
         if system.touching is None:
             system.release(state.at)
     system.commit()
-    state.u, state.at = outcome.u, new
+    state.u, state.at, state.failed = outcome.u, new, None
     state.step_time = target
     state.negative = outcome.negative
 

@@ -109,7 +109,10 @@ def reason(
         )
     elif collapses:
         where += ". To see beyond, prescribe a displacement instead of the load"
-    return where + softening(system.blocks) + ". All converged increments are kept"
+    return (
+        where + softening(system.blocks) + ". All converged increments are kept; the last attempt "
+        "is results.last_iterate (corota plot JOB.vtkhdf --last-iterate)"
+    )
 
 
 __all__ = ["at_limit", "collapse", "driven", "reason"]

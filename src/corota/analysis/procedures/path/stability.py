@@ -274,7 +274,8 @@ def work_share(system: PathSystem, point: Point, mode: Floats) -> float:
     """
     force, move = system.load_rate(point.u)
     if np.any(move):
-        scale = float(np.abs(point.u).max(initial=0.0)) or 1.0
+        # Of the dofs alone: multipliers of contact have another unit.
+        scale = float(np.abs(point.u[: system.n_dofs]).max(initial=0.0)) or 1.0
         step = 1e-6 * scale / float(np.abs(move).max())
         ahead = system.evaluate(point.u + step * move, 0.0).internal
         behind = system.evaluate(point.u - step * move, 0.0).internal

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.contact.advice import fillet_note
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.analysis.terms.contact.side import check_side
 from corota.errors import ModelError
@@ -128,6 +129,8 @@ class Touching:
                 self._start_tie(pair, x)
                 continue
             check_side(self.system, pair, x)
+            if note := fillet_note(pair):
+                self.notes.append(note)
             pair.core.search(x)
             raw = pair.core.evaluate(x, x)
             area = raw["total_area"]

@@ -15,9 +15,12 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from corota.analysis.linear.saddle_point import Bordered, Coupling, Triplets
-from corota.analysis.newton import GiveUp, Judgement, Outcome
+from corota.analysis.newton import PROGRESS, GiveUp, Judgement, Outcome
+from corota.analysis.terms.contact.columns import border, stacked
 from corota.analysis.terms.contact.contact import Touch, Touching
+from corota.analysis.terms.contact.messages import explained
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.terms.contact.pivoting import pivoted
 from corota.analysis.terms.contact.tunneling import passed
 from corota.errors import SingularError
 
@@ -37,6 +40,8 @@ EPS = float(np.finfo(float).eps)
 MORE = 24
 #: Iterations without progress after which an increment is cut: few that take more converge.
 PATIENCE = 8
+#: And after which states come from the whole linearised problem.
+WAITED = 3
 #: How often a set of states may come back before single changes are made.
 RETURNS = 2
 #: And how often before the increment is given up.
@@ -47,6 +52,9 @@ SETTLED = 4
 ALIKE = 1e-6
 #: Share of the friction bound from which a correction is made anew with slip, and how often.
 BEYOND, SLIPS = 2.0, 3
+#: Times the first correction that an increment may move before it counts as a jump, driven by
+#: supports and by forces.
+JUMP, JUMP_OF_FORCE = 10.0, 4.0
 
 
 @dataclass
@@ -126,7 +134,12 @@ class TouchingSystem:
         self.seen: dict[bytes, int] = {}
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
-        self.single = self.sliding = self.corrections = 0
+        self.single = self.sliding = self.corrections = self.pivoted = 0
+        self.pivoting = False  # whether states come from the whole linearised problem
+        self.least, self.waited = np.inf, 0
+        self.stage = ""  # how the last correction was found
+        self.relaxing = False  # whether the bodies may move to another equilibrium
+        self.first_move = 0.0  # of the first correction [length]
         self.loose = ""  # what nothing held until contact was closed for it
         self.senses: dict[int, Floats] = {}  # of slipping tractions, by the pair's first multiplier
 
@@ -152,12 +165,16 @@ class TouchingSystem:
     def judge(self, at: Touched, z: Floats) -> Judgement:
         """Size of the residual, of equilibrium and of the contact conditions."""
         judged: Judgement = self.inner.judge(at.at, z[: self.n])
+        judged.note = self.stage
         lack, pair, constraint = self.lack(at)
         before = judged.force
         self.system.scales.add_lack(judged, lack)
         if judged.force > before:
             node = self.touching.pairs[pair].nodes[constraint]
             judged.worst = int(self.system.start[node])
+        if self.corrections:  # before the first, supports may still have to move
+            self.waited = 0 if judged.size < PROGRESS * self.least else self.waited + 1
+            self.least = min(self.least, judged.size)
         return judged
 
     def release(self, at: Touched) -> None:
@@ -181,8 +198,31 @@ class TouchingSystem:
     def correct(self, at: Touched, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         asked = Asked(rhs[: self.n, None], du_held[: self.n, None], np.ones(1))
+        self.pivoting = self.pivoting or self.waited >= WAITED
+        if self.pivoting:
+            self._freeze()
+            found = pivoted(self, at, asked)
+            if found is not None:
+                z, self.last, senses = found
+                self.senses = {p.first: s for p, s in zip(self.touching.pairs, senses, strict=True)}
+                self.pivoted += 1
+                self.stage = "contact states by pivoting"
+                return self._moved(z), -1
+        before = self.single
         z, negative = self._columns(at, asked, self._choose(at.touch))
-        return z[:, 0], negative
+        self.stage = "single change of contact" if self.single > before else ""
+        return self._moved(z[:, 0]), negative
+
+    def _moved(self, z: Floats) -> Floats:
+        """A correction, whose first size is kept."""
+        if not self.first_move:
+            self.first_move = float(np.abs(z[: self.n][~self.system.is_rotation]).max())
+        return z
+
+    def _freeze(self) -> None:
+        self.corrections += 1
+        for pair in self.touching.pairs:
+            pair.frozen = self.corrections >= SETTLED
 
     def _columns(
         self,
@@ -192,9 +232,7 @@ class TouchingSystem:
         senses: dict[tuple[int, int], float] | None = None,
     ) -> tuple[Floats, int]:
         """Solutions of one linearisation, shape (n_dofs + n_multipliers, k)."""
-        self.corrections += 1
-        for pair in self.touching.pairs:
-            pair.frozen = self.corrections >= SETTLED
+        self._freeze()
         self.senses = {
             pair.first: pair.sense(terms, q) for pair, terms, (p, q) in self._pairs(at.touch)
         }
@@ -374,6 +412,7 @@ class TouchingSystem:
                 if self.seen[key] > HOPELESS:
                     raise GiveUp("the contact states go round in a circle")
                 self.cautious = self.cautious or self.seen[key] > RETURNS
+                self.pivoting = self.pivoting or self.cautious
                 if self.cautious:
                     wanted = self._one_change(touch, wanted, changed)
         self.last = wanted
@@ -416,7 +455,7 @@ class TouchingSystem:
             where = touching.dofs(terms.variables)
             k = terms.constraint
             closed = state != OPEN
-            rows.append(_border(where, first + k, -w * terms.gap_gradient, closed[k]))
+            rows.append(border(where, first + k, -w * terms.gap_gradient, closed[k]))
             # Tractions that are known after the correction go to the right-hand side.
             known = np.where(closed, 0.0, -p)
             part = w * known[k, None] * terms.gap_gradient
@@ -424,20 +463,18 @@ class TouchingSystem:
                 second = first + n
                 diagonal[second : second + n], rhs[second : second + n] = dq, rq
                 expected += int((state == CLOSED).sum())
-                rows.append(
-                    _border(where, second + k, -w * terms.slip_gradient, state[k] == CLOSED)
-                )
+                rows.append(border(where, second + k, -w * terms.slip_gradient, state[k] == CLOSED))
                 known = np.where(state == CLOSED, 0.0, ratio * p - q)
                 part += w * known[k, None] * terms.slip_gradient
                 slope = -w * ratio[k, None] * terms.slip_gradient
-                follow.append(_border(where, first + k, slope, state[k] == SLIPPING))
+                follow.append(border(where, first + k, slope, state[k] == SLIPPING))
             np.add.at(force, where, part)
             if self.system.turning and (p.any() or q.any()):
                 bend.append(self._bend(pair, p, q))
             near.append(self._near(pair, terms))
         coupling = Coupling(
             Triplets.join(bend), Triplets.join(rows), Triplets.join(follow), diagonal,
-            force[:-1], _stack(near),
+            force[:-1], stacked(near),
         )  # fmt: skip
         return coupling, rhs, expected
 
@@ -488,6 +525,9 @@ class TouchingSystem:
             self.touching.restore()
         elif self.single:
             settled.note = f"{outcome.note}; {self.single} single changes of contact".strip("; ")
+        if outcome.converged and self.pivoted:
+            said = f"contact states by pivoting in {self.pivoted} iterations"
+            settled.note = f"{settled.note}; {said}".strip("; ")
         return settled
 
     def refuse(self, at: Touched, z: Floats) -> str:
@@ -502,6 +542,9 @@ class TouchingSystem:
         if not self.system.turning:
             return ""
         old, new = self.touching.positions(self.touching.u), self.touching.positions(z[: self.n])
+        still = self.pivoted and not self.relaxing and self.inner is self.system
+        if still and not self.near(z[: self.n]):
+            return "the equilibrium that was found is far from the one before"
         for pair, terms, (p, q) in self._pairs(at.touch):
             found = passed(pair, old, new, pair.states(terms, p, q))
             if len(found):
@@ -510,6 +553,13 @@ class TouchingSystem:
                     f"side of contact pair {pair.name!r} in one increment"
                 )
         return ""
+
+    def near(self, u: Floats) -> bool:
+        """Whether an equilibrium is near the committed one, as far as its first correction says."""
+        moved = float(np.abs((u - self.touching.u)[~self.system.is_rotation]).max())
+        forces = bool(np.any(self.system.load_rate(u)[0]))
+        limit = (JUMP_OF_FORCE if forces else JUMP) * self.first_move
+        return limit == 0.0 or moved <= limit
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
@@ -528,58 +578,7 @@ class TouchingSystem:
 
     def explain(self, at: Touched | None) -> str:
         """Which pair and nodes a failed increment hung on, and what was tried."""
-        if at is None:
-            return ""
-        said = ""
-        lack, k, i = self.lack(at)
-        pair, terms = self.touching.pairs[k], at.touch.terms[k]
-        if lack > 0.0:
-            p = self.touching.parts(at.touch.multipliers)[k][0][i]
-            area = terms.area[i]
-            gap = f"{terms.gap[i] / area:.3g}" if area > 0.0 else "none"
-            said = (
-                f"; contact pair {pair.name!r}: worst at node {self.touching.label(pair, i)} "
-                f"(gap {gap}, pressure {p:.3g})"
-            )
-        turning = [
-            (int(f[j]), pair, int(j))
-            for pair, f in zip(self.touching.pairs, self.flips, strict=True)
-            for j in np.flatnonzero(f > RETURNS)
-        ]
-        turning.sort(key=lambda item: -item[0])
-        if turning:
-            names = ", ".join(str(self.touching.label(q, j)) for _, q, j in turning[:5])
-            said += (
-                f"; the contact state kept changing at node{'s' if len(turning) > 1 else ''} "
-                f"{names}{', ...' if len(turning) > 5 else ''} of pair {turning[0][1].name!r}"
-            )
-            if self.sliding > RETURNS:
-                said += "; friction does not hold the bodies: they slide"
-            if self.single:
-                said += f"; {self.single} single changes were tried"
-        if self.loose:
-            said += f"; where contact does not press, {self.loose}"
-        return said
-
-
-def _border(where: Ints, column: Ints, gradient: Floats, rows: NDArray[np.bool_]) -> Triplets:
-    """Gradients of some terms as columns."""
-    where, gradient = where[rows], gradient[rows]
-    columns = np.repeat(column[rows], where.shape[1])
-    flat, values = where.ravel(), gradient.ravel()
-    keep = (flat >= 0) & (values != 0.0)
-    return Triplets(flat[keep], columns[keep], values[keep])
-
-
-def _stack(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
-    """Rows of several pairs below each other, filled with -1."""
-    out = []
-    for which in (0, 1):
-        tables = [p[which] for p in parts if len(p[which])]
-        width = max((t.shape[1] for t in tables), default=0)
-        full = [np.pad(t, ((0, 0), (0, width - t.shape[1])), constant_values=-1) for t in tables]
-        out.append(np.concatenate(full) if full else np.zeros((0, 0), np.int64))
-    return out[0], out[1]
+        return explained(self, at)
 
 
 __all__ = ["MORE", "PATIENCE", "Touched", "TouchingSystem"]

@@ -1,0 +1,55 @@
+"""What a failed increment hung on, in the words of the model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from corota.analysis.terms.contact.equations import Touched, TouchingSystem
+
+#: How often a state must have changed to be named.
+OFTEN = 2
+
+
+def explained(problem: TouchingSystem, at: Touched | None) -> str:
+    """Which pair and nodes a failed increment hung on, and what was tried."""
+    if at is None:
+        return ""
+    said = ""
+    lack, k, i = problem.lack(at)
+    pair, terms = problem.touching.pairs[k], at.touch.terms[k]
+    if lack > 0.0:
+        p = problem.touching.parts(at.touch.multipliers)[k][0][i]
+        area = terms.area[i]
+        gap = f"{terms.gap[i] / area:.3g}" if area > 0.0 else "none"
+        said = (
+            f"; contact pair {pair.name!r}: worst at node {problem.touching.label(pair, i)} "
+            f"(gap {gap}, pressure {p:.3g})"
+        )
+    turning = [
+        (int(f[j]), pair, int(j))
+        for pair, f in zip(problem.touching.pairs, problem.flips, strict=True)
+        for j in np.flatnonzero(f > OFTEN)
+    ]
+    turning.sort(key=lambda item: -item[0])
+    if turning:
+        names = ", ".join(str(problem.touching.label(q, j)) for _, q, j in turning[:5])
+        said += (
+            f"; the contact state kept changing at node{'s' if len(turning) > 1 else ''} "
+            f"{names}{', ...' if len(turning) > 5 else ''} of pair {turning[0][1].name!r}"
+        )
+        if problem.sliding > OFTEN:
+            said += "; friction does not hold the bodies: they slide"
+        if problem.single:
+            said += f"; {problem.single} single changes were tried"
+    if problem.loose:
+        said += f"; where contact does not press, {problem.loose}"
+    if problem.pivoted:
+        said += f"; {problem.pivoted} corrections took states from the whole linearised problem"
+    return said
+
+
+__all__ = ["explained"]

@@ -1,0 +1,426 @@
+"""Contact states from the whole linearised problem, where the choice one by one goes in circles.
+
+A semismooth Newton method chooses the state of each constraint by itself. Where constraints
+depend on each other, as at the bound of friction of a body that nothing else holds, such choices
+may never settle. Here the linearised equations with all their conditions, a linear complementarity
+problem, are solved by pivoting (Lemke): every correction then fulfils all conditions to first
+order (the method of Josephy and Newton). Nothing is regularised.
+
+Sources: A. Klarbring, *A mathematical programming approach to three-dimensional contact problems
+with friction*, Comput. Methods Appl. Mech. Engrg. 58 (1986); N. H. Josephy, *Newton's method for
+generalized equations*, MRC report 1965 (1979).
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.terms.contact.complementarity import lemke
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.terms.contact.equations import Asked, Touched, TouchingSystem
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+    States = list[NDArray[np.int8]]
+    #: Correction of dofs and multipliers, its states, signs of slipping tractions.
+    Found = tuple[Floats, States, list[Floats]]
+
+#: Most constraints that are chosen together, and open ones among them next to closing.
+MOST, OPEN_ONES = 160, 16
+#: Rounds in which what the solution would violate is taken in.
+ROUNDS = 4
+
+
+@dataclass
+class Chosen:
+    """Constraints of one pair that are chosen together.
+
+    Parameters
+    ----------
+    k : int
+        Pair.
+    rows : ndarray of int, shape (n,)
+        Constraints.
+    force, gap : ndarray, shape (n,)
+        Force of a unit of traction, and of a unit of weighted gap.
+    """
+
+    k: int
+    rows: Ints
+    force: Floats
+    gap: Floats
+
+
+class Pivoting:
+    """One correction whose states come from the whole linearised problem.
+
+    Parameters
+    ----------
+    problem : TouchingSystem
+    at : Touched
+    asked : Asked
+        One right-hand side.
+    """
+
+    def __init__(self, problem: TouchingSystem, at: Touched, asked: Asked) -> None:
+        self.problem, self.at, self.asked = problem, at, asked
+        self.pairs = list(problem._pairs(at.touch))
+
+    def solve(self, bases: list[States]) -> Found | None:
+        """Correction of dofs and multipliers, its states and senses; None where none is found.
+
+        Parameters
+        ----------
+        bases : list of list of ndarray
+            States to begin with, the best first: those that make the tangent singular are no use.
+        """
+        for base in bases:
+            chosen = self._first(base)
+            for _ in range(ROUNDS):
+                try:
+                    found = self._with(base, chosen)
+                except SingularError:
+                    break
+                if found is None:
+                    break
+                z, states, senses = found
+                more = self._violated(z, states, chosen)
+                if more is None:
+                    return z, states, senses
+                chosen = more
+        return None
+
+    # -- which constraints ------------------------------------------------------------
+
+    def _able(self, k: int) -> NDArray[np.bool_]:
+        """Constraints that may change their state."""
+        pair, terms, _ = self.pairs[k]
+        if pair.tied or pair.law is not None:
+            return np.zeros(pair.n, bool)
+        able: NDArray[np.bool_] = (terms.area > COVERED * pair.full) & np.isfinite(pair.stiffness)
+        return able
+
+    def _first(self, base: States) -> list[Chosen]:
+        """What is closed, and the nearest of what is open."""
+        wanted = []
+        for k, (pair, terms, _) in enumerate(self.pairs):
+            able = self._able(k)
+            gap = np.where(able & (base[k] == OPEN), terms.gap * pair.stiffness, np.inf)
+            near = np.argsort(gap, kind="stable")[:OPEN_ONES]
+            mask = able & (base[k] != OPEN)
+            mask[near[np.isfinite(gap[near])]] = True
+            wanted.append(mask)
+        return self._listed(wanted)
+
+    def _listed(self, wanted: list[NDArray[np.bool_]]) -> list[Chosen]:
+        left = MOST
+        out = []
+        for k, mask in enumerate(wanted):
+            rows = np.flatnonzero(mask)[:left]
+            left -= len(rows)
+            pair, terms, _ = self.pairs[k]
+            if len(rows):
+                out.append(Chosen(k, rows, terms.area[rows], pair.stiffness[rows]))
+        return out
+
+    def _violated(self, z: Floats, states: States, chosen: list[Chosen]) -> list[Chosen] | None:
+        """The choice with what a solution would violate; None if that is nothing."""
+        problem = self.problem
+        n, more = problem.n, False
+        wanted = []
+        moves = rates_of(problem, self.at, z[:n])
+        for k, (pair, terms, (p, q)) in enumerate(self.pairs):
+            mask = np.zeros(pair.n, bool)
+            for c in chosen:
+                if c.k == k:
+                    mask[c.rows] = True
+            p1 = p + z[n + pair.first : n + pair.first + pair.n]
+            gap = terms.gap + moves[k][0]
+            small = 1e-9 * max(float(np.abs(p1 * terms.area).max(initial=0.0)), _small(problem))
+            bad = (states[k] == OPEN) & (gap * pair.stiffness < -small)
+            bad |= (states[k] != OPEN) & (p1 * terms.area < -small)
+            if pair.friction:
+                q1 = q + z[n + pair.first + pair.n : n + pair.first + pair.width]
+                over = (np.abs(q1) - pair.friction * np.maximum(p1, 0.0)) * terms.area > small
+                bad |= (states[k] == CLOSED) & over
+            bad &= self._able(k) & ~mask
+            more = more or bool(bad.any())
+            wanted.append(mask | bad)
+        if not more or sum(int(w.sum()) for w in wanted) > MOST:
+            return None
+        return self._listed(wanted)
+
+    # -- the linearised problem -------------------------------------------------------
+
+    def _with(self, base: States, chosen: list[Chosen]) -> Found | None:
+        """Solution from one basis."""
+        problem, n = self.problem, self.problem.n
+        senses = [
+            np.where(q > 0.0, 1.0, -1.0) if pair.friction else np.ones(pair.n)
+            for pair, _, (p, q) in self.pairs
+        ]
+        for k, (pair, terms, (_, q)) in enumerate(self.pairs):
+            if pair.friction:
+                # What does not slip yet would slip against its trial traction.
+                own = pair.sense(terms, q)
+                senses[k] = np.where(base[k] == SLIPPING, senses[k], own)
+                zero = (q == 0.0) & (base[k] == SLIPPING)
+                senses[k] = np.where(zero, own, senses[k])
+        force, rows = self._inputs(base, chosen, senses)
+        du, dp = responses(problem, self.at, base, senses, self.asked, force, rows)
+        values = [self._values(base, c, senses[c.k], du, dp) for c in chosen]
+        return self._pivoted(base, chosen, senses, values, du, dp, n)
+
+    def _inputs(
+        self, base: States, chosen: list[Chosen], senses: list[Floats]
+    ) -> tuple[Floats, Floats]:
+        """Two columns of forces and right-hand sides for each constraint.
+
+        Closed: a unit of gap; open: a unit of pressure. Sticking: a unit of slip; slipping or
+        open: a unit of traction less than the bound.
+        """
+        problem = self.problem
+        count = 2 * sum(len(c.rows) for c in chosen)
+        force, rows = np.zeros((problem.n + 1, count)), np.zeros((problem.touching.n, count))
+        at = 0
+        for c in chosen:
+            pair, terms, _ = self.pairs[c.k]
+            column = np.full(pair.n, -1, np.int64)
+            column[c.rows] = at + 2 * np.arange(len(c.rows))
+            state, sense = base[c.k], senses[c.k]
+            where = problem.touching.dofs(terms.variables)
+            i = terms.constraint
+            of_open = (column[i] >= 0) & (state[i] == OPEN)
+            push = terms.gap_gradient
+            if pair.two:
+                push = push + (pair.friction * sense)[i, None] * terms.slip_gradient
+            wide = where.shape[1]
+            np.add.at(
+                force,
+                (where[of_open], np.repeat(column[i][of_open][:, None], wide, 1)),
+                problem.weight * push[of_open],
+            )
+            closed = c.rows[state[c.rows] != OPEN]
+            rows[pair.first + closed, column[closed]] = -1.0
+            if pair.two:
+                less = (column[i] >= 0) & (state[i] != CLOSED)
+                np.add.at(
+                    force,
+                    (where[less], np.repeat(column[i][less][:, None] + 1, wide, 1)),
+                    -problem.weight * sense[i[less], None] * terms.slip_gradient[less],
+                )
+                stuck = c.rows[state[c.rows] == CLOSED]
+                rows[pair.first + pair.n + stuck, column[stuck] + 1] = -1.0
+            at += 2 * len(c.rows)
+        return force[:-1], rows
+
+    def _values(
+        self, base: States, c: Chosen, sense: Floats, du: Floats, dp: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """Pressure, gap, slip and traction as forces: values, then changes by inputs."""
+        problem = self.problem
+        pair, terms, (p, q) = self.pairs[c.k]
+        moves = rates_of(problem, self.at, du, c.k)
+        gap, slip = moves[0][c.rows], moves[1][c.rows]
+        gap[:, 0] += terms.gap[c.rows]
+        slip[:, 0] += terms.slip[c.rows]
+        pressure = dp[pair.first + c.rows].copy()
+        pressure[:, 0] += p[c.rows]
+        shear = np.zeros_like(pressure)
+        if pair.two:
+            stuck = dp[pair.first + pair.n + c.rows].copy()
+            stuck[:, 0] += q[c.rows]
+            shear = np.where((base[c.k][c.rows] == CLOSED)[:, None], stuck, shear)
+        force, stiff = c.force[:, None], c.gap[:, None]
+        return pressure * force, gap * stiff, slip * stiff, shear * force
+
+    def _pivoted(
+        self, base: States, chosen: list[Chosen], senses: list[Floats], values: Any,
+        du: Floats, dp: Floats, n: int,
+    ) -> Found | None:  # fmt: skip
+        """Set up the complementarity problem, solve it, and go back to corrections."""
+        blocks = []  # (table of y by columns, scale, column) of each complementary pair
+        kinds: list[tuple[int, int, str]] = []
+        inputs: list[tuple[int, float]] = []
+        at = 1
+        for c, (pressure, gap, slip, shear) in zip(chosen, values, strict=True):
+            pair = self.pairs[c.k][0]
+            mu = pair.friction
+            for j, i in enumerate(c.rows.tolist()):
+                state, sense = base[c.k][i], senses[c.k][i]
+                first, second = at + 2 * j, at + 2 * j + 1
+                if state == OPEN:
+                    blocks.append(gap[j])
+                    kinds.append((c.k, i, "gap"))
+                    inputs.append((first, 1.0 / c.force[j]))
+                else:
+                    blocks.append(pressure[j])
+                    kinds.append((c.k, i, "pressure"))
+                    inputs.append((first, 1.0 / c.gap[j]))
+                if not mu:
+                    continue
+                if state == CLOSED:
+                    # The slip is the difference of two; each goes with one side of the bound.
+                    blocks += [mu * pressure[j] + shear[j], mu * pressure[j] - shear[j]]
+                    kinds += [(c.k, i, "forth"), (c.k, i, "back")]
+                    inputs += [(second, 1.0 / c.gap[j]), (second, -1.0 / c.gap[j])]
+                    continue
+                # Slack of the bound against the slip along it, and of the other side.
+                bound = pressure[j].copy()
+                if state == OPEN:
+                    bound[:] = 0.0
+                    bound[first] = c.force[j]
+                other = 2.0 * mu * bound
+                other[second] -= c.force[j]
+                blocks += [-sense * slip[j], other]
+                kinds += [(c.k, i, "along"), (c.k, i, "against")]
+                inputs += [(second, 1.0 / c.force[j]), (-1, float(sense))]
+            at += 2 * len(c.rows)
+        if not kinds:
+            return None
+        y = np.array(blocks)
+        size = len(kinds)
+        m = np.zeros((size, size))
+        for a, (column, factor) in enumerate(inputs):
+            if column >= 0:
+                m[:, a] = factor * y[:, column]
+        for a, (_, _, kind) in enumerate(kinds):
+            if kind == "along":
+                m[a, a + 1] += 1.0  # the slip against the traction is one of two that differ
+        found = lemke(y[:, 0], m)
+        if found is None:
+            return None
+        x, basic = found
+        u, traction = du[:, 0].copy(), dp[:, 0].copy()
+        for a, (column, factor) in enumerate(inputs):
+            if column >= 0 and x[a] != 0.0:
+                u += x[a] * factor * du[:, column]
+                traction += x[a] * factor * dp[:, column]
+        states, senses = self._read(base, chosen, senses, kinds, x, basic, inputs, traction)
+        return np.concatenate([u, traction]), states, senses
+
+    def _read(
+        self, base: States, chosen: list[Chosen], senses: list[Floats],
+        kinds: list[tuple[int, int, str]], x: Floats, basic: NDArray[np.bool_],
+        inputs: list[tuple[int, float]], traction: Floats,
+    ) -> tuple[States, list[Floats]]:  # fmt: skip
+        """States of a solution; tractions of what slips or opens go into the correction."""
+        out = [s.copy() for s in base]
+        sense = [s.copy() for s in senses]
+        slack = {}
+        for a, (k, i, kind) in enumerate(kinds):
+            was, on = base[k][i], bool(basic[a])
+            if kind == "gap":
+                out[k][i] = CLOSED if on else OPEN
+                if on:
+                    pair, _, (p, _) = self.pairs[k]
+                    traction[pair.first + i] = x[a] * inputs[a][1] - p[i]
+            elif kind == "pressure":
+                out[k][i] = OPEN if on else was
+            elif out[k][i] == OPEN:
+                continue
+            elif kind == "forth" and on:
+                out[k][i], sense[k][i] = SLIPPING, -1.0
+            elif kind == "back" and on:
+                out[k][i], sense[k][i] = SLIPPING, 1.0
+            elif kind == "along":
+                slack[k, i] = x[a] * inputs[a][1]
+                out[k][i] = CLOSED if on else SLIPPING
+            elif kind == "against" and on:
+                out[k][i], sense[k][i] = SLIPPING, -senses[k][i]
+        for c in chosen:
+            pair, _, (p, q) = self.pairs[c.k]
+            for i in c.rows.tolist():
+                state = out[c.k][i]
+                if state == OPEN:
+                    traction[pair.first + i] = -p[i]
+                if not pair.friction:
+                    continue
+                at = pair.first + pair.n + i
+                p1 = p[i] + traction[pair.first + i]
+                if state == OPEN:
+                    traction[at] = -q[i]
+                elif state == SLIPPING:
+                    traction[at] = pair.friction * sense[c.k][i] * p1 - q[i]
+                elif base[c.k][i] != CLOSED:
+                    s = senses[c.k][i]
+                    traction[at] = s * (pair.friction * p1 - slack[c.k, i]) - q[i]
+        for k, (pair, _, (p, q)) in enumerate(self.pairs):
+            # Slipping tractions of constraints that were not chosen follow their pressure.
+            if not pair.friction:
+                continue
+            mine = np.ones(pair.n, bool)
+            for c in chosen:
+                if c.k == k:
+                    mine[c.rows] = False
+            for i in np.flatnonzero(mine & (base[k] != CLOSED)).tolist():
+                p1 = p[i] + traction[pair.first + i]
+                follow = pair.friction * senses[k][i] * p1 if base[k][i] == SLIPPING else 0.0
+                traction[pair.first + pair.n + i] = follow - q[i]
+        return out, sense
+
+
+def pivoted(problem: TouchingSystem, at: Touched, asked: Asked) -> Found | None:
+    """A correction with states from the whole linearised problem, None where there is none."""
+    pairs = list(problem._pairs(at.touch))
+    first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
+    starts = [first] if problem.last is None else [problem.last, first]
+    # With all that touches sticking, what holds by friction is held and the matrix symmetric.
+    bases = [[np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in b] for b in starts]
+    bases += [[s.copy() for s in b] for b in starts]
+    for base in bases:
+        for s, (pair, terms, _) in zip(base, pairs, strict=True):
+            s[terms.area <= COVERED * pair.full] = OPEN
+    return Pivoting(problem, at, asked).solve(bases)
+
+
+def _small(problem: TouchingSystem) -> float:
+    """Force that is none."""
+    scales = problem.system.scales
+    return 1e-9 * max(scales.force, scales.nothing)
+
+
+def responses(
+    problem: TouchingSystem, at: Touched, states: States, senses: list[Floats], asked: Asked,
+    force: Floats, rows: Floats,
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """Solutions for the first right-hand side asked for, and for forces and rows of inputs."""
+    system = problem.system
+    problem.senses = {p.first: s for p, s in zip(problem.touching.pairs, senses, strict=True)}
+    coupling, own, _ = problem._coupling(at.touch, states)
+    columns = [asked.force[:, 0] + system.at_nodes(coupling.force)]
+    columns += [system.at_nodes(f) for f in force.T]
+    held = np.zeros((problem.n, len(columns)))
+    held[:, 0] = asked.held[:, 0]
+    both = np.column_stack([asked.own[0] * own, rows])
+    du, dp, _ = problem.border.solve(at.at, coupling, np.column_stack(columns), both, held)
+    return du, dp
+
+
+def rates_of(problem: TouchingSystem, at: Touched, du: Floats, only: int | None = None) -> Any:
+    """Changes of weighted gaps and slips of each pair, or one, with columns of displacements."""
+    moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)
+    moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
+    out = []
+    for k, (pair, terms, _) in enumerate(problem._pairs(at.touch)):
+        if only is not None and k != only:
+            continue
+        where, parts = problem.touching.dofs(terms.variables), []
+        for gradient in (terms.gap_gradient, terms.slip_gradient):
+            change = np.zeros((pair.n, moved.shape[1]))
+            np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))
+            parts.append(change if du.ndim > 1 else change[:, 0])
+        out.append(tuple(parts))
+    return out if only is None else out[0]
+
+
+__all__ = ["pivoted"]

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact problems that stopped with the defaults run to their end, in balance.
+
+They are a sample of ``python -m benchmarks.contact_torture``; each of these stopped before states
+were chosen from the whole linearised problem. Reactions and contact forces must balance.
+"""
+
+import pytest
+
+import corota as ct
+from benchmarks.contact_problems import problem
+from benchmarks.contact_torture import run
+from corota.results.observer import Silent
+
+#: Numbers of the torture set that stopped before.
+STOPPED = (7, 10, 16)
+
+
+@pytest.mark.parametrize("number", STOPPED)
+def test_what_stopped_finishes(number):
+    row = run(number, limit=60)
+    assert row["end"] == "done", row["why"]
+    assert row["residual"] < 1e-6
+    assert row["balance"] < 1e-8
+
+
+def test_the_log_says_where_states_came_from_pivoting():
+    notes = []
+
+    class Log(Silent):
+        def iteration(self, info):
+            notes.append(info.note)
+
+    model = problem(16).model
+    ct.solve(model, ct.Static(), observers=[Log()], threads=1)
+    assert "contact states by pivoting" in notes
