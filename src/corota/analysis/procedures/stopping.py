@@ -59,6 +59,8 @@ def collapse(
     why : str
         Why the last attempt failed: where all yields at once, by a mechanism.
     """
+    if system.touching is not None and system.touching.damped.any():
+        return ""  # a body flies away as its damping ends: that is no collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     yields = any(isinstance(b.section.material, Mises) for b in system.blocks)
     if not yields or not (grown > SOFT or (grown > 0.0 and FREE in why)):
