@@ -59,7 +59,7 @@ PROGRAMS = (
     Program("Corota", "Q4, modified", "P1 P4", driver="corota"),
     Program("Corota", "Q4, logarithmic", "P2", driver="corota", options=("strain=logarithmic",)),
     Program(
-        "Corota", "Q4I", "P1 P4", driver="corota", options=("element=Q4I", "strain=simplified")
+        "Corota", "Q4I", "P1 P4", driver="corota", options=("element=Q4I", "strain=linear")
     ),
     Program(
         "Corota", "Q4I, logarithmic", "P2", driver="corota",

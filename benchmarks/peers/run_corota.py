@@ -40,7 +40,9 @@ def model_of(p: Problem, element: str, strain: str, method: str = "mortar") -> c
 def main() -> None:
     p, options = arguments()
     element = options.get("element", "Q4")
-    model = model_of(p, element, options.get("strain", "modified"), options.get("method", "mortar"))
+    model = model_of(
+        p, element, options.get("strain", "green_lagrange"), options.get("method", "mortar")
+    )
     share = p.last / p.increments
     step: ct.Static | ct.Dynamic
     if p.name == "P4":

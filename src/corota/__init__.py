@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from corota import mesh
+    from corota._core import __version__ as __version__
     from corota.analysis.run import solve
     from corota.errors import (
         ConvergenceError,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
     from corota.model.contact import PressureLaw, RigidCurve
     from corota.model.loads import Amplitude
+    from corota.model.local_strain import LOCAL_STRAINS
     from corota.model.materials import Elastic, Expansion, Orthotropic
     from corota.model.model import Model
     from corota.model.paths import ArcLength, DisplacementControl
@@ -33,10 +35,10 @@ if TYPE_CHECKING:
     from corota.model.user_material import UserMaterial
     from corota.results.results import Results
 
-__version__ = "0.1.0"
 
 #: Module of each public name; a module stands for itself.
 _HOMES = {
+    "__version__": "_core",  # that of Cargo.toml
     "Amplitude": "model.loads",
     "ArcLength": "model.paths",
     "Buckle": "model.steps",
@@ -49,6 +51,7 @@ _HOMES = {
     "Expansion": "model.materials",
     "Frequency": "model.steps",
     "InputError": "errors",
+    "LOCAL_STRAINS": "model.local_strain",
     "JobFiles": "io.job",
     "Mesh": "mesh",
     "Mises": "model.plasticity",
@@ -72,6 +75,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "LOCAL_STRAINS",
     "Amplitude",
     "ArcLength",
     "Buckle",

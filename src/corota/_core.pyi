@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+__version__: str
+
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.uint32]
 

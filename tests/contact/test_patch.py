@@ -58,7 +58,7 @@ def test_patch_after_sliding_on_part_of_the_master(element, slave):
     model = ct.Model(mesh)
     model.section(
         "all", element=element, material=ct.Elastic(E=E, nu=NU), plane="strain",
-        local_strain="modified",
+        local_strain="green_lagrange",
     )  # fmt: skip
     model.fix("low", x=0.0, y=0.0, rotation=True)
     model.local_axes(mesh.node_sets["up.top"], angle=np.radians(30.0))

@@ -1,4 +1,4 @@
-"""`modified` is the total-Lagrangian Saint Venant-Kirchhoff solid for isoparametric elements.
+"""`green_lagrange` is the total-Lagrangian Saint Venant-Kirchhoff solid for isoparametric elements.
 
 The comparison is the small independent program in ``tests/support/continuum.py``.
 """
@@ -41,7 +41,7 @@ def test_force_and_tangent_of_random_large_states(element, plane):
     for _ in range(50):
         x, u = random_state(n, random)
         force, tangent = assemble(
-            single(element, x, E=E, nu=NU, plane=plane, local_strain="modified",
+            single(element, x, E=E, nu=NU, plane=plane, local_strain="green_lagrange",
                    thickness=THICKNESS), u
         )  # fmt: skip
         expected, slope = continuum.element(
@@ -67,7 +67,7 @@ def nodal(mesh, name, total):
 @pytest.mark.parametrize("element", ISOPARAMETRIC)
 def test_cook_membrane_in_large_strain(element):
     """Every node, to rounding; the loads reach strains of a third."""
-    model, _ = cook(element, 4, local_strain="modified")
+    model, _ = cook(element, 4, local_strain="green_lagrange")
     model.loads.clear()
     forces = (0.1, 0.3, 0.6, 1.0)
     steps = [
@@ -92,7 +92,7 @@ def test_cook_membrane_in_large_strain(element):
         assert np.abs(frame.U - u).max() <= PROBLEM * np.abs(u).max()
 
 
-def test_simplified_is_the_biot_continuum_on_square_cells():
+def test_linear_is_the_biot_continuum_on_square_cells():
     """The limit of linear local strain: both programs converge to the same displacement."""
     errors = []
     for n in (2, 4, 8):

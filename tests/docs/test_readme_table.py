@@ -75,7 +75,7 @@ def test_cantilever_beside_other_programs() -> None:
         element="Q4",
         material=ct.Elastic(E=p1.YOUNG, nu=p1.POISSON),
         thickness=p1.THICKNESS,
-        local_strain="modified",
+        local_strain="green_lagrange",
     )
     model.fix(np.flatnonzero(points[:, 0] == 0.0))
     for node, share in p1.tip_shares(points).items():

@@ -24,7 +24,7 @@ def one_element(item):
         "law": "elastic",
         "parameters": [1.0, 0.3],
         "plane": "stress",
-        "local_strain": "simplified",
+        "local_strain": "linear",
         "thickness": item["thickness"],
         "rho": item["density"],
         "nodes": np.arange(len(points), dtype=np.uint32),

@@ -20,7 +20,7 @@ def flying(element: str, spin: float = 2.0) -> ct.Model:
     mesh = ct.mesh.rectangle(*SIDES, nx=8, ny=3, cell=CELLS.get(element, "quad4"))
     model = ct.Model(mesh)
     material = ct.Elastic(E=1e4, nu=0.3, rho=1.5)
-    model.section("all", element=element, material=material, local_strain="modified")
+    model.section("all", element=element, material=material, local_strain="green_lagrange")
     model.velocity(x=0.5, y=1.0, spin=spin, about=(1.0, 0.2))
     return model
 

@@ -130,10 +130,10 @@ def test_a_long_element_line_continues_after_a_comma(tmp_path: Path) -> None:
 
 def test_plane_strain_of_a_section(tmp_path: Path) -> None:
     text = DECK.replace("TYPE=CPS4", "TYPE=Q4I").replace(
-        "*SOLID SECTION,", "*SOLID SECTION, PLANE=STRAIN, LOCAL STRAIN=MODIFIED,"
+        "*SOLID SECTION,", "*SOLID SECTION, PLANE=STRAIN, LOCAL STRAIN=GREEN LAGRANGE,"
     )
     section = read(tmp_path, text).sections[0]
-    assert (section.plane, section.local_strain) == ("strain", "modified")
+    assert (section.plane, section.local_strain) == ("strain", "green_lagrange")
 
 
 def test_element_map_keeps_the_plane_state(tmp_path: Path) -> None:

@@ -99,7 +99,10 @@ def test_a_python_model_survives_a_round_trip(tmp_path: Path) -> None:
     wood = ct.Orthotropic(10.0, 4.0, 3.0, 0.3, 0.2, 0.1, 2.0, rho=0.5)
     model.section([0, 1], element="Q8", material=wood, plane="strain", orientation=0.7)
     model.section(
-        [2, 3, 4, 5, 6, 7], element="Q8R", material=ct.Elastic(1.0, 0.2), local_strain="modified"
+        [2, 3, 4, 5, 6, 7],
+        element="Q8R",
+        material=ct.Elastic(1.0, 0.2),
+        local_strain="green_lagrange",
     )
     model.fix("left side")
     model.fix([7], x=None, y=0.25)

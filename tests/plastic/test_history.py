@@ -26,7 +26,7 @@ def state_of(results: ct.Results) -> list[np.ndarray]:
     return [frame.U, frame.RF, fields["S"], fields["PE"], fields["PEEQ"], fields["PWORK"]]
 
 
-@pytest.mark.parametrize("measure", ["simplified", "modified", "logarithmic"])
+@pytest.mark.parametrize("measure", ["linear", "logarithmic"])
 @pytest.mark.parametrize("element", ["Q4I", "Q4D", "Q8", "OPT"])
 def test_cut_backs_leave_no_trace(
     element: str, measure: Any, monkeypatch: pytest.MonkeyPatch
@@ -102,7 +102,7 @@ def test_first_yield_in_one_large_increment(element: str) -> None:
 
 
 @pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4I", "Q8", "Q8R", "Q9", "OPT", "Q4D"])
-@pytest.mark.parametrize("measure", ["simplified", "modified", "logarithmic"])
+@pytest.mark.parametrize("measure", ["linear", "logarithmic"])
 def test_plastic_steps_converge_quadratically(element: str, measure: Any) -> None:
     model = perforated_strip(element, 3, pull=0.1, local_strain=measure)
     watch = Residuals()

@@ -140,17 +140,3 @@ def test_localised_flow_is_said(element, hardening, said):
     found = [n for n in results.notes if "within a Q4I element" in n]
     assert len(found) == said
     assert sum("within a Q4I element" in str(w.message) for w in caught) == said
-
-
-@pytest.mark.parametrize("moving", [False, True])
-def test_a_run_that_stops_under_modified_strain_says_why(moving):
-    """Pressed to half its height with hardening below the stress; in motion too."""
-    mesh = ct.mesh.distort(ct.mesh.rectangle(1.0, 1.0, 4, 4, "quad8"), 0.2, seed=3)
-    model = ct.Model(mesh)
-    law_with_mass = ct.Mises(E=70.0, nu=1.0 / 3.0, yield_stress=0.243, isotropic=0.02, rho=1e-3)
-    model.section("all", element="Q8", material=law_with_mass, local_strain="modified")
-    model.fix("bottom")
-    model.fix("top", x=None, y=-0.5)
-    step = ct.Dynamic(period=1.0, increments=10) if moving else ct.Static(increments=10)
-    with pytest.raises(ct.ConvergenceError, match=r"take 'logarithmic'\. All converged"):
-        ct.solve(model, step, threads=1, fields=False)

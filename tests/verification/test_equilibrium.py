@@ -20,7 +20,7 @@ def random_model(seed):
     """A clamped strip with dead forces, 0.1 to 10 times what bends it well."""
     random = np.random.default_rng(seed)
     element = ELEMENTS[seed % len(ELEMENTS)]
-    local_strain = ("simplified", "modified")[(seed // len(ELEMENTS)) % 2]
+    local_strain = ("linear", "green_lagrange")[(seed // len(ELEMENTS)) % 2]
     mesh = ct.mesh.rectangle(5.0, 1.0, 8, 2, cell(element), "alternate")
     mesh = ct.mesh.distort(mesh, 0.25, seed=seed)
     model = ct.Model(mesh)
@@ -46,7 +46,7 @@ def random_model(seed):
 def internal_force(model, element, local_strain, frame):
     """Force and moment of the elements at each node, shape (n_nodes, 3)."""
     mesh, out = model.mesh, np.zeros((model.mesh.n_nodes, 3))
-    if element in ISOPARAMETRIC and local_strain == "modified":
+    if element in ISOPARAMETRIC and local_strain == "green_lagrange":
         nodes = mesh.cells[0].nodes
         law, c = continuum.saint_venant_kirchhoff, continuum.moduli(E, NU)
         rule = continuum.RULE[element]

@@ -5,6 +5,7 @@ pub mod dual;
 pub mod hyper;
 pub mod memory;
 pub mod pack;
+pub mod pool;
 pub mod race;
 pub mod real;
 pub mod small;

@@ -43,7 +43,7 @@ pub struct Section<const N: usize> {
 impl<const N: usize> Section<N> {
     /// The same section for a geometrically linear analysis.
     pub fn linearised(&self) -> Self {
-        Self { strain: LocalStrain::Simplified, finite: false, ..self.clone() }
+        Self { strain: LocalStrain::Linear, finite: false, ..self.clone() }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Strain of the local displacement gradient: `simplified` (linear), `modified`
+//! Strain of the local displacement gradient: `linear`, `green_lagrange`
 //! (Green-Lagrange), `logarithmic` (Hencky), with first and second derivatives, in gradient
 //! components `u,x  u,y  v,x  v,y`.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -10,25 +10,25 @@ use crate::base::small::Mat;
 /// Which strain of the local gradient the material sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocalStrain {
-    Simplified,
-    Modified,
+    Linear,
+    GreenLagrange,
     Logarithmic,
 }
 
 impl LocalStrain {
-    pub const NAMES: &'static [&'static str] = &["simplified", "modified", "logarithmic"];
+    pub const NAMES: &'static [&'static str] = &["linear", "green_lagrange", "logarithmic"];
 
     pub fn new(name: &str) -> Result<Self, String> {
         match name {
-            "simplified" => Ok(Self::Simplified),
-            "modified" => Ok(Self::Modified),
+            "linear" => Ok(Self::Linear),
+            "green_lagrange" => Ok(Self::GreenLagrange),
             "logarithmic" => Ok(Self::Logarithmic),
             _ => Err(format!("no local strain named {name:?}; there are {:?}", Self::NAMES)),
         }
     }
 
     pub fn is_linear(self) -> bool {
-        self == Self::Simplified
+        self == Self::Linear
     }
 
     /// Strain xx, yy, xy (engineering shear).
@@ -36,8 +36,8 @@ impl LocalStrain {
     pub fn strain<T: Real>(self, h: &[T; 4]) -> [T; 3] {
         let linear = [h[0], h[3], h[1] + h[2]];
         match self {
-            Self::Simplified => linear,
-            Self::Modified => [
+            Self::Linear => linear,
+            Self::GreenLagrange => [
                 (h[0] * h[0] + h[2] * h[2]).fma(T::real(0.5), linear[0]),
                 (h[1] * h[1] + h[3] * h[3]).fma(T::real(0.5), linear[1]),
                 h[0].fma(h[1], h[2].fma(h[3], linear[2])),
@@ -51,8 +51,8 @@ impl LocalStrain {
     pub fn pull<T: Real>(self, h: &[T; 4], s: &[T; 3]) -> [T; 4] {
         let linear = [s[0], s[2], s[2], s[1]];
         match self {
-            Self::Simplified => linear,
-            Self::Modified => [
+            Self::Linear => linear,
+            Self::GreenLagrange => [
                 h[0].fma(s[0], h[1].fma(s[2], linear[0])),
                 h[0].fma(s[2], h[1].fma(s[1], linear[1])),
                 h[2].fma(s[0], h[3].fma(s[2], linear[2])),
@@ -66,7 +66,7 @@ impl LocalStrain {
     #[inline(always)]
     pub fn tangent<T: Real>(self, h: &[T; 4], s: &[T; 3], d: &Mat<T, 3>) -> Mat<T, 4> {
         match self {
-            Self::Simplified => {
+            Self::Linear => {
                 // Row of the strain that each gradient component feeds.
                 const ROW: [usize; 4] = [0, 2, 2, 1];
                 let mut a = [[T::zero(); 4]; 4];
@@ -77,7 +77,7 @@ impl LocalStrain {
                 }
                 a
             }
-            Self::Modified => {
+            Self::GreenLagrange => {
                 let (f0, f3) = (h[0] + T::one(), h[3] + T::one());
                 let o = T::zero();
                 let de = [[f0, o, h[2], o], [o, h[1], o, f3], [h[1], f0, f3, h[2]]];
@@ -112,8 +112,8 @@ impl LocalStrain {
     /// Stretch of the thickness that belongs to its strain.
     pub fn stretch(self, strain_zz: f64) -> f64 {
         match self {
-            Self::Simplified => 1.0 + strain_zz,
-            Self::Modified => (1.0 + 2.0 * strain_zz).max(0.0).sqrt(),
+            Self::Linear => 1.0 + strain_zz,
+            Self::GreenLagrange => (1.0 + 2.0 * strain_zz).max(0.0).sqrt(),
             Self::Logarithmic => strain_zz.exp(),
         }
     }
@@ -122,8 +122,8 @@ impl LocalStrain {
     /// to this strain, the stress through the thickness and the thickness stretch.
     pub fn cauchy(self, h: &[f64; 4], s: [f64; 3], zz: f64, stretch: f64) -> [f64; 4] {
         let (second, zz) = match self {
-            Self::Simplified => return [s[0], s[1], zz, s[2]],
-            Self::Modified => (s, zz * stretch * stretch),
+            Self::Linear => return [s[0], s[1], zz, s[2]],
+            Self::GreenLagrange => (s, zz * stretch * stretch),
             Self::Logarithmic => (hencky::second_piola(h, &s), zz),
         };
         let f = [[1.0 + h[0], h[1]], [h[2], 1.0 + h[3]]];

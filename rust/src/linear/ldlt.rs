@@ -7,13 +7,13 @@ use super::lu::Lu;
 use super::multifrontal::Numeric;
 use super::nullspace;
 use super::pattern::Pattern;
-use super::pool;
 use super::scaling::{
     BALANCED, apply_scale, balance, largest_at, max_abs, scale_of, subtract_product,
 };
 use super::symbolic::Symbolic;
 use super::{Inertia, LinearSolver, check_rhs};
 use crate::base::memory;
+use crate::base::pool;
 use crate::base::race::Race;
 
 /// Backward error above which one step of refinement is made.

@@ -42,11 +42,11 @@ pub mod etree;
 pub mod faer_ldlt;
 pub mod ldlt;
 pub mod lu;
+mod metis;
 pub mod multifrontal;
 pub mod nullspace;
 pub mod ordering;
 pub mod pattern;
-pub mod pool;
 pub mod scaling;
 pub mod symbolic;
 

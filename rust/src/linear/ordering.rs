@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //! Fill-reducing elimination order: METIS nested dissection of the node graph.
 
-use std::sync::Mutex;
-
 use super::error::LinearError;
+use super::metis::dissect;
 use super::pattern::NodeGraph;
-
-/// METIS draws from one random stream for the whole process, so runs take turns.
-static METIS_TURN: Mutex<()> = Mutex::new(());
-
-/// Below this number of nodes the graph is handed over whole even if it has no edge.
-const TINY: usize = 3;
 
 /// Most neighbours of a multiplier that are tied together before the dissection.
 const CLIQUE_LIMIT: usize = 48;
@@ -74,42 +67,4 @@ pub fn elimination_order(graph: &NodeGraph) -> Result<Vec<u32>, LinearError> {
         .collect();
     keyed.sort_unstable();
     Ok(keyed.into_iter().map(|(_, _, v)| v).collect())
-}
-
-/// Nested dissection of a graph with weighted vertices; always the same result.
-#[allow(unsafe_code)] // METIS is a C library; its arguments are built and checked here.
-fn dissect(xadj: &[u32], adjncy: &[u32], weights: &[i32]) -> Result<Vec<u32>, LinearError> {
-    let nodes = weights.len();
-    if nodes < TINY || adjncy.is_empty() {
-        return Ok((0..nodes as u32).collect());
-    }
-    let mut nvtxs = nodes as i32;
-    let mut xadj: Vec<i32> = xadj.iter().map(|&v| v as i32).collect();
-    let mut adjncy: Vec<i32> = adjncy.iter().map(|&v| v as i32).collect();
-    let mut weights = weights.to_vec();
-    let mut order = vec![0_i32; nodes];
-    let mut rank = vec![0_i32; nodes];
-    let mut options = [-1_i32; metis_sys::METIS_NOPTIONS as usize];
-    let turn = METIS_TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    // SAFETY: the pointers are to live vectors of the lengths METIS documents
-    // (nvtxs, nvtxs + 1, xadj[nvtxs]); every neighbour is below nvtxs.
-    let status = unsafe {
-        metis_sys::METIS_SetDefaultOptions(options.as_mut_ptr());
-        options[metis_sys::moptions_et_METIS_OPTION_SEED as usize] = 1;
-        options[metis_sys::moptions_et_METIS_OPTION_NUMBERING as usize] = 0;
-        metis_sys::METIS_NodeND(
-            &raw mut nvtxs,
-            xadj.as_mut_ptr(),
-            adjncy.as_mut_ptr(),
-            weights.as_mut_ptr(),
-            options.as_mut_ptr(),
-            order.as_mut_ptr(),
-            rank.as_mut_ptr(),
-        )
-    };
-    drop(turn);
-    if status != metis_sys::rstatus_et_METIS_OK {
-        return Err(LinearError::Pattern(format!("METIS refused the node graph ({status})")));
-    }
-    Ok(order.into_iter().map(|v| v as u32).collect())
 }

@@ -206,7 +206,7 @@ fn packs_give_what_plain_numbers_give() {
 fn every_failed_lane_is_named() {
     // Line elements cannot turn inside out.
     for facts in registry::facts().into_iter().filter(|f| !f.line) {
-        let mut case = case(&facts, "elastic", "modified", true);
+        let mut case = case(&facts, "elastic", "green_lagrange", true);
         let turned_inside_out = [0, 3, 6, 12];
         // The mirror image of the cell: no rotation brings it back.
         for e in turned_inside_out {

@@ -9,9 +9,11 @@ use super::held::Held;
 use super::recover::Fields;
 use super::registry;
 use super::scatter::{Shared, Sink};
-use crate::base::Lanes;
 use crate::base::race::Race;
+use crate::base::{Lanes, pool};
 use crate::kinematics::inertia::MassKind;
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 /// Elements that could not be evaluated: pairs of block and index in it.
@@ -29,7 +31,7 @@ pub struct Problem {
     pub blocks: Vec<Block>,
     /// Chunks of one colour share no node.
     colours: Vec<Vec<Box<dyn Chunk>>>,
-    pool: Option<rayon::ThreadPool>,
+    threads: usize,
     lanes: Lanes,
     held: Held,
     assemble_race: Race,
@@ -69,7 +71,7 @@ impl Problem {
             dofs,
             blocks,
             colours,
-            pool: None,
+            threads: 1,
             lanes: Lanes::Best,
             held: Held::default(),
             assemble_race: Race::default(),
@@ -79,15 +81,14 @@ impl Problem {
     }
 
     /// Use so many threads from now on; results do not depend on it.
-    pub fn set_threads(&mut self, n: usize) -> Result<(), String> {
+    pub fn set_threads(&mut self, n: usize) {
         (self.assemble_race, self.recover_race) = Default::default();
-        self.pool = if n > 1 {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            Some(pool.map_err(|e| e.to_string())?)
-        } else {
-            None
-        };
-        Ok(())
+        self.threads = n;
+    }
+
+    /// The threads of this process; none for one.
+    fn pool(&self) -> Option<Arc<rayon::ThreadPool>> {
+        if self.threads > 1 { pool::get(self.threads) } else { None }
     }
 
     /// Use these instructions from now on; results differ by rounding.
@@ -114,6 +115,7 @@ impl Problem {
         let context =
             Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
         let apart = self.colours.iter().any(|c| c.len() > 1);
+        let pool = self.pool();
         let (colours, active) = (&mut self.colours, &self.active);
         let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
@@ -144,7 +146,7 @@ impl Problem {
             failed
         };
         // A pool costs more than it brings where no two chunks can run side by side.
-        let pool = self.pool.as_ref().filter(|_| apart);
+        let pool = pool.as_deref().filter(|_| apart);
         let mut failed = share(&mut self.assemble_race, pool, &self.blocks, work);
         failed.sort_unstable();
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
@@ -167,13 +169,14 @@ impl Problem {
             scale: Shared::new(scale),
             values: Shared::new(values),
         };
+        let pool = self.pool();
         for colour in &self.colours {
             let evaluate = |c: &dyn Chunk| {
                 if self.active.get(c.block()) != Some(&false) {
                     c.inertia(&context, motion, &sink);
                 }
             };
-            match &self.pool {
+            match pool.as_deref() {
                 Some(pool) if colour.len() > 1 => {
                     pool.install(|| colour.par_iter().for_each(|c| evaluate(c.as_ref())));
                 }
@@ -209,13 +212,14 @@ impl Problem {
             values: Shared::new(&mut []),
         };
         let mut failed = Vec::new();
+        let pool = self.pool();
         for colour in &mut self.colours {
             let evaluate = |c: &mut Box<dyn Chunk>| {
                 let block = c.block();
                 let bad = c.conserving(&context, between, &sink, &alone);
                 bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
             };
-            match &self.pool {
+            match pool.as_deref() {
                 Some(pool) if colour.len() > 1 => {
                     let bad: Vec<_> =
                         pool.install(|| colour.par_iter_mut().map(evaluate).collect());
@@ -371,7 +375,7 @@ impl Problem {
 
     /// Values at the points of every block.
     pub fn recover(&mut self, u: &[f64], turning: bool) -> Vec<Fields> {
-        let (blocks, lanes) = (&self.blocks, self.lanes);
+        let (blocks, lanes, pool) = (&self.blocks, self.lanes, self.pool());
         let empty = |block: usize, n: usize| {
             let b = &blocks[block];
             Fields::new(n, b.facts.n_points, &b.law, b.outputs().len())
@@ -399,7 +403,7 @@ impl Problem {
             }
             fields
         };
-        let pool = self.pool.as_ref().filter(|_| chunks.len() > 1);
+        let pool = pool.as_deref().filter(|_| chunks.len() > 1);
         share(&mut self.recover_race, pool, blocks, work)
     }
 

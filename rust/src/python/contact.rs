@@ -1,10 +1,10 @@
 //! Python class of a contact pair.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use crate::base::pool;
 use crate::contact::pair::Distances;
 use crate::contact::terms::WIDTH;
 use crate::contact::{Contact as Pair, Edge, Method, Rigid, Surface, Terms};
-use crate::linear::pool;
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

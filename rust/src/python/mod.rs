@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 /// Compiled core of Corota.
 #[pymodule]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     contact::register(m)?;
     edges::register(m)?;
     io::register(m)?;

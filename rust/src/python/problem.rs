@@ -83,8 +83,8 @@ impl PyProblem {
         self.inner.dofs.indices.clone().into_pyarray(py)
     }
 
-    fn set_threads(&mut self, n: usize) -> PyResult<()> {
-        self.inner.set_threads(n).map_err(value_error)
+    fn set_threads(&mut self, n: usize) {
+        self.inner.set_threads(n);
     }
 
     /// Numbers that kernels treat at once, "best", "scalar", "4" or "8"; returns how many it is.

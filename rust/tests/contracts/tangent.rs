@@ -32,7 +32,7 @@ fn states<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(
                     let angle = if turning { 10.0 * random.signed() } else { 0.1 };
                     let u = state::<N, M>(&x, &mut random, angle, 0.2);
                     if evaluate::<E, f64, N, M, A>(&x, &u, &section, turning).failed {
-                        assert!(A > 0 && strain != LocalStrain::Simplified, "{}", E::NAME);
+                        assert!(A > 0 && strain != LocalStrain::Linear, "{}", E::NAME);
                         refused += 1;
                         continue;
                     }
@@ -72,12 +72,12 @@ where
 
 /// Strain of a displacement gradient, written again from its definition.
 fn definition<const D: usize>(kind: LocalStrain, h: &[Dual<D>; 4]) -> [Dual<D>; 3] {
-    if kind == LocalStrain::Simplified {
+    if kind == LocalStrain::Linear {
         return [h[0], h[3], h[1] + h[2]];
     }
     let (f11, f12, f21, f22) = (h[0] + Dual::one(), h[1], h[2], h[3] + Dual::one());
     let (c11, c22, c12) = (f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22);
-    if kind == LocalStrain::Modified {
+    if kind == LocalStrain::GreenLagrange {
         return [(c11 - Dual::one()).scale(0.5), (c22 - Dual::one()).scale(0.5), c12];
     }
     // Half the logarithm of C by its eigenvalues and their projections.
@@ -97,7 +97,7 @@ fn about_mean<const D: usize>(
 ) -> [Dual<D>; 3] {
     let f = [[mean[0] + Dual::one(), mean[1]], [mean[2], mean[3] + Dual::one()]];
     let det = f[0][0] * f[1][1] - f[0][1] * f[1][0];
-    let g = if kind == LocalStrain::Modified {
+    let g = if kind == LocalStrain::GreenLagrange {
         [[f[0][0], f[1][0]], [f[0][1], f[1][1]]]
     } else {
         [[f[1][1] / det, -f[0][1] / det], [-f[1][0] / det, f[0][0] / det]]
@@ -127,7 +127,7 @@ where
         let prepared = E::prepare(&x, section.parameter);
         let moduli = section.law.moduli();
         let mut total = E::stabilization(&x, &dual.frame.q, section, &[]);
-        let mean = (E::ABOUT_MEAN && section.strain != LocalStrain::Simplified)
+        let mean = (E::ABOUT_MEAN && section.strain != LocalStrain::Linear)
             .then(|| E::mean(&x, &prepared).gradient(&dual.frame.q));
         for point in &section.points {
             let s = E::sample(&x, &prepared, point);

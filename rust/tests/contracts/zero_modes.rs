@@ -44,7 +44,7 @@ fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() 
 
 /// Stiffness of two cells side by side.
 fn patch<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() -> Vec<Vec<f64>> {
-    let section = section::<E, N, M, A>(Plane::Stress, LocalStrain::Simplified);
+    let section = section::<E, N, M, A>(Plane::Stress, LocalStrain::Linear);
     let reference = natural(E::CELL);
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut parts = Vec::new();

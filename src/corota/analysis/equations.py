@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.terms.contact.contact import Touching
+    from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
 
@@ -152,6 +153,8 @@ class System:
         self.is_rotation = self.component == 2
         self.indptr, self.indices = self.core.indptr, self.core.indices
         self.turning = True
+        #: Largest local strain at the last recovery where it is linear, and the material there.
+        self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
         self.ties: Ties | None = None
         if model.constraints or model.axes:
             self.ties = Ties(model, self.start, carried, self.indptr, self.indices)
@@ -539,7 +542,8 @@ class System:
 
     def recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
         """Fields at the quadrature points, and sums over them."""
-        fields, energy, strain = [], 0.0, 0.0
+        fields, energy = [], 0.0
+        largest: tuple[float, Material | None] = (0.0, None)
         raw = self.core.recover(self.in_space(u), self.turning)
         for block, own in zip(self.blocks, raw, strict=True):
             for name, values in own["values"].items():
@@ -552,8 +556,9 @@ class System:
                         "thickness that vanishes; look at loads, moduli and units"
                     )
             energy += own["total_energy"]
-            if self.turning and block.section.local_strain == "simplified":
-                strain = max(strain, own["largest_strain"])
+            section, strain = block.section, float(own["largest_strain"])
+            if self.turning and section.local_strain == "linear" and strain > largest[0]:
+                largest = strain, section.material
             fields.append(
                 PointFields(
                     block.section.element,
@@ -565,7 +570,8 @@ class System:
                     own["values"],
                 )
             )
-        return fields, {"strain energy": energy, "largest simplified strain": strain}
+        self.largest_linear_strain = largest
+        return fields, {"strain energy": energy}
 
 
 def failure(labels: list[int], why: str = "") -> ElementFailure:

@@ -20,6 +20,7 @@ from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
+from corota.model.local_strain import LARGE_STRAIN, advice
 from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ if TYPE_CHECKING:
 
 #: Procedures that know contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
-#: Local strain above which the linear one of ``simplified`` is no longer a good measure.
-LARGE_STRAIN = 0.05
+#: Threads beyond so many for each core, and beyond this number, only cost memory.
+THREADS_PER_CORE, LEAST_CAP = 4, 64
 
 
 def solve(
@@ -145,7 +146,13 @@ class Analysis:
         for note in notes:
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)
-        self.threads = threads or os.cpu_count() or 1
+        cores = os.cpu_count() or 1
+        most = max(LEAST_CAP, THREADS_PER_CORE * cores)
+        self.threads = min(threads or cores, most)
+        if threads and threads > most:
+            self.results.notes.append(
+                f"{threads} threads were asked for; {most} are used, on {cores} cores"
+            )
         if isinstance(solver, str):
             if solver not in SOLVERS:
                 raise InputError(f"no solver named {solver!r}; there are {', '.join(SOLVERS)}")
@@ -280,14 +287,13 @@ class Analysis:
                 step = self.steps[number - 1]
                 if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
                     add_kinetic(system, fields, state.u, state.v, step)
-            strain = sums.pop("largest simplified strain")
             scalars = {**scalars, **sums}
-            if strain > LARGE_STRAIN:
+            strain, material = system.largest_linear_strain
+            if material is not None and strain > LARGE_STRAIN:
                 self._warn(
                     "strain",
                     f"local strain reaches {strain:.1%} in step {number}, increment {increment}; "
-                    "the simplified local strain is meant for a few percent: compare with "
-                    "local_strain='modified' (LOCAL STRAIN=MODIFIED)",
+                    f"the linear local strain is meant for a few percent: {advice(material)}",
                 )
             for block, own in zip(system.blocks, fields, strict=True):
                 if "flow" not in self.warned and (found := localised(block, own)):

@@ -122,6 +122,8 @@ class Material:
 
     #: Name under which the core knows the law.
     law = ""
+    #: Whether the law has plastic flow.
+    flows = False
 
     def compliance(self) -> NDArray[np.float64]:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.mesh import Mesh
+    from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
     from corota.model.steps import Step
 
@@ -127,7 +128,7 @@ class Model(LineSections, InitialFields):
         material: Material,
         thickness: float = 1.0,
         plane: Literal["stress", "strain"] = "stress",
-        local_strain: Literal["simplified", "modified", "logarithmic"] = "simplified",
+        local_strain: LocalStrain = "linear",
         orientation: float = 0.0,
         mean_dilatation: bool = False,
         beta0: float | None = None,
@@ -145,7 +146,9 @@ class Model(LineSections, InitialFields):
         thickness : float, optional
             Out-of-plane thickness [length].
         plane : {"stress", "strain"}, optional
-        local_strain : {"simplified", "modified", "logarithmic"}, optional
+        local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
+            ``logarithmic`` for plastic flow or local strains above a few percent; see
+            :class:`corota.model.sections.Section`.
         orientation : float, optional
             Angle of the material axes [rad].
         mean_dilatation : bool, optional

@@ -105,6 +105,7 @@ class Mises(Material):
     rows: Sequence[Location] = field(default=(), kw_only=True, compare=False, repr=False)
 
     law = "mises"
+    flows = True
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)

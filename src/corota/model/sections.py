@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
 from corota.errors import InputError, Location
 from corota.model import elements
+from corota.model.local_strain import local_strain
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
 
     Ints = NDArray[np.int64]
@@ -33,7 +35,11 @@ class Section:
     thickness : float
         Out-of-plane thickness [length], > 0.
     plane : {"stress", "strain"}
-    local_strain : {"simplified", "modified", "logarithmic"}
+    local_strain : {"linear", "logarithmic", "green_lagrange"}
+        Measure of the local displacement gradient. ``linear`` is the classical co-rotational one,
+        for local strains of a few percent; ``logarithmic`` serves large strain, with flow or
+        without; ``green_lagrange`` makes an elastic body the St. Venant-Kirchhoff solid.
+        ``simplified`` and ``modified``, the names of Cho et al. (2017), stand for the first two.
     orientation : float
         Angle of the material axes from the global ones in the reference [rad].
     profile : tuple of float
@@ -54,7 +60,7 @@ class Section:
     material: Material
     thickness: float = 1.0
     plane: Literal["stress", "strain"] = "stress"
-    local_strain: Literal["simplified", "modified", "logarithmic"] = "simplified"
+    local_strain: LocalStrain = "linear"
     orientation: float = 0.0
     where: Location | None = field(default=None, compare=False, repr=False)
     mean_dilatation: bool = field(default=False, kw_only=True)
@@ -63,6 +69,14 @@ class Section:
     table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
+        self.local_strain = cast("LocalStrain", local_strain(self.local_strain, self.where))
+        if self.local_strain == "green_lagrange" and self.material.flows:
+            raise InputError(
+                "the Green-Lagrange local strain is for elastic materials: with plastic flow it "
+                "compares a true yield stress with the second Piola-Kirchhoff stress; take "
+                "local_strain='logarithmic' (LOCAL STRAIN=LOGARITHMIC)",
+                self.where,
+            )
         pairs = np.asarray(self.table, dtype=np.float64).reshape(-1, 2)
         rising = (np.diff(pairs[:, 0]) > 0.0).all() and len(pairs) != 1
         if not (np.isfinite(pairs).all() and rising):

@@ -159,7 +159,7 @@ class Flight:
 def ring(
     element: str = "Q4I", around: int = 64, through: int = 2, *, plastic: bool = False,
     speed: float = 2.0, sideways: float = 0.0, spin: float = 0.0, unit: float = 1.0,
-    local_strain: Any = "modified", body: str = "ring", **contact: Any,
+    local_strain: Any = "green_lagrange", body: str = "ring", **contact: Any,
 ) -> Model:  # fmt: skip
     """Build the ring, or a bar upright, nearly touching the wall y = 0.
 
@@ -206,7 +206,7 @@ def run_ring(
     """Run the impact; 0 increments for automatic ones, other options as for :func:`ring`."""
     model = ring(
         element, around, through, plastic=plastic,
-        local_strain="simplified" if plastic else "modified", **options,
+        local_strain="linear" if plastic else "green_lagrange", **options,
     )  # fmt: skip
     step = Dynamic(
         period=period,

@@ -32,7 +32,7 @@ def column(results: Results, name: str) -> np.ndarray:
     return np.array([f.scalars[name] for f in results.frames if f.increment > 0])
 
 
-def flyer(element: str, strain: Any = "simplified", E: float = 1e4) -> Model:
+def flyer(element: str, strain: Any = "linear", E: float = 1e4) -> Model:
     """A flexible block 4 x 1 that spins and flies freely."""
     model = Model(meshes.rectangle(4.0, 1.0, nx=4, ny=1, cell=cell(element)))
     model.section("all", element=element, material=Elastic(E=E, nu=0.3, rho=1.0),

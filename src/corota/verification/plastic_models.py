@@ -72,7 +72,7 @@ def perforated_strip(
     n: int,
     material: Material | None = None,
     pull: float = 0.3,
-    local_strain: Any = "simplified",
+    local_strain: Any = "linear",
     thickness: float = 0.01,
 ) -> Model:
     """Quarter strip 10 x 18 with a hole of radius 5, its top moved by `pull`.
@@ -123,7 +123,7 @@ def cook(
     element: str,
     n: int,
     force: float = 1.8,
-    local_strain: Any = "simplified",
+    local_strain: Any = "linear",
     material: Material | None = None,
 ) -> Model:
     """Cook's tapered panel, clamped left, with a shear force on the right (plane stress).
@@ -143,7 +143,7 @@ def cantilever(
     element: str,
     ny: int,
     move: float,
-    local_strain: Any = "simplified",
+    local_strain: Any = "linear",
     length: float = 10.0,
     aspect: float = 1.0,
 ) -> Model:

@@ -13,7 +13,6 @@ import numpy as np
 from corota.analysis.increments import CUT, SAME, Increments
 from corota.analysis.newton import Outcome, Settings, newton
 from corota.analysis.procedures.explicit import explicit_step
-from corota.analysis.procedures.localization import softening
 from corota.analysis.procedures.motion import (
     ConservingMotion,
     Driven,
@@ -132,7 +131,7 @@ def dynamic_step(
             if end:
                 raise ConvergenceError(
                     f"step {number} stopped at step time {control.time:g} of {step.period:g}: "
-                    f"{end}; last attempt: {reason}{softening(system.blocks)}. "
+                    f"{end}; last attempt: {reason}. "
                     "All converged increments are kept"
                 )
             observers.cut_back(

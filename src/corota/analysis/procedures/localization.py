@@ -11,8 +11,6 @@ from corota.model import elements
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from corota.analysis.blocks import BlockOfCells
     from corota.results.results import PointFields
 
@@ -35,7 +33,7 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
     flow = own.values.get("PEEQ")
     if (
         not elements.find(section.element).loose_modes
-        or section.local_strain == "simplified"
+        or section.local_strain == "linear"
         or flow is None
         or not isinstance(law, Mises)
     ):
@@ -55,21 +53,4 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
         f"material hardens by less ({slope:.3g}) than its stress ({stress[-1]:.3g}): incompatible "
         "modes let flow run into half an element then, and a finer mesh makes it worse; take Q4S, "
         "whose modes are stable, or Q8R"
-    )
-
-
-def softening(blocks: Sequence[BlockOfCells]) -> str:
-    """What to say of a run that stops with plastic flow and the local strain `modified`.
-
-    The nominal stress is the stretch times a stress S of the size of the yield stress; its slope
-    is S plus the hardening times the square of the stretch, in compression negative.
-    """
-    if not any(
-        b.section.local_strain == "modified" and isinstance(b.section.material, Mises)
-        for b in blocks
-    ):
-        return ""
-    return (
-        ". Plastic flow with the local strain 'modified' softens under compression where "
-        "hardening, times the square of the stretch, is below the yield stress: take 'logarithmic'"
     )

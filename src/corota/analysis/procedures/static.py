@@ -11,7 +11,6 @@ import numpy as np
 from corota.analysis.equations import Evaluation
 from corota.analysis.increments import Increments
 from corota.analysis.newton import Outcome, Settings, newton
-from corota.analysis.procedures.localization import softening
 from corota.analysis.procedures.path.arc_length import path_step
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, reason
 from corota.analysis.terms.contact.newton import newton_with_contact
@@ -266,7 +265,7 @@ def _go_along_path(
             raise ConvergenceError(
                 f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                 f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
-                f"{said}{softening(system.blocks)}. All converged increments are kept"
+                f"{said}. All converged increments are kept"
             ) from None
         return False
     state.counters["arc length took over"] = 1

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.procedures.localization import softening
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
@@ -112,7 +111,7 @@ def reason(
     elif collapses:
         where += ". To see beyond, prescribe a displacement instead of the load"
     return (
-        where + softening(system.blocks) + ". All converged increments are kept; the last attempt "
+        where + ". All converged increments are kept; the last attempt "
         "is results.last_iterate (corota plot JOB.vtkhdf --last-iterate)"
     )
 

@@ -60,7 +60,7 @@ def solved(
     model = Model(blocks(low, up, angle, overhang))
     material = Elastic(E=YOUNG, nu=POISSON)
     # A uniform strain is exact at large deformation with the strain of the true gradient only.
-    strain: Any = "modified" if nlgeom else "simplified"
+    strain: Any = "green_lagrange" if nlgeom else "linear"
     for name, element in (("low", low), ("up", up)):
         model.section(name, element=element, material=material, thickness=0.5, plane=plane,
                       local_strain=strain)  # fmt: skip

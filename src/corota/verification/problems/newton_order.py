@@ -44,7 +44,7 @@ def pressure_order(element: str) -> float:
 
 def measure() -> Iterator[Value]:
     """Every element."""
-    for strain in ("simplified", "modified"):
+    for strain in ("linear", "green_lagrange"):
         for element in ELEMENTS:
             yield Value(f"order, {element}, {strain}", BOUND, order(element, strain), 0.0,
                         "at least")  # fmt: skip

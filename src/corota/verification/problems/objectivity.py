@@ -22,11 +22,11 @@ from corota.model.model import Model
 from corota.verification.catalogue import Problem, Value
 from corota.verification.models import DRILLING, ELEMENTS, assemble, cell
 
-STRAINS = ("simplified", "modified", "logarithmic")
+STRAINS = ("linear", "green_lagrange", "logarithmic")
 YOUNG = 1000.0
 
 
-def patch(element: str, strain: Any = "simplified") -> Model:
+def patch(element: str, strain: Any = "linear") -> Model:
     """Distorted cells 2 x 2 on a rectangle 2 x 1."""
     mesh = meshes.distort(meshes.rectangle(2.0, 1.0, 2, 2, cell(element)), 0.2, seed=3)
     model = Model(mesh)

@@ -1,6 +1,6 @@
 """Thick cantilever under a parabolic dead end shear, up to tip displacements of two thirds.
 
-10 x 1, thickness 1, E = 1200, nu = 0.3, fully clamped. With `simplified` local strain fine square
+10 x 1, thickness 1, E = 1200, nu = 0.3, fully clamped. With `linear` local strain fine square
 cells approach the continuum whose energy is (U - I) : C : (U - I) / 2 with the right stretch U,
 not the Saint Venant-Kirchhoff solid; at surface strains of 14 % the two differ visibly.
 """

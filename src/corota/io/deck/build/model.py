@@ -22,6 +22,7 @@ from corota.io.deck.deck import nearest
 from corota.io.deck.elements import COMPANIONS, DRILLING, ELEMENTS, LINES
 from corota.io.deck.lexer import key
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
+from corota.model.local_strain import LocalStrain
 from corota.model.model import Model
 from corota.model.sections import Section
 from corota.model.steps import Static, SteadyState
@@ -217,9 +218,7 @@ class ModelBuilder:
                         material,
                         draft.thickness,
                         cast("Literal['stress', 'strain']", plane),
-                        cast(
-                            "Literal['simplified', 'modified', 'logarithmic']", draft.local_strain
-                        ),
+                        cast("LocalStrain", draft.local_strain),
                         angle,
                         card.where,
                         mean_dilatation=draft.mean_dilatation,

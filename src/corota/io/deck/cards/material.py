@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.deck import MaterialDraft, SectionDraft
 from corota.io.deck.lexer import key
+from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -135,9 +136,8 @@ def solid_section(deck: Deck, card: Card) -> None:
     elset = deck.required(card, "ELSET")
     name = deck.required(card, "MATERIAL")
     plane = deck.choice(card, "PLANE", ("STRESS", "STRAIN"), "").lower()
-    local = deck.choice(
-        card, "LOCALSTRAIN", ("SIMPLIFIED", "MODIFIED", "LOGARITHMIC"), "SIMPLIFIED"
-    ).lower()
+    known = [name.replace("_", "").upper() for name in (*LOCAL_STRAINS, *ALIASES)]
+    local = local_strain(deck.choice(card, "LOCALSTRAIN", known, "LINEAR"))
     mean = deck.choice(card, "DILATATION", ("POINT", "MEAN"), "POINT") == "MEAN"
     # What is not positive, and elements without this weight, the section refuses.
     beta0 = deck.parameter_number(card, "BETA0", 0.0, 0.0) if card.has("BETA0") else None

@@ -146,8 +146,8 @@ class _Writer:
             options = f"ELSET={self.cell_set(section.cells)}, MATERIAL={name}"
             if section.plane == "strain":
                 options += ", PLANE=STRAIN"
-            if section.local_strain != "simplified":
-                options += f", LOCAL STRAIN={section.local_strain.upper()}"
+            if section.local_strain != "linear":
+                options += f", LOCAL STRAIN={section.local_strain.replace('_', ' ').upper()}"
             if section.mean_dilatation:
                 options += ", DILATATION=MEAN"
             if section.beta0 is not None:

@@ -1,0 +1,69 @@
+"""Names of the local strain measures, the paper's names for them, and which one to take."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Literal
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from corota.errors import Location
+    from corota.model.materials import Material
+
+LocalStrain = Literal["linear", "logarithmic", "green_lagrange", "simplified", "modified"]
+
+#: Measures of the local displacement gradient: its symmetric part, the Hencky strain, and the
+#: Green-Lagrange strain.
+LOCAL_STRAINS = ("linear", "logarithmic", "green_lagrange")
+#: The approaches of Cho, Joo, Shin and Kim (2017). Only the first pages of the paper were at hand:
+#: that its modified approach is the logarithmic strain is our reading.
+ALIASES = {"simplified": "linear", "modified": "logarithmic"}
+#: Local strain above which the linear measure is no longer a good one.
+LARGE_STRAIN = 0.05
+
+
+def local_strain(name: str, where: Location | None = None) -> str:
+    """Name of a measure in :data:`LOCAL_STRAINS`, from it or from an alias.
+
+    Blanks, hyphens, underscores and the case of letters do not count.
+
+    Raises
+    ------
+    InputError
+        If there is no such measure.
+
+    Examples
+    --------
+    >>> local_strain("GREEN LAGRANGE"), local_strain("simplified")
+    ('green_lagrange', 'linear')
+    """
+    known = {**{n: n for n in LOCAL_STRAINS}, **ALIASES}
+    plain = {_plain(n): value for n, value in known.items()}
+    found = plain.get(_plain(str(name)))
+    if found is None:
+        begun = [n for n in plain if n.startswith(_plain(str(name)))]
+        close = begun[:1] or get_close_matches(_plain(str(name)), list(plain), 1, 0.5)
+        hint = f"; did you mean {plain[close[0]]!r}?" if close else ""
+        raise InputError(
+            f"no local strain {name!r}; there are {', '.join(repr(n) for n in LOCAL_STRAINS)} "
+            f"(and the paper's names {', '.join(repr(n) for n in ALIASES)}){hint}",
+            where,
+        )
+    return found
+
+
+def advice(material: Material) -> str:
+    """Which measure to take where the local strain is more than a few percent."""
+    if material.flows:
+        return "take local_strain='logarithmic' (LOCAL STRAIN=LOGARITHMIC)"
+    return (
+        "compare with local_strain='green_lagrange' or 'logarithmic' "
+        "(LOCAL STRAIN=GREEN LAGRANGE or LOGARITHMIC)"
+    )
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s_-]+", "", name).lower()
