@@ -10,7 +10,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MAX_KILOBYTES = 600
-MAX_LINES = 600
 SPDX = "SPDX-License-Identifier: BSD-3-Clause"
 SOURCES = {".py", ".pyi", ".rs", ".sh"}
 REGISTRY = re.compile(r"--(extra-)?index-url|--find-links|^# .*https?://", re.MULTILINE)
@@ -41,8 +40,6 @@ def faults(path: Path) -> list[str]:
         text = file.read_text(encoding="utf-8")
         if text.strip() and SPDX not in text[:2000]:
             found.append(f"no line '{SPDX}' at its head")
-        if text.count("\n") > MAX_LINES:
-            found.append(f"{text.count(chr(10))} lines; at most {MAX_LINES}")
     pins = path.name.startswith("requirements")
     if pins and REGISTRY.search(file.read_text(encoding="utf-8")):
         found.append("holds the address of a registry")
