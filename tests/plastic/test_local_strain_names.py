@@ -53,8 +53,7 @@ def test_an_unknown_name_is_refused_with_the_nearest(wrong, meant):
     ("spelled", "name"),
     [
         ("LINEAR", "linear"), ("SIMPLIFIED", "linear"), ("LOGARITHMIC", "logarithmic"),
-        ("MODIFIED", "logarithmic"), ("GREEN LAGRANGE", "green_lagrange"),
-        ("green_lagrange", "green_lagrange"),
+        ("MODIFIED", "logarithmic"), ("Green Lagrange", "green_lagrange"),
     ],
 )  # fmt: skip
 def test_decks_take_the_names_and_keep_them(spelled, name, tmp_path):
