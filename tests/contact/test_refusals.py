@@ -92,13 +92,6 @@ def test_a_body_that_nothing_holds_sideways():
         ct.solve(model, threads=1)
 
 
-def test_procedures_without_contact():
-    model = model_of()
-    model.contact("up.bottom", "low.top")
-    with pytest.raises(ct.UnsupportedError, match="takes no contact pairs or ties"):
-        ct.solve(model, ct.Frequency(modes=1), threads=1)
-
-
 def test_explicit_motion_takes_no_contact():
     """It went on without: bodies passed through each other."""
     mesh = ct.mesh.rectangle(1.0, 0.5, 4, 2)
