@@ -73,3 +73,20 @@ def test_conserving_scheme_conserves_with_light_nodes(element, monkeypatch):
     assert np.abs(of["energy balance"]).max() < 1e-10 * of["kinetic energy"][0]
     for name in ("momentum x", "momentum y", "angular momentum"):
         assert np.ptp(of[name]) < 1e-10 * np.abs(of[name][0]), name
+
+
+@pytest.mark.parametrize("element", ["Q4I", "Q4D", "OPT"])
+def test_nodes_without_mass_start_without_acceleration(element):
+    """A ring above a plane begins to fall; closed form of the momentum: weight times time."""
+    cell = "tri3" if element == "OPT" else "quad4"
+    mesh = ct.mesh.annulus(0.3, 1.0, 2, 24, cell=cell, centre=(0.0, 1.01))
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=2e4, nu=0.3, rho=1.0))
+    model.contact("outer", ct.RigidCurve.line((-10.0, 0.0), (10.0, 0.0)))
+    model.gravity(y=-9.81)
+    step = ct.Dynamic(period=0.012, increments=3, scheme="newmark")
+    frames = ct.solve(model, step, fields=False).frames[1:]
+    mass = np.pi * (1.0 - 0.09)
+    for frame in frames:
+        weight = 9.81 * mass * frame.time
+        assert frame.scalars["momentum y"] == pytest.approx(-weight, rel=0.02)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,25 @@ class BlockOfCells:
     section: Section
     cells: Ints  # global cell indices
     nodes: Ints  # (n, k)
+
+
+def core_input(block: BlockOfCells) -> dict[str, Any]:
+    """A block as the core takes it."""
+    section, material = block.section, block.section.material
+    return {
+        "element": section.element,
+        "law": material.law,
+        "parameters": material.parameters(section.orientation),
+        "plane": section.plane,
+        "local_strain": section.local_strain,
+        "thickness": float(section.thickness),
+        "profile": [float(v) for v in section.profile],
+        "table": [[float(v) for v in pair] for pair in section.table],
+        "rho": float(material.rho),
+        "mean_dilatation": section.mean_dilatation,
+        "beta0": section.beta0,
+        "nodes": np.ascontiguousarray(block.nodes, dtype=np.uint32).ravel(),
+    }
 
 
 def blocks_of(model: Model) -> list[BlockOfCells]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota import _core
-from corota.analysis.blocks import blocks_of, check_shapes
+from corota.analysis.blocks import blocks_of, check_shapes, core_input
 from corota.analysis.constraints.elimination import Link, Ties, extra_dofs
 from corota.analysis.constraints.setup import carry_curves
 from corota.analysis.free_motion import name_motion
@@ -112,23 +112,7 @@ class System:
         self.blocks = blocks_of(model)
         self.solver = solver
         mesh = model.mesh
-        inputs = [
-            {
-                "element": b.section.element,
-                "law": b.section.material.law,
-                "parameters": b.section.material.parameters(b.section.orientation),
-                "plane": b.section.plane,
-                "local_strain": b.section.local_strain,
-                "thickness": float(b.section.thickness),
-                "profile": [float(v) for v in b.section.profile],
-                "table": [[float(v) for v in pair] for pair in b.section.table],
-                "rho": float(b.section.material.rho),
-                "mean_dilatation": b.section.mean_dilatation,
-                "beta0": b.section.beta0,
-                "nodes": np.ascontiguousarray(b.nodes, dtype=np.uint32).ravel(),
-            }
-            for b in self.blocks
-        ]
+        inputs = [core_input(b) for b in self.blocks]
         check_shapes(model, self.blocks)
         require_model(self.blocks, mesh.n_nodes)
         carried = np.zeros(mesh.n_nodes, np.int64)

@@ -15,14 +15,17 @@ from corota.analysis.newton import Outcome, Settings, newton
 from corota.analysis.procedures.explicit import explicit_step
 from corota.analysis.procedures.motion import (
     ConservingMotion,
+    Damping,
     Driven,
     Inertia,
     Moving,
     NewmarkMotion,
 )
+from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import newton_with_contact
-from corota.analysis.terms.damping import damping_matrix
+from corota.analysis.terms.damping import mass_damping
+from corota.analysis.terms.viscous import ViscousElements
 from corota.errors import ConvergenceError, Interrupted, ModelError
 from corota.model import elements
 from corota.model.schemes import SCHEMES
@@ -81,7 +84,8 @@ def dynamic_step(
         return
     warn_of_long_increments(system, step, state)
     inertia = Inertia(system, step.mass, light_nodes(system, step))
-    now = start_motion(system, step, state, inertia)
+    viscous = ViscousElements(system, step.rayleigh[1])
+    now = start_motion(system, step, state, inertia, viscous)
     book = Balance(system, step, now, inertia)
     control = Increments(step, stops)
     if not step.fixed_increments and step.first_increment >= step.period:
@@ -102,7 +106,7 @@ def dynamic_step(
         report = iteration_reporter(observers, system, number, control)
         prescribed = system.conditions.prescribed(target, now.u)
         driven = _driven(system, prescribed, target, target - control.time)
-        motion = _motion(system, step, inertia, now, target - control.time, driven)
+        motion = _motion(system, step, inertia, now, target - control.time, driven, viscous)
         outcome: Outcome[Evaluation]
         if system.touching is None:
             outcome = newton(motion, now.u, prescribed, target, settings, None, report)
@@ -274,7 +278,9 @@ def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) 
     return target
 
 
-def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) -> Moving:
+def start_motion(
+    system: System, step: Dynamic, state: State, inertia: Inertia, viscous: ViscousElements
+) -> Moving:
     """Velocities and accelerations at the start of a step."""
     zero = np.zeros(system.n_dofs)
     if state.v is None:
@@ -290,13 +296,13 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
         # they keep their own velocities, which are those of its mid-point relations.
         system.ties.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
-    rayleigh, matrix = _damping(system, step, u)
+    rayleigh = _damping(system, step, u, viscous)
     resting = np.zeros_like(zero)
     if system.touching is not None:
         # Bodies may rest on each other from a step before.
         touching = system.touching
         resting = touching.evaluate(u, touching.committed, 0.0, at.values).force
-    damping = inertia.damping(at, u, v, 0.0, rayleigh, matrix)
+    damping = inertia.damping(at, u, v, 0.0, rayleigh)
     internal, external = at.internal, at.external
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
     # The consistent mass of drilling elements has none for a uniform drilling rotation, which
@@ -313,6 +319,10 @@ def start_motion(system: System, step: Dynamic, state: State, inertia: Inertia) 
         at.link = replace(link, curvature=0.0)
     # Dependent dofs have their centripetal accelerations besides.
     a = zero + system.predict(at, support_a)[0]
+    # What nodes without mass need for their balance is no acceleration; drilling rotations near
+    # them follow it.
+    if inertia.light.any():
+        a[(inertia.light | system.is_rotation) & ~system.conditions.held] = 0.0
     state.a = a
     if not goes_on:
         system.core.start_motion(system.in_space(u), system.in_space(v))
@@ -388,13 +398,19 @@ def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
 
 
 def _motion(
-    system: System, step: Dynamic, inertia: Inertia, now: Moving, dt: float, driven: Driven
+    system: System,
+    step: Dynamic,
+    inertia: Inertia,
+    now: Moving,
+    dt: float,
+    driven: Driven,
+    viscous: ViscousElements,
 ) -> NewmarkMotion | ConservingMotion:
-    rayleigh, matrix = _damping(system, step, now.u)
+    damping = _damping(system, step, now.u, viscous)
     if step.scheme == "energy_momentum":
-        return ConservingMotion(system, inertia, now, dt, driven, rayleigh, matrix)
+        return ConservingMotion(system, inertia, now, dt, driven, damping)
     scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)
-    return NewmarkMotion(system, inertia, scheme, now, dt, driven, rayleigh, matrix)
+    return NewmarkMotion(system, inertia, scheme, now, dt, driven, damping)
 
 
 def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Driven:
@@ -413,10 +429,9 @@ def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Drive
     return Driven(held, u, v, a)
 
 
-def _damping(system: System, step: Dynamic, u: Floats) -> tuple[tuple[float, float], Floats | None]:
-    """Damping per mass of the model, and the matrix of all other."""
-    matrix = damping_matrix(system, u, step.rayleigh[1], step.mass)
-    return (step.rayleigh[0], 1.0), matrix
+def _damping(system: System, step: Dynamic, u: Floats, elements: ViscousElements) -> Damping:
+    """Rayleigh damping at the start of an increment."""
+    return Damping(step.rayleigh[0], mass_damping(system, u, step.mass), elements)
 
 
 def _local_error(
@@ -425,14 +440,39 @@ def _local_error(
     step: Dynamic,
     light: NDArray[np.bool_],
 ) -> float:
-    """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991)."""
+    """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991).
+
+    Two measures that a uniform velocity does not change: the error of the rigid motion, relative
+    to displacements less the mean one, and what else there is, relative to the deformation.
+    Prescribed dofs have no error.
+    """
     begin, end, dt = motion.start, motion.end, motion.dt
     beta = motion.scheme.beta if isinstance(motion, NewmarkMotion) else 0.25
-    moves = ~system.is_rotation & ~light
-    error = abs(beta - 1.0 / 6.0) * dt * dt * np.abs(end.a - begin.a)[moves].max(initial=0.0)
-    size = max(np.abs(end.u[moves]).max(initial=0.0), dt * np.abs(end.v[moves]).max(initial=0.0))
+    before, after = (m.a if m.carried is None else m.carried for m in (begin, end))
+    known = light | system.conditions.held
+    change = system.by_node(np.where(known, 0.0, after - before))[:, :2]
+    there = system.per_node > 0
+    moves = there & system.by_node((~known & ~system.is_rotation).astype(float))[:, :2].any(axis=1)
+    counts = there & ~system.by_node(light.astype(float))[:, :2].any(axis=1)
+    if not moves.any():
+        return 0.0
+    reference = system.model.mesh.points
+    x = reference + system.by_node(end.u)[:, :2]
+    v = system.by_node(end.v)[:, :2]
+    rigid = rigid_rates(x[moves], change[moves])
+    other = change[moves] - rigid
+    travel = x[counts] - reference[counts]
+    travel -= travel.mean(axis=0)
+    speed = v[counts] - v[counts].mean(axis=0)
+    strain = deformation(reference[counts], x[counts], system.turning)
+    rate = v[counts] - rigid_rates(x[counts], v[counts])
+    worst = 0.0
+    pairs = ((rigid, travel, speed), (other, strain, rate))
+    for wrong, moved, moving in pairs:
+        size = max(np.abs(moved).max(), dt * np.abs(moving).max(), REST * system.length)
+        worst = max(worst, float(np.abs(wrong).max() / size))
     # No increment is short enough for the relative error of a motion out of rest.
-    return float(error / (step.error_tolerance * max(size, REST * system.length)))
+    return abs(beta - 1.0 / 6.0) * dt * dt * worst / step.error_tolerance
 
 
 def _contact_error(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import Link
     from corota.analysis.equations import System
     from corota.analysis.newton import Judgement
+    from corota.analysis.terms.viscous import ViscousElements
     from corota.model.schemes import Scheme
     from corota.model.steps import Step
     from corota.results.results import PointFields
@@ -60,6 +61,25 @@ class Moving:
     def reaction(self) -> Floats:
         """What supports and nothing else must carry, at held dofs."""
         return self.gathered(self.internal + self.damping + self.inertia - self.external)
+
+
+@dataclass
+class Damping:
+    """Rayleigh damping of a step.
+
+    Parameters
+    ----------
+    per_mass : float
+        Of the whole model [1/time].
+    mass : ndarray or None
+        Damping of materials per mass, upper triangle.
+    elements : ViscousElements or None
+        Damping per stiffness.
+    """
+
+    per_mass: float = 0.0
+    mass: Floats | None = None
+    elements: ViscousElements | None = None
 
 
 class Inertia:
@@ -166,19 +186,25 @@ class Inertia:
 
     def damping(
         self, at: Evaluation, u: Floats, v: Floats, weight: float,
-        rayleigh: tuple[float, float], stiffness: Floats | None,
+        damping: Damping, between: tuple[Floats, Floats, float] | None = None,
     ) -> Floats:  # fmt: skip
-        """Rayleigh damping and dashpots; `weight` times the derivative by velocity goes to `at`."""
+        """Rayleigh damping and dashpots; `weight` times the derivative by velocity goes to `at`.
+
+        `between` gives the two states and the time over which `v` is the mean rate.
+        """
         values = at.values
-        per_mass, per_stiffness = rayleigh
+        per_mass = damping.per_mass
         force = np.zeros_like(v)
         if per_mass:
             mass = self.tangent(u)
             force += per_mass * self.system.product(mass, v)
             values += weight * per_mass * mass
-        if per_stiffness and stiffness is not None:
-            force += per_stiffness * self.system.product(stiffness, v)
-            values += weight * per_stiffness * stiffness
+        if damping.mass is not None:
+            force += self.system.product(damping.mass, v)
+            values += weight * damping.mass
+        if damping.elements is not None and damping.elements.blocks:
+            begin, end, dt = between or (u, u, 0.0)
+            force += damping.elements.add(begin, end, v, dt, weight, values)
         if self.attached.dampers:
             damped, triplets = self.attached.damp(u, v, values, weight)
             force += damped
@@ -232,9 +258,7 @@ class NewmarkMotion:
     dt : float
     driven : Driven
         Prescribed motion at the end.
-    rayleigh : tuple of float
-    stiffness : ndarray or None
-        Tangent at the start, for the damping per stiffness.
+    damping : Damping
     """
 
     def __init__(
@@ -245,12 +269,11 @@ class NewmarkMotion:
         start: Moving,
         dt: float,
         driven: Driven,
-        rayleigh: tuple[float, float] = (0.0, 0.0),
-        stiffness: Floats | None = None,
+        damping: Damping,
     ) -> None:
         self.system, self.inertia, self.scheme = system, inertia, scheme
         self.start, self.dt, self.driven = start, dt, driven
-        self.rayleigh, self.stiffness = rayleigh, stiffness
+        self.damping = damping
         self.end = start
         # Derivatives of velocity and acceleration by displacement.
         s = scheme
@@ -297,7 +320,7 @@ class NewmarkMotion:
         weights = (share, share * self.c_v, share * self.c_a)
         force = self.inertia.add(at, u, v, a, weights)
         self.inertia.weigh(at, u - self.start.u, weights[2])
-        damping = self.inertia.damping(at, u, v, share * self.c_v, self.rayleigh, self.stiffness)
+        damping = self.inertia.damping(at, u, v, share * self.c_v, self.damping)
         self.end = Moving(u, v, a, internal, external, force, damping, at.link, carried)
         at.internal = share * (internal + damping + force)
         at.external = share * external
@@ -332,12 +355,11 @@ class ConservingMotion:
         start: Moving,
         dt: float,
         driven: Driven,
-        rayleigh: tuple[float, float] = (0.0, 0.0),
-        stiffness: Floats | None = None,
+        damping: Damping,
     ) -> None:
         self.system, self.inertia = system, inertia
         self.start, self.dt, self.driven = start, dt, driven
-        self.rayleigh, self.stiffness = rayleigh, stiffness
+        self.damping = damping
         self.end = start
 
     def increment(self, u: Floats) -> Floats:
@@ -383,7 +405,7 @@ class ConservingMotion:
         link = None if system.ties is None else system.ties.secant(b.u, u)
         at = Evaluation(force, external, scale, values, stiffness, link)
         self.inertia.weigh(at, d, 2.0 / (dt * dt))
-        damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.rayleigh, self.stiffness)
+        damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.damping, (b.u, u, dt))
         at.internal = force + damping
         held = self.driven.held
         v[held], a[held] = self.driven.v[held], self.driven.a[held]

@@ -54,6 +54,19 @@ def damping_matrix(
     return sum(parts[1:], start=parts[0]) if parts else None
 
 
+def mass_damping(system: System, u: Floats, mass: str) -> Floats | None:
+    """Damping of materials per mass, upper triangle; None where there is none."""
+    parts = []
+    for alpha in sorted({b.section.material.rayleigh[0] for b in system.blocks} - {0.0}):
+        chosen = [b.section.material.rayleigh[0] == alpha for b in system.blocks]
+        system.core.set_active(chosen)
+        try:
+            parts.append(alpha * _mass(system, u, mass))
+        finally:
+            system.core.set_active([])
+    return sum(parts[1:], start=parts[0]) if parts else None
+
+
 def _mass(system: System, u: Floats, kind: str) -> Floats:
     """Mass matrix of the active blocks."""
     here, rest = system.in_space(u), np.zeros(system.n_dofs)
@@ -63,4 +76,4 @@ def _mass(system: System, u: Floats, kind: str) -> Floats:
     return values
 
 
-__all__ = ["damping_matrix", "material_pairs"]
+__all__ = ["damping_matrix", "mass_damping", "material_pairs"]

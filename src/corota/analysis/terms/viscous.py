@@ -1,0 +1,194 @@
+"""Damping per stiffness in the element frame.
+
+The viscous force of an element is its elastic local stiffness times the rates of its local
+dofs. A rigid motion has none of these in any configuration, so it is not damped, and the forces
+have neither resultant nor moment.
+
+With the frame's rotation R, ``eta = R X``, ``gamma = S eta / sum(eta . x)`` and x from the mean,
+the frame turns at ``rate = gamma . v``, and the local dofs change by ``R^T (v - rate S x)`` and by
+``phi' - rate``. Between two configurations the same holds exactly for finite increments with the
+mean rotation matrix and the mean positions (see docs/dynamics.md).
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota import _core
+from corota.analysis.blocks import core_input
+from corota.analysis.terms.user_material import UserBlocks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.blocks import BlockOfCells
+    from corota.analysis.equations import System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class _Block:
+    """Damped elements of one kind, n of them with N nodes of M dofs.
+
+    Parameters
+    ----------
+    dofs : ndarray of int, shape (n, N * M)
+    arm : ndarray, shape (n, N, 2)
+        Reference positions from their mean [length].
+    matrix : ndarray, shape (n, N * M, N * M)
+        Local stiffness times the damping per stiffness.
+    chosen, places : ndarray
+        Entries of the matrices that lie in the upper triangle, and where there.
+    turns : bool
+        Whether the element has a frame that turns.
+    """
+
+    dofs: Ints
+    arm: Floats
+    matrix: Floats
+    chosen: NDArray[np.bool_]
+    places: Ints
+    turns: bool
+
+
+class ViscousElements:
+    """Damping per stiffness of the elements of a system.
+
+    Parameters
+    ----------
+    system : System
+    per_stiffness : float
+        Of the whole model; that of materials is added [time].
+    """
+
+    def __init__(self, system: System, per_stiffness: float = 0.0) -> None:
+        self.system = system
+        self.blocks: list[_Block] = []
+        facts = {e["name"]: e for e in _core.elements()}
+        for block in system.blocks:
+            factor = per_stiffness + block.section.material.rayleigh[1]
+            if factor:
+                turns = bool(facts[block.section.element]["turns"])
+                self.blocks.append(self._block(block, factor, turns))
+
+    def _block(self, block: BlockOfCells, factor: float, turns: bool) -> _Block:
+        system = self.system
+        n, nodes = block.nodes.shape
+        points = system.model.mesh.points[block.nodes]
+        # Elements apart from each other: the assembled matrix holds those of the elements.
+        alone = core_input(block)
+        alone["nodes"] = np.arange(n * nodes, dtype=np.uint32)
+        core = _core.Problem(
+            np.ascontiguousarray(points.reshape(-1, 2)), [alone], np.zeros(n * nodes, np.uint8)
+        )
+        size = core.n_dofs // n
+        force, scale, rest = np.zeros((3, core.n_dofs))
+        values = np.zeros(len(core.indices))
+        user = UserBlocks(core, [block])
+        user.assemble(rest, False, lambda: core.assemble(rest, False, force, scale, values))
+        rows, columns = np.triu_indices(size)
+        order = np.lexsort((rows, columns))
+        matrix = np.zeros((n, size, size))
+        matrix[:, rows[order], columns[order]] = factor * values.reshape(n, -1)
+        matrix[:, columns, rows] = matrix[:, rows, columns]
+        each = size // nodes
+        dofs = (system.start[block.nodes][:, :, None] + np.arange(each)).reshape(n, size)
+        i, j = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+        chosen = i <= j
+        keys = np.repeat(np.arange(system.n_dofs), np.asarray(np.diff(system.indptr), np.int64))
+        keys = keys * system.n_dofs + system.indices
+        places = np.searchsorted(keys, j[chosen] * system.n_dofs + i[chosen])
+        arm = points - points.mean(axis=1, keepdims=True)
+        return _Block(dofs, arm, matrix, chosen, places, turns)
+
+    def add(
+        self, begin: Floats, end: Floats, rate: Floats, dt: float, weight: float, values: Floats
+    ) -> Floats:
+        """Viscous force between two states, and `weight` times its derivative by velocity.
+
+        Parameters
+        ----------
+        begin, end : ndarray, shape (n_dofs,)
+            Displacements, the same for the force at an instant.
+        rate : ndarray, shape (n_dofs,)
+            Velocities, or the increment that forces work on over `dt`.
+        dt : float
+            Time between the states, 0 for an instant.
+        weight : float
+        values : ndarray, shape (nnz,)
+            Upper triangle, added to in place.
+
+        Returns
+        -------
+        ndarray, shape (n_dofs,)
+        """
+        system = self.system
+        force = np.zeros(system.n_dofs)
+        begin, end, rate = (system.in_space(x) for x in (begin, end, rate))
+        for block in self.blocks:
+            own = block.matrix
+            v = rate[block.dofs]
+            if block.turns and system.turning:
+                change = _change(block, begin[block.dofs], end[block.dofs], v, dt)
+                own = np.swapaxes(change, 1, 2) @ own @ change
+            f = np.einsum("eij,ej->ei", own, v)
+            force += np.bincount(block.dofs.ravel(), f.ravel(), minlength=system.n_dofs)
+            if weight:
+                values += weight * np.bincount(
+                    block.places, own[block.chosen], minlength=len(values)
+                )
+        return system.at_nodes(force)
+
+
+def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> Floats:
+    """Changes of the local dofs by those of the global ones, shape (n, N * M, N * M)."""
+    n, nodes = block.arm.shape[:2]
+    size = block.dofs.shape[1]
+    each = size // nodes
+
+    def placed(u: Floats) -> tuple[Floats, Floats]:
+        move = u.reshape(n, nodes, each)[:, :, :2]
+        x = block.arm + move - move.mean(axis=1, keepdims=True)
+        along = (block.arm * x).sum(axis=(1, 2))
+        across = (_skew(block.arm) * x).sum(axis=(1, 2))
+        return x, np.stack([along, across]) / np.hypot(along, across)
+
+    (x0, r0), (x1, r1) = placed(begin), placed(end)
+    x, (c, s) = 0.5 * (x0 + x1), 0.5 * (r0 + r1)
+    eta = c[:, None, None] * block.arm + s[:, None, None] * _skew(block.arm)
+    gamma = _skew(eta) / (eta * x).sum(axis=(1, 2))[:, None, None]
+    row = np.zeros((n, nodes, each))
+    row[:, :, :2] = gamma
+    column = np.ones((n, nodes, each))
+    column[:, :, :2] = _skew(x)
+    row, column = row.reshape(n, size), column.reshape(n, size)
+    less = np.eye(size) - column[:, :, None] * row[:, None, :]
+    out = less.reshape(n, nodes, each, size).copy()
+    first, second = out[:, :, 0].copy(), out[:, :, 1].copy()
+    c, s = c[:, None, None], s[:, None, None]
+    out[:, :, 0], out[:, :, 1] = c * first + s * second, c * second - s * first
+    if each == 3 and dt:
+        # Differences of angles by those of their doubled half tangents.
+        psi = dt * v.reshape(n, nodes, each)[:, :, 2]
+        tau = dt * np.einsum("ei,ei->e", row, v)[:, None]
+        d = 1.0 + 0.25 * psi * tau
+        z = 0.5 * (psi - tau) / d
+        small = np.abs(z) < 1e-4
+        arc = np.where(small, 1.0 - z * z / 3.0, np.arctan(z) / np.where(small, 1.0, z))
+        out[:, :, 2] *= (arc / d)[:, :, None]
+    local: Floats = out.reshape(n, size, size)
+    return local
+
+
+def _skew(v: Floats) -> Any:
+    """Vectors turned by a right angle, shape (..., 2)."""
+    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
+
+
+__all__ = ["ViscousElements"]
