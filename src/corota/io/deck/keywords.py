@@ -237,7 +237,7 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "VISCO", "COMPLEXFREQUENCY", "GREEN", "SENSITIVITY", "CRACKPROPAGATION",
+            "VISCO", "GREEN", "SENSITIVITY", "CRACKPROPAGATION",
         ),
         _PROCEDURE,
     ),
