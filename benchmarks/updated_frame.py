@@ -6,7 +6,7 @@ logarithmic strain), and the stress is Cauchy's, carried along by the frame of t
 stress of an equilibrated state balances by itself: the projector of the frame drops out.
 
 Slow and plain on purpose (numpy, tangent by complex steps): only its figures matter, beside those
-of the local strains `linear` and `logarithmic`. ``python -m benchmarks.studies.updated_frame``.
+of the local strains `linear` and `logarithmic`. ``python -m benchmarks.updated_frame``.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
