@@ -46,5 +46,5 @@ def test_stable_modes_converge_where_the_strip_necks():
     ("elongation", "expected"), [(0.02, 1916.373), (-0.05, -2299.595), (0.05, 1705.528)]
 )
 def test_the_logarithmic_strain_follows_calculix_on_the_same_mesh(elongation, expected):
-    """Claim: Q8R differs from CPE8R of CalculiX 2.20 by less than 0.3 %, 6 cells along the notch."""
+    """Claim: Q8R differs from CPE8R of CalculiX 2.20 by less than 0.3 %, 6 cells each."""
     assert force("Q8R", 6, elongation) == pytest.approx(expected, rel=3e-3)
