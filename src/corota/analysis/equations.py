@@ -24,6 +24,7 @@ from corota.analysis.memory import require_model
 from corota.analysis.newton import ElementFailure, Judgement
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
+from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains
 from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
 from corota.analysis.timer import Timer
@@ -110,6 +111,8 @@ class System:
     def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
         self.model = model
         self.blocks = blocks_of(model)
+        #: Mass that gravity acts on in steps that do not move.
+        self.mass = MovingMass()
         self.solver = solver
         mesh = model.mesh
         inputs = [core_input(b) for b in self.blocks]

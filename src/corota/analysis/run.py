@@ -19,6 +19,7 @@ from corota.analysis.procedures.localization import localised
 from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
+from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
 from corota.model.local_strain import LARGE_STRAIN, advice
 from corota.results.results import Frame, Results
@@ -226,6 +227,7 @@ class Analysis:
             )
         self.observers.step(number, step)
         turning = system.turning
+        system.mass = mass_of_step(self.steps, number)
         system.begin(step, state.time, state.u, reaction)
         if state.at is None or turning != system.turning:
             state.at = system.evaluate(state.u, 0.0)

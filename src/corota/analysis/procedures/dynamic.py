@@ -25,6 +25,7 @@ from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import newton_with_contact
 from corota.analysis.terms.damping import mass_damping
+from corota.analysis.terms.moving_mass import light_nodes
 from corota.analysis.terms.viscous import ViscousElements
 from corota.errors import ConvergenceError, Interrupted, ModelError
 from corota.model import elements
@@ -83,7 +84,7 @@ def dynamic_step(
         explicit_step(system, step, number, state, observers, save, stops)
         return
     warn_of_long_increments(system, step, state)
-    inertia = Inertia(system, step.mass, light_nodes(system, step))
+    inertia = Inertia(system, step.mass, light_nodes(system, step.redistribute))
     viscous = ViscousElements(system, step.rayleigh[1])
     now = start_motion(system, step, state, inertia, viscous)
     book = Balance(system, step, now, inertia)
@@ -181,21 +182,6 @@ def dynamic_step(
         state.carried = (state.u, state.v)
     # A static step that follows needs the static equation at this displacement.
     state.at = system.evaluate(state.u, step.period)
-
-
-def light_nodes(system: System, step: Dynamic) -> NDArray[np.bool_] | None:
-    """Nodes whose mass others carry: the slave nodes of contact.
-
-    A contact force that acts on nodes without mass is bounded and does no work in the limit of
-    small increments; on nodes with mass it creates energy and chatters.
-    """
-    if system.touching is None or not step.redistribute:
-        return None
-    light = np.zeros(len(system.per_node), bool)
-    for pair in system.touching.pairs:
-        if not pair.tied:
-            light[pair.slave.node_list] = True
-    return light
 
 
 def _whole_turns(system: System, u: Floats) -> Floats | None:

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.distributed import DistributedLoads
-from corota.analysis.distributed_forces import EMPTY, END_POINT, STATIC_MASS, LoadSum
+from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.load_history import LoadHistory
+from corota.analysis.terms.moving_mass import light_nodes
 from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
 
@@ -103,8 +104,7 @@ class Conditions:
             Reactions at the end of the step before, for supports that are released.
         """
         first = reaction is None
-        self.system.core.set_light(np.zeros(0, bool))
-        self.set_mass(STATIC_MASS)
+        self.reset_mass()
         self.fading = np.zeros(self.system.n_dofs)
         if not first:
             self._carry()
@@ -211,6 +211,12 @@ class Conditions:
         """Let gravity and spin act on the mass that moves: free fall is free of stress."""
         self._known = {}
         self.distributed.set_mass(kind)
+
+    def reset_mass(self) -> None:
+        """Let them act on the mass of the motion that this step belongs to."""
+        light = light_nodes(self.system, self.system.mass.redistribute)
+        self.system.core.set_light(np.zeros(0, bool) if light is None else light)
+        self.set_mass(self.system.mass.kind)
 
     def external(
         self,

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
-from corota.analysis.distributed_forces import STATIC_MASS
 from corota.analysis.linear.solvers import Faer
 from corota.analysis.procedures.motion import Inertia
 from corota.analysis.terms.attachments import Attachments
@@ -365,7 +364,7 @@ class LinearMotion(Linearized):
         self.mass_values = self.inertia.tangent(u)
         self.mass = self.padded(self.reduce(self.mass_values))
         self.turns = False
-        system.conditions.set_mass(STATIC_MASS)
+        system.conditions.reset_mass()
         self._damping: dict[tuple[float, float], Any] = {}
 
     def damping(self, rayleigh: tuple[float, float] = (0.0, 0.0)) -> Any:

@@ -1,0 +1,69 @@
+"""The mass that gravity and spin act on in a step that does not move itself.
+
+A state of rest is one for the motion that follows only if its weight is that of the mass that
+will move: lumped masses, and those that contact redistributes, weigh down other nodes than the
+consistent mass does, with the same sum.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.model.steps import Dynamic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.model.steps import Step
+
+
+@dataclass(frozen=True)
+class MovingMass:
+    """A field of mass.
+
+    Parameters
+    ----------
+    kind : {"consistent", "constant", "lumped"}
+    redistribute : bool
+        Whether slave nodes of contact leave their mass to other nodes.
+    """
+
+    kind: str = "consistent"
+    redistribute: bool = False
+
+
+def mass_of_step(steps: Sequence[Step], number: int) -> MovingMass:
+    """Mass of the dynamic step that is next from step `number`, 1 for the first.
+
+    Where none follows it is that of the last one before; where there is none at all, consistent.
+    """
+    later = [step for step in steps[number - 1 :] if isinstance(step, Dynamic)]
+    before = [step for step in steps[: number - 1] if isinstance(step, Dynamic)]
+    for step in later[:1] or before[-1:]:
+        explicit = step.scheme == "central_difference"
+        return MovingMass("lumped" if explicit else step.mass, step.redistribute)
+    return MovingMass()
+
+
+def light_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
+    """Nodes whose mass others carry: the slave nodes of contact.
+
+    A contact force that acts on nodes without mass is bounded and does no work in the limit of
+    small increments; on nodes with mass it creates energy and chatters.
+    """
+    if system.touching is None or not redistribute:
+        return None
+    light = np.zeros(len(system.per_node), bool)
+    for pair in system.touching.pairs:
+        if not pair.tied:
+            light[pair.slave.node_list] = True
+    return light
+
+
+__all__ = ["MovingMass", "light_nodes", "mass_of_step"]
