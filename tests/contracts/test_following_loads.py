@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.analysis.distributed_forces import LoadSum
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Faer
 from corota.model.steps import Buckle, Static
@@ -88,6 +89,37 @@ def test_load_stiffness_is_the_derivative_of_the_load(element: str, kind: str) -
         assert np.abs(found - expected).max() <= 1e-8 * size
         # Each has a potential, the pressure since the boundary is closed.
         assert np.abs(found - found.T).max() <= 1e-12 * size
+
+
+@pytest.mark.parametrize("kind", ["gravity", "centrifugal"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_what_is_worked_out_once_holds_at_every_displacement(element: str, kind: str) -> None:
+    """Body loads against the core, asked for all elements at that displacement and mass.
+
+    Masses and who carries them change after the first evaluation.
+    """
+    system = ready(loaded(element, kind))
+    n, u = system.n_dofs, moved(system)
+    light = np.arange(len(system.model.mesh.points)) % 5 == 0
+    (load,) = (x.force for x in system.conditions.distributed.loads)
+    for flags in (np.zeros(0, bool), light):
+        for mass in MASSES:
+            system.core.set_light(flags)
+            system.conditions.set_mass(mass)
+            for scale, at, start in ((1.0, 0.3 * u, np.zeros(0)), (-0.7, u, 0.5 * u)):
+                to = LoadSum(np.zeros(n), np.zeros(len(system.indices)), 0.4, start)
+                load.add(scale, at, to)
+                # A spin's scale is that of omega^2, the first value.
+                value = [
+                    scale * v if kind == "gravity" or i == 0 else v
+                    for i, v in enumerate(load.item.value)
+                ]
+                force, stiffness = np.zeros(n), np.zeros_like(to.values)
+                system.core.body_force(
+                    kind, value, mass, load.masks, at, start, -0.4, force, stiffness
+                )
+                for found, expected in ((to.force, force), (to.values, stiffness)):
+                    assert np.abs(found - expected).max() <= 1e-13 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("kind", LOADS)

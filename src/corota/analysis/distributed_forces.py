@@ -121,41 +121,88 @@ class BodyLoad:
                     f"material {name!r} has no density for a body force; add one (*DENSITY)",
                     item.where,
                 )
-        drilling = any(
-            mask.any() and fact.alpha_b > 0.0 for fact, mask in zip(facts, self.masks, strict=True)
-        )
-        self.follows = item.kind == "centrifugal" or drilling
+        drilling = [f.drilling and mask.any() for f, mask in zip(facts, self.masks, strict=True)]
+        #: Elements whose force turns with them: sides of drilling elements have mass.
+        self.turning = [
+            mask if turns else np.zeros_like(mask)
+            for mask, turns in zip(self.masks, drilling, strict=True)
+        ]
+        self.turns = any(drilling)
+        self.follows = item.kind == "centrifugal" or self.turns
         self._unit: Floats | None = None
+        self._linear: tuple[Floats, Floats] | None = None
 
     def set_mass(self, kind: str) -> None:
         """See :class:`Distribution`."""
-        self.mass, self._unit = kind, None
+        self.mass, self._unit, self._linear = kind, None, None
 
     def unit(self) -> Floats:
         """See :class:`Distribution`."""
         if self._unit is None:
-            self._unit = self._force(1.0, np.zeros(self.system.n_dofs), END_POINT, EMPTY, 0.0)
+            self._unit = self.system.at_nodes(self._at_rest(self.masks, EMPTY))
         return self._unit
 
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
         """See :class:`Distribution`."""
-        to.force += self._force(scale, u, to.start, to.values, -to.share)
-
-    def _force(
-        self, scale: float, u: Floats, start: Floats, values: Floats, share: float
-    ) -> Floats:
-        system, item = self.system, self.item
-        # Of a centrifugal force the scale is that of the square of the angular velocity.
-        first = 2 if item.kind == "gravity" else 1
-        value = [scale * v for v in item.value[:first]] + list(item.value[first:])
-        force = np.zeros(system.n_dofs)
+        system = self.system
         here, before = (
-            np.ascontiguousarray(system.in_space(x)) if len(x) else x for x in (u, start)
+            np.ascontiguousarray(system.in_space(x)) if len(x) else x for x in (u, to.start)
         )
-        system.core.body_force(
-            item.kind, value, self.mass, self.masks, here, before, share, force, values
+        force, stiffness = self._where_linear()
+        force = scale * force
+        if len(stiffness):
+            force += scale * system.core.multiply(
+                stiffness, 0.5 * (before + here) if len(before) else here
+            )
+            if len(to.values):
+                to.values -= (scale * to.share) * stiffness
+        if self._couples:
+            self._evaluate(self.turning, scale, here, before, -to.share, force, to.values)
+        to.force += system.at_nodes(force)
+
+    @property
+    def _couples(self) -> bool:
+        """Whether the force on some elements is no linear function of the displacement."""
+        return self.turns and self.mass == "consistent"
+
+    def _where_linear(self) -> tuple[Floats, Floats]:
+        """Unit force on the reference, and its derivative (upper triangle; (0,) for none).
+
+        Of the elements where the force is linear in the displacement, so both hold everywhere:
+        a spin acts on a constant mass. In global axes.
+        """
+        if self._linear is None:
+            masks = self.masks
+            if self._couples:
+                masks = [m & ~t for m, t in zip(masks, self.turning, strict=True)]
+            spins = self.item.kind == "centrifugal" and any(m.any() for m in masks)
+            stiffness = np.zeros(len(self.system.indices)) if spins else EMPTY
+            self._linear = self._at_rest(masks, stiffness), stiffness
+        return self._linear
+
+    def _at_rest(self, masks: list[NDArray[np.bool_]], values: Floats) -> Floats:
+        """Unit force on the reference in global axes; adds its derivative to `values`."""
+        force = np.zeros(self.system.n_dofs)
+        self._evaluate(masks, 1.0, np.zeros_like(force), END_POINT, 1.0, force, values)
+        return force
+
+    def _evaluate(
+        self,
+        masks: list[NDArray[np.bool_]],
+        scale: float,
+        u: Floats,
+        start: Floats,
+        share: float,
+        force: Floats,
+        values: Floats,
+    ) -> None:
+        """Add to force and derivative (times `share`) what the core says; in global axes."""
+        # Of a centrifugal force the scale is that of the square of the angular velocity.
+        item, first = self.item, 2 if self.item.kind == "gravity" else 1
+        value = [scale * v for v in item.value[:first]] + list(item.value[first:])
+        self.system.core.body_force(
+            item.kind, value, self.mass, masks, u, start, share, force, values
         )
-        return system.at_nodes(force)
 
 
 class Traction:
