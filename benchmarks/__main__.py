@@ -11,10 +11,10 @@ HERE = Path(__file__).resolve().parent
 #: What is not a benchmark by itself.
 HELPERS = {
     "__init__", "__main__", "common", "cantilever", "problems", "decks", "bench_figures",
-    "fault_readers", "fault_runs", "fault_world", "contact_problems",
+    "fault_readers", "fault_runs", "fault_world", "contact_problems", "free_body_decks",
 }  # fmt: skip
 #: What takes so long that it runs only when it is named.
-LONG = {"faults", "fuzz_readers", "contact_torture"}
+LONG = {"faults", "fuzz_readers", "contact_torture", "free_bodies"}
 
 
 def names() -> list[str]:

@@ -372,10 +372,12 @@ class System:
         """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
         held = self.conditions.held
         unsymmetric = None
+        joined = at.link is not None and self.turning
+        if (at.load_stiffness is not None or joined) and not (self.held_for_sure or at.heft):
+            # Loads that follow, and those on rigid parts that turn, give a free motion stiffness
+            # that is none.
+            self._refuse_free(at)
         if at.load_stiffness is not None:
-            if not (self.held_for_sure or at.heft):
-                # Loads that follow give a free motion stiffness that is none.
-                self._refuse_free(at)
             _, unsymmetric = self._add_load_stiffness(at)
         if at.link is not None:
             return self._correct_tied(at, at.link, rhs, du_held, unsymmetric)
