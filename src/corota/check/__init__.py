@@ -3,26 +3,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from corota.check.cells import check_cells
+from corota.check.cells import SHAPED, check_cells
 from corota.check.data import check_data
 from corota.check.rigid import check_rigid
 from corota.check.sections import check_sections
+from corota.check.start import refusal
 from corota.check.units import check_units
+from corota.errors import Diagnostic, SingularError
 
 if TYPE_CHECKING:
-    from corota.errors import Diagnostic
     from corota.model.model import Model
 
-__all__ = ["check"]
+__all__ = ["check", "examine"]
 
 
 def check(model: Model) -> list[Diagnostic]:
-    """Look for what will fail, mislead or surprise, without solving.
+    """Look for what will fail, mislead or surprise, without solving more than the start.
 
-    Errors are cells without a section or of the wrong shape, inverted cells, loads without
-    effect, and free rigid-body modes with the node to hold. Warnings are meshes that lock,
+    Errors are what a run refuses: cells without a section or of the wrong shape, inverted cells,
+    and motions that nothing holds, with the node to hold. A model with steps is judged by the
+    run's own first increment, so that constraints, ties and contact hold what they hold there;
+    what looks wrong and does not stop a run is a warning. Warnings are also meshes that lock,
     distorted cells, nodes at the same place, doubtful units. Notes count and list.
 
     Parameters
@@ -47,12 +51,52 @@ def check(model: Model) -> list[Diagnostic]:
     error: a free body: it can move along y
         hint: hold node 1 in y (dof 2)
     """
-    found = check_data(model)
-    sections, complete = check_sections(model)
-    found += sections
-    found += check_cells(model)
-    found += check_units(model)
-    if complete:
-        found += check_rigid(model)
+    return examine(model)[0]
+
+
+def examine(model: Model) -> tuple[list[Diagnostic], int]:
+    """Findings of :func:`check`, and the exit code: 0 if a run starts.
+
+    A mesh without sections and steps is no model yet, and has no errors of one.
+    """
+    found, code = check_data(model), 0
+    if model.sections or model.steps:
+        sections, complete = check_sections(model)
+        found += sections
+        found += check_cells(model) + check_units(model)
+        if complete and model.steps:
+            found, code = _by_start(model, found)
+        elif complete and _plain(model):
+            found += check_rigid(model)
+    elif model.mesh.n_cells:
+        # Nothing is asked of a mesh yet.
+        found += [replace(d, severity="note") for d in check_sections(model)[0]]
+        found += check_cells(model)
     order = {"error": 0, "warning": 1, "note": 2}
-    return sorted(found, key=lambda d: order[d.severity])
+    found = sorted(found, key=lambda d: order[d.severity])
+    return found, code or 3 * any(d.severity == "error" for d in found)
+
+
+def _by_start(model: Model, found: list[Diagnostic]) -> tuple[list[Diagnostic], int]:
+    """Findings in the light of whether the run starts, and the exit code if it does not."""
+    error = refusal(model)
+    if error is None:
+        found = [replace(d, severity="warning") if d.severity == "error" else d for d in found]
+        if not _plain(model):
+            return found, 0
+        # What later steps let free is no matter of the start, and an error all the same; what
+        # rests without loads starts.
+        later = check_rigid(model, first=1)
+        return found + (later or [replace(d, severity="warning") for d in check_rigid(model)]), 0
+    named = isinstance(error, SingularError) and _plain(model)
+    motions = check_rigid(model) if named else []
+    if not motions and not any(d.severity == "error" for d in found):
+        where = getattr(error, "where", None)
+        motions = [Diagnostic("error", getattr(error, "message", str(error)), where)]
+    return found + motions, error.exit_code
+
+
+def _plain(model: Model) -> bool:
+    """Whether supports and common nodes alone hold the model's bodies."""
+    joined = model.constraints or model.axes or model.contacts or model.ties
+    return not joined and all(block.kind in SHAPED for block in model.mesh.cells)

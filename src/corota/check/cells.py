@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints, Mesh
     from corota.model.model import Model
 
+#: Kinds of cells that have an area.
+SHAPED = ("tri3", "tri6", "quad4", "quad8", "quad9")
 #: Corners flatter than 10 degrees, or turned by more than 170.
 FLAT_SINE = 0.17
 #: Smallest over largest Jacobian of a cell that is far from its regular shape.
@@ -31,6 +33,8 @@ def check_cells(model: Model) -> list[Diagnostic]:
     used = np.zeros(mesh.n_nodes, bool)
     for block in mesh.cells:
         used[block.nodes] = True
+        if block.kind not in SHAPED:
+            continue  # a line has no angles
         points = mesh.points[block.nodes]
         jacobian = jacobians(block.kind, points)
         ratio = jacobian.min(axis=1) / np.abs(jacobian).max(axis=1)

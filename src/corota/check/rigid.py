@@ -24,14 +24,18 @@ FREE = 1e-13
 MAX_BODIES = 400
 
 
-def check_rigid(model: Model) -> list[Diagnostic]:
-    """Findings over all static steps (over the model's supports, if it has no step)."""
+def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
+    """Findings over all static steps (over the model's supports, if it has no step).
+
+    Supports and common nodes are all it knows: it names the motions of plain models. Steps before
+    `first`, from 0, are left out.
+    """
     mesh = model.mesh
     rotating = _rotating(model)
     found: list[Diagnostic] = []
     for number, held in enumerate(_held(model, rotating)):
         step = model.steps[number] if model.steps else None
-        if step is not None and step.procedure != "static":
+        if number < first or (step is not None and step.procedure != "static"):
             continue
         found = _free_modes(mesh, held, rotating, step)
         if found:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic, InputError
+from corota.mesh.data import EDGES
 from corota.mesh.parts import cells_of, part_of_cells
 from corota.model import elements
 from corota.model.materials import Elastic
@@ -122,6 +123,9 @@ def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
 def _area(mesh: Mesh) -> Floats:
     parts = [np.zeros(0)]
     for block in mesh.cells:
+        if not EDGES[block.kind]:
+            parts.append(np.zeros(len(block)))
+            continue
         count = 3 if block.kind.startswith("tri") else 4
         x, y = mesh.points[block.nodes[:, :count]].transpose(2, 0, 1)
         parts.append(0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(axis=1))

@@ -7,18 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 from corota.cli.info import model_lines, model_record
 from corota.cli.reading import read_input
+from corota.errors import CorotaError, Diagnostic
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.errors import Diagnostic
 
 
 def run(args: Any, terminal: Terminal) -> int:
-    """Check an input; 0 if it can be solved, else 3 (its form is refused with 2 while reading)."""
-    from corota.check import check
+    """Check an input; 0 if its run starts, else the code by which the run refuses it."""
+    from corota.check import examine
 
-    model = read_input(args.deck, args)
-    found = list(check(model))
+    try:
+        model = read_input(args.deck, args)
+    except CorotaError as error:
+        _refused(error, terminal)
+        raise
+    found, code = examine(model)
     errors = [d for d in found if d.severity == "error"]
     for text in model_lines(model):
         terminal.line(text)
@@ -35,7 +39,19 @@ def run(args: Any, terminal: Terminal) -> int:
     terminal.record(
         model_record(model) | {"event": "check", "errors": len(errors), "warnings": warnings}
     )
-    return 3 if errors else 0
+    return code
+
+
+def _refused(error: CorotaError, terminal: Terminal) -> None:
+    """Records of an input that cannot be read."""
+    where = getattr(error, "where", None)
+    found = getattr(error, "diagnostics", None) or [
+        Diagnostic("error", getattr(error, "message", str(error)), where)
+    ]
+    for diagnostic in found:
+        terminal.record(_record(diagnostic))
+    errors = sum(d.severity == "error" for d in found)
+    terminal.record({"event": "check", "errors": errors, "warnings": len(found) - errors})
 
 
 def _colored(diagnostic: Diagnostic, terminal: Terminal) -> str:
