@@ -145,3 +145,24 @@ def test_a_later_step_replaces_and_the_ramp_is_linear():
     frames = ct.solve(model, steps, threads=1).frames
     for frame, expected in zip(frames, (0.0, 0.5, 1.0, 2.0, 3.0), strict=True):
         assert np.abs(total(frame) - [expected, 0.5 * expected]).max() <= ROUNDOFF * 10
+
+
+@pytest.mark.parametrize("load", ["traction", "pressure", "gravity", "centrifugal"])
+def test_whole_numbers_are_numbers(load):
+    """A thickness, a modulus and a load given as integers are those given as floats."""
+    ends = []
+    for number in (int, float):
+        model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1))
+        material = ct.Elastic(E=number(1000), nu=0.3, rho=number(1))
+        model.section("all", element="Q4I", material=material, thickness=number(2))
+        model.fix("left")
+        if load == "traction":
+            model.traction("right", y=number(1))
+        elif load == "pressure":
+            model.pressure("top", number(1))
+        elif load == "gravity":
+            model.gravity(y=number(-1))
+        else:
+            model.centrifugal(number(1), about=(number(0), number(0)))
+        ends.append(ct.solve(model, ct.Static(), threads=1).frames[-1].U)
+    assert (ends[0] == ends[1]).all()

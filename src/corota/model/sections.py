@@ -85,6 +85,7 @@ class Section:
                 "elongation rising",
                 self.where,
             )
+        self.thickness = float(self.thickness)
         if not (np.isfinite(self.thickness) and self.thickness > 0.0):
             raise InputError(f"the thickness must be > 0, not {self.thickness}", self.where)
         if self.mean_dilatation and self.plane != "strain":
