@@ -10,6 +10,7 @@ import corota as ct
 from corota.model.loads import Amplitude
 
 SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
+TIMES = np.linspace(0.0, 2.0, 8001)
 
 
 def shaken(time, value, velocity=0.0):
@@ -79,3 +80,60 @@ def test_derivatives_of_a_table():
     assert list(line.kinks()) == [0.0, 1.0]
     wave = np.linspace(0.0, 10.0, 100)
     assert not len(Amplitude(wave, np.sin(wave)).kinks()[1:-1])
+
+
+def on_a_moving_base(support):
+    """A beam that its left end shakes, held at its nodes or by a rigid face."""
+    model = ct.Model(ct.mesh.rectangle(2.0, 0.2, nx=6, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=500.0, nu=0.3, rho=1.0))
+    model.amplitudes["base"] = ct.Amplitude(TIMES, np.sin(9.0 * TIMES) ** 2)
+    base = model.mesh.nodes_of("left")
+    if support == "rigid face":
+        node = ct.mesh.add_node(model.mesh, -0.1, 0.1)
+        model.rigid(base, node)
+        base = np.array([node])
+    model.fix(base, x=0.0, y=0.01, rotation=True if support == "rigid face" else None,
+              amplitude="base")  # fmt: skip
+    return model, base
+
+
+@pytest.mark.parametrize("rayleigh", [(0.0, 0.0), (0.3, 0.001)])
+@pytest.mark.parametrize("support", ["nodes", "rigid face"])
+def test_modal_base_moves_to_the_last_frame_of_every_step(support, rayleigh):
+    """Base at 0.01 sin^2 9t: V = 0.09 sin 18t, A = 1.62 cos 18t; reactions of direct integration.
+
+    A step that ends while the base accelerates has the acceleration there, as inside.
+    """
+    model, base = on_a_moving_base(support)
+    model.amplitudes["base"].total_time = True
+    steps = [ct.ModalDynamic(period=0.5, increments=100, residual=True, rayleigh=rayleigh)
+             for _ in range(2)]  # fmt: skip
+    modal = ct.solve(model, [ct.Frequency(modes=16), *steps], fields=False).frames[-200:]
+    model, base = on_a_moving_base(support)
+    step = ct.Dynamic(period=1.0, increments=200, scheme="newmark", nlgeom=False,
+                      rayleigh=rayleigh)  # fmt: skip
+    direct = ct.solve(model, step, fields=False).frames[-200:]
+    time = 0.005 * np.arange(1, 201)
+    v, a = (np.array([getattr(f, name)[base[0], 1] for f in modal]) for name in "VA")
+    assert np.abs(v - 0.09 * np.sin(18.0 * time)).max() < 4e-3 * 0.09
+    assert np.abs(a - 1.62 * np.cos(18.0 * time)).max() < 1e-2 * 1.62
+    rf = np.array([[f.RF[base, 1].sum() for f in frames] for frames in (modal, direct)])
+    gap = np.abs(rf[0] - rf[1])
+    for last in (100, 200):
+        assert gap[last - 1] < 0.03 * np.abs(rf[1]).max()
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 8])
+def test_rates_of_moves_are_exact_for_parabolas(n):
+    """s = 1 + 2t + 3t^2 has s' = 2 + 6t and s'' = 6, as far as the samples tell."""
+    from corota.analysis.procedures.modal import rates_of_moves
+
+    dt = 0.25
+    t = dt * np.arange(n + 1)[:, None]
+    rates, bends = rates_of_moves(1.0 + 2.0 * t + 3.0 * t**2, dt)
+    if n > 1:
+        assert rates == pytest.approx(2.0 + 6.0 * t, abs=1e-10)
+        assert bends == pytest.approx(np.full_like(t, 6.0), abs=1e-9)
+    else:
+        assert rates == pytest.approx(np.full_like(t, 2.0 + 3.0 * dt), abs=1e-10)
+        assert not bends.any()

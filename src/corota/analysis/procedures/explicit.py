@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.equations import Evaluation, System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.model.steps import Dynamic
@@ -27,10 +27,12 @@ if TYPE_CHECKING:
 SAFETY = 0.9
 #: Iterations for the largest frequency; its estimate rises to the true value.
 POWER = 60
-#: Growth of the total energy, relative to the work done, that is taken for instability.
+#: Total energy, relative to the energy put in, that may be a blow-up.
 BLOW_UP = 10.0
-#: Increments before that is judged.
-SETTLE = 10
+#: Moves within an increment, relative to the model's size, that are as good as none.
+ROUND_OFF = 1e-12
+#: Unbalanced force at dofs without mass, relative to the largest force, that is none.
+BALANCED = 1e-9
 #: Most frames that are kept of a step unless outputs ask for times.
 FRAMES = 200
 
@@ -45,19 +47,55 @@ def diagonal(system: System) -> Floats:
 
 
 def stable_increment(system: System, u: Floats, mass: Floats) -> float:
-    """Largest stable increment, 2 / (largest frequency) [time]."""
-    held = system.conditions.held
+    """Largest stable increment, 2 / (largest frequency) [time].
+
+    Only dofs that are free and have mass count: held ones follow their supports, with or without
+    mass. It is infinite if none of those has stiffness.
+
+    Raises
+    ------
+    ModelError
+        If a free dof has stiffness but no mass, or if the frequency is not finite.
+    """
+    free = ~system.conditions.held
+    moving = free & (mass > 0.0)
     values = system.evaluate(u, 0.0).values
-    x = np.random.default_rng(0).standard_normal(system.n_dofs)
-    x[held] = 0.0
+    idle = free & ~moving
+    if idle.any():
+        # What the free dofs without mass feel, whichever dof moves.
+        felt = np.zeros(system.n_dofs)
+        starts = system.indptr.astype(np.int64)
+        columns = np.repeat(np.arange(system.n_dofs), starts[1:] - starts[:-1])
+        np.maximum.at(felt, system.indices, np.abs(values))
+        np.maximum.at(felt, columns, np.abs(values))
+        _refuse_idle(system, idle & (felt > 0.0), "has stiffness but no mass")
+    if not moving.any():
+        return np.inf
+    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
+    x = np.where(moving, np.random.default_rng(0).standard_normal(system.n_dofs), 0.0)
     largest = 0.0
     for _ in range(POWER):
         x /= np.sqrt(x @ (mass * x))
-        y = system.core.multiply(values, x)
-        y[held] = 0.0
+        y = np.where(moving, system.core.multiply(values, x), 0.0)
         largest = float(x @ y)
-        x = y / mass
+        x = inverse * y
+        if not x.any():
+            return np.inf
+    if not np.isfinite(largest):
+        raise ModelError(
+            "the largest frequency is not finite, so central differences have no stable "
+            "increment: check stiffness and mass, or use an implicit scheme"
+        )
     return 2.0 / float(np.sqrt(largest)) if largest > 0.0 else np.inf
+
+
+def _refuse_idle(system: System, idle: NDArray[np.bool_], what: str) -> None:
+    """Refuse the first of some free dofs without mass."""
+    if idle.any():
+        raise ModelError(
+            f"{system.describe(int(np.flatnonzero(idle)[0]))} {what}: central differences cannot "
+            "move it; add a point mass, hold it, or use an implicit scheme"
+        )
 
 
 def explicit_step(
@@ -78,7 +116,8 @@ def explicit_step(
     UnsupportedError
         If there are constraints or contact.
     ModelError
-        If the asked increment is not stable; the message gives the stable one.
+        If the asked increment is not stable; the message gives the stable one. If a free dof
+        with stiffness or load has no mass, or if there is no stiffness to find an increment from.
     ConvergenceError
         If the motion blows up all the same.
     """
@@ -113,6 +152,12 @@ def explicit_step(
                 f"{stable:.4g}; use at most {SAFETY * stable:.3g}, or an implicit scheme",
                 step.where,
             )
+    elif not np.isfinite(stable):
+        raise ModelError(
+            "nothing that is free to move has stiffness at the start, so there is no stable "
+            "increment to take: give increments, or use an implicit scheme",
+            step.where,
+        )
     else:
         dt = min(SAFETY * stable, step.largest_increment)
     n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
@@ -124,28 +169,39 @@ def explicit_step(
         state.v = initial_velocity(system, state.u)
     u = state.u.copy()
     at = system.evaluate(u, 0.0)
-    a = np.where(held, 0.0, -at.residual / mass)
+    moving = ~held & (mass > 0.0)
+    idle = ~held & ~moving
+    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
+    _refuse_pushed(system, idle, at)
+    a = -inverse * at.residual
     v = state.v + 0.5 * dt * a
     work = internal = 0.0
     first = 0.5 * float(state.v @ (mass * state.v))
+    known = Known(system, mass, first, dt)
     for i in range(1, n + 1):
         time = i * dt
         du = np.where(held, system.conditions.prescribed(time, u) - u, dt * v)
         u = u + du
         new = system.evaluate(u, time)
         system.commit()
-        a = np.where(held, 0.0, -new.residual / mass)
+        _refuse_pushed(system, idle, new)
+        a = -inverse * new.residual
         mean_f = 0.5 * (at.external + new.external)
         reaction = np.where(held, 0.5 * (at.residual + new.residual), 0.0)
-        work += float((mean_f + reaction) @ du)
+        worked = float((mean_f + reaction) @ du)
+        work += worked
         internal += float(0.5 * (at.internal + new.internal) @ du)
         whole = np.where(held, du / dt, v + 0.5 * dt * a)
         v = np.where(held, du / dt, v + dt * a)
+        stiff = float(np.where(moving, new.internal - at.internal, 0.0) @ du)
+        inert = float(np.where(moving, mass * du, 0.0) @ du)
         at = new
         kinetic = 0.5 * float(whole @ (mass * whole))
-        # The work lags behind by half an increment, which is all of it at first.
-        known = first + abs(work) + abs(internal)
-        if not np.isfinite(kinetic) or (i > SETTLE and kinetic + internal > BLOW_UP * known):
+        pending = float((new.external + np.where(held, new.residual, 0.0)) @ whole) * dt
+        allowed = BLOW_UP * known.energy(worked, internal, pending)
+        # The frequency of the increment itself is above the stable one, and energy comes of it.
+        unstable = stiff * dt**2 > 4.0 * inert and kinetic + internal > allowed
+        if unstable or not np.isfinite(kinetic + internal):
             raise ConvergenceError(
                 f"the motion blows up at step time {time:g}; the stable increment has become "
                 f"smaller than {dt:g}: use automatic increments with a smaller first one"
@@ -177,3 +233,47 @@ def explicit_step(
             f"{keep}th is kept",
             stacklevel=2,
         )
+
+
+class Known:
+    """Energy that a motion can have: what it started with, what was put in and set free.
+
+    Parameters
+    ----------
+    system : System
+    mass : ndarray, shape (n_dofs,)
+    first : float
+        Kinetic energy at the start [force*length].
+    dt : float
+        Increment [time].
+    """
+
+    def __init__(self, system: System, mass: Floats, first: float, dt: float) -> None:
+        # A body at rest has no energy to compare with but that of rounded displacements.
+        speed = ROUND_OFF * np.where(system.is_rotation, 1.0, system.length) / dt
+        self.first = first + 0.5 * float(mass @ speed**2)
+        self.worked = self.freed = 0.0
+
+    def energy(self, worked: float, internal: float, pending: float) -> float:
+        """Energy after an increment [force*length].
+
+        Parameters
+        ----------
+        worked : float
+            Work of loads and supports in the increment.
+        internal : float
+            Internal work since the start; what was stored before makes it negative.
+        pending : float
+            Work of the next increment: kinetic energy is ahead of the work by half of one.
+        """
+        self.worked += abs(worked)
+        self.freed = max(self.freed, -internal)
+        return self.first + self.worked + self.freed + abs(pending)
+
+
+def _refuse_pushed(system: System, idle: NDArray[np.bool_], at: Evaluation) -> None:
+    """Refuse forces at free dofs without mass, which would follow at once."""
+    if idle.any():
+        largest = max(float(at.scale.max()), float(np.abs(at.external).max()))
+        pushed = idle & (np.abs(at.residual) > BALANCED * largest)
+        _refuse_idle(system, pushed, "has a force on it but no mass")

@@ -57,8 +57,8 @@ def modal_step(
     c, s = loads.coefficients, moves.coefficients
     model = Reduced(system, state, step, number, loads.matrix, moves.matrix)
     advance = _advance(model, dt)
-    rates = np.diff(np.concatenate([s, s[-1:]]), axis=0) / dt
-    rates[-1] = rates[-2]
+    slope_s = np.diff(s, axis=0) / dt
+    rates, bends = rates_of_moves(s, dt)
     start = initial_velocity(system, state.u) if state.v is None else state.v.copy()
     held = system.conditions.held
     start[held] = (moves.matrix @ rates[0])[held]
@@ -70,13 +70,12 @@ def modal_step(
     m = len(p)
     for i in range(1, n + 1):
         slope_c = (c[i] - c[i - 1]) / dt
-        inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, rates[i - 1]])
+        inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, slope_s[i - 1]])
         x = advance @ np.concatenate([x, inputs])
         p, v = x[:m], x[m:]
-        rate = rates[i - 1]
+        rate, bend = rates[i], bends[i]
         q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
         a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
-        bend = (rates[min(i, n - 1)] - rates[i - 1]) / dt
         change = model.displacement(q, s[i])
         state.u = lin.u + change
         state.v = model.displacement(q_rate, rate)
@@ -115,6 +114,35 @@ def _courses(system: System, lin: LinearMotion, n: int, dt: float) -> tuple[Patt
         loads.add(conditions.external(i * dt, lin.u)[0] - lin.at.internal)
         moves.add(np.where(conditions.held, conditions.prescribed(i * dt, lin.u) - lin.u, 0.0))
     return loads, moves
+
+
+def rates_of_moves(s: Floats, dt: float) -> tuple[Floats, Floats]:
+    """Velocity and acceleration of the supports at the ends of all increments.
+
+    Central differences, and one-sided ones at both ends of the step. Both are of second order
+    in the increment, as those that direct integration takes (:meth:`Amplitude.derivatives`).
+
+    Parameters
+    ----------
+    s : ndarray, shape (n + 1, ns)
+        Coefficients of the moves [length].
+    dt : float
+        Increment [time].
+
+    Returns
+    -------
+    rates, bends : ndarray, shape (n + 1, ns)
+    """
+    n = len(s) - 1
+    rates: Floats = np.gradient(s, dt, axis=0, edge_order=2 if n > 1 else 1)
+    bends = np.zeros_like(s)
+    if n > 1:
+        bends[1:-1] = np.diff(s, 2, axis=0) / dt**2
+        # Two increments have but one second difference.
+        bends[0], bends[-1] = bends[1], bends[-2]
+    if n > 2:
+        bends[0], bends[-1] = 2.0 * bends[1] - bends[2], 2.0 * bends[-2] - bends[-3]
+    return rates, bends
 
 
 def _advance(model: Reduced, dt: float) -> Floats:
