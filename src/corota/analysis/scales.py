@@ -32,7 +32,7 @@ LARGEST_NOISE, FARTHEST = 1e-6, 10.0
 #: of the forces times that size for moments: either may vanish altogether.
 LEAST = 1e-6
 #: A body that moves this many sizes of the model and supports is held by nothing.
-FAR = 1e3
+FAR = 1e2
 EPS = float(np.finfo(float).eps)
 
 
