@@ -14,7 +14,7 @@ HELPERS = {
     "fault_readers", "fault_runs", "fault_world", "contact_problems", "free_body_decks",
 }  # fmt: skip
 #: What takes so long that it runs only when it is named.
-LONG = {"faults", "fuzz_readers", "contact_torture", "free_bodies"}
+LONG = {"energy_balance", "faults", "fuzz_readers", "contact_torture", "free_bodies"}
 
 
 def names() -> list[str]:

@@ -22,6 +22,7 @@ from corota.analysis.free_motion import name_motion
 from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
 from corota.analysis.memory import require_model
 from corota.analysis.newton import ElementFailure, Judgement
+from corota.analysis.recovery import recover
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.moving_mass import MovingMass
@@ -30,7 +31,6 @@ from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
 from corota.analysis.timer import Timer
 from corota.errors import ModelError, SingularError
 from corota.model import elements
-from corota.results.results import PointFields
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
+    from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -229,24 +230,33 @@ class System:
         if self.ties is not None:
             self.ties.complete(u)
         self.heat(step_time)
-        try:
-            with self.timed("assemble"):
-                here = self.in_space(u)
-                if self.user.blocks:
-                    self.user.assemble(
-                        here,
-                        self.turning,
-                        lambda: self.core.assemble(here, self.turning, internal, scale, values),
-                    )
-                else:
-                    self.core.assemble(here, self.turning, internal, scale, values)
-        except RuntimeError as error:
-            raise failure(self._labels(error.args[1]), error.args[0]) from None
+        self._assemble(u, internal, scale, values)
         if not self.scales.stiffest:
             self.scales.measure(values)
         external, stiffness = self.conditions.external(step_time, u, values)
         link = None if self.ties is None else self.ties.link(u)
         return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
+
+    def forces(self, u: Floats, step_time: float) -> Evaluation:
+        """Forces at a state without the tangent."""
+        internal, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
+        self.heat(step_time)
+        self._assemble(u, internal, scale, NOWHERE)
+        external = self.conditions.external(step_time, u)[0]
+        return Evaluation(self.at_nodes(internal), external, scale, NOWHERE)
+
+    def _assemble(self, u: Floats, internal: Floats, scale: Floats, values: Floats) -> None:
+        """Forces of the elements in global axes and, unless it is empty, the tangent."""
+        here = self.in_space(u)
+
+        def assemble() -> None:
+            self.core.assemble(here, self.turning, internal, scale, values)
+
+        try:
+            with self.timed("assemble"):
+                self.user.assemble(here, self.turning, assemble)
+        except RuntimeError as error:
+            raise failure(self._labels(error.args[1]), error.args[0]) from None
 
     def reaction(self, at: Evaluation) -> Floats:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
@@ -531,36 +541,7 @@ class System:
 
     def recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
         """Fields at the quadrature points, and sums over them."""
-        fields, energy = [], 0.0
-        largest: tuple[float, Material | None] = (0.0, None)
-        raw = self.core.recover(self.in_space(u), self.turning)
-        for block, own in zip(self.blocks, raw, strict=True):
-            for name, values in own["values"].items():
-                if not np.isfinite(values).all():
-                    bad = int(np.argwhere(~np.isfinite(values))[0][0])
-                    label = self.model.mesh.cell_labels[block.cells[bad]]
-                    raise ElementFailure(
-                        f"{name} of element {label} is no number at the equilibrium that was "
-                        "found: its strain is beyond what its material and plane allow, as a "
-                        "thickness that vanishes; look at loads, moduli and units"
-                    )
-            energy += own["total_energy"]
-            section, strain = block.section, float(own["largest_strain"])
-            if self.turning and section.local_strain == "linear" and strain > largest[0]:
-                largest = strain, section.material
-            fields.append(
-                PointFields(
-                    block.section.element,
-                    block.cells,
-                    own["points"],
-                    own["shape"],
-                    own["rotation"],
-                    own["volume"],
-                    own["values"],
-                )
-            )
-        self.largest_linear_strain = largest
-        return fields, {"strain energy": energy}
+        return recover(self, u)
 
 
 def failure(labels: list[int], why: str = "") -> ElementFailure:

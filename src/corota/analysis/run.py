@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.analysis.energies import Energies
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import SOLVERS
 from corota.analysis.newton import ElementFailure
@@ -182,6 +183,7 @@ class Analysis:
                 critical=results.critical_points,
                 modes=results.modes,
                 notes=results.notes,
+                energies=Energies(self.system),
             )
             reaction = None
             for number, step in enumerate(self.steps, start=1):
@@ -192,6 +194,10 @@ class Analysis:
                         f"step {number} stopped at step time {state.step_time:g} of "
                         f"{step.period:g}: {failure}. All increments before are kept"
                     ) from None
+            assert state.energies is not None
+            self.energies = state.energies
+            if remark := state.energies.remark():
+                results.notes.append(remark)
         except CorotaError as caught:
             error = caught
             if hasattr(caught, "results"):
@@ -231,6 +237,8 @@ class Analysis:
         system.begin(step, state.time, state.u, reaction)
         if state.at is None or turning != system.turning:
             state.at = system.evaluate(state.u, 0.0)
+        assert state.energies is not None
+        state.energies.begin(step, state.at.internal)
         if number == 1:
             if system.touching is not None:
                 state.notes += system.touching.notes
@@ -283,13 +291,15 @@ class Analysis:
         assert state.at is not None
         by_node = system.by_node(state.u)
         fields: list[PointFields] = []
+        elements: dict[str, float] | None = None
         if self.fields:
             with system.timed("recover"):
                 fields, sums = system.recover(state.u) if state.recover is None else state.recover()
+                elements = dict(sums)
                 step = self.steps[number - 1]
                 if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
                     add_kinetic(system, fields, state.u, state.v, step)
-            scalars = {**scalars, **sums}
+            scalars = {**scalars, "strain energy": sums["strain energy"]}
             strain, material = system.largest_linear_strain
             if material is not None and strain > LARGE_STRAIN:
                 self._warn(
@@ -302,6 +312,10 @@ class Analysis:
                     label = self.model.mesh.cell_labels[found[0]]
                     self._warn("flow", f"element {label}, step {number}, increment {increment}: "
                                + found[1])  # fmt: skip
+        kind = self.steps[number - 1].procedure
+        if kind == "dynamic" or (kind == "static" and elements is not None):
+            assert state.energies is not None
+            state.energies.add_to(scalars, elements, (number, increment))
         contact = None
         if system.touching is not None:
             contact, sums = system.touching.output()
@@ -314,7 +328,7 @@ class Analysis:
             factor,
             by_node[:, :2].copy(),
             by_node[:, 2].copy(),
-            system.by_node(system.reaction(state.at)),
+            system.by_node(system.reaction(state.at) if state.reaction is None else state.reaction),
             system.by_node(state.at.external),
             fields,
             scalars,

@@ -6,12 +6,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
     from numpy.typing import NDArray
 
+    from corota.analysis.energies import Energies
     from corota.analysis.equations import Evaluation
     from corota.analysis.newton import Outcome
     from corota.analysis.terms.linearized import LinearMotion
@@ -34,8 +36,10 @@ class State:
         Time in the current step [time].
     at : Evaluation or None
         Evaluation at `u`.
-    work : float
-        Work of loads and moving supports so far [force*length].
+    energies : Energies or None
+        The energy account.
+    reaction : ndarray, shape (n_dofs,), or None
+        Reactions at `u` where inertia takes part in them; else they follow from `at`.
     negative : int
         Negative pivots of the tangent, -1 if unknown.
     counters : dict of str to int
@@ -61,7 +65,8 @@ class State:
     time: float = 0.0
     step_time: float = 0.0
     at: Evaluation | None = None
-    work: float = 0.0
+    energies: Energies | None = None
+    reaction: Floats | None = None
     negative: int = -1
     counters: dict[str, int] = field(default_factory=dict)
     v: Floats | None = None
@@ -73,3 +78,9 @@ class State:
     linear: LinearMotion | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
     failed: Outcome[Evaluation] | None = None
+
+    def stand_still(self) -> None:
+        """Take the velocity of a motion away: a static step has none, nor what follows it."""
+        if self.v is not None:
+            self.v, self.a = np.zeros_like(self.u), np.zeros_like(self.u)
+        self.carried = None

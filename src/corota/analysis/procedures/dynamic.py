@@ -6,10 +6,11 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.energies import Balance
 from corota.analysis.increments import CUT, SAME, Increments
 from corota.analysis.newton import Outcome, Settings, newton
 from corota.analysis.procedures.explicit import explicit_step
@@ -21,6 +22,7 @@ from corota.analysis.procedures.motion import (
     Moving,
     NewmarkMotion,
 )
+from corota.analysis.procedures.motion_output import EndForces
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import newton_with_contact
@@ -87,7 +89,9 @@ def dynamic_step(
     inertia = Inertia(system, step.mass, light_nodes(system, step.redistribute))
     viscous = ViscousElements(system, step.rayleigh[1])
     now = start_motion(system, step, state, inertia, viscous)
-    book = Balance(system, step, now, inertia)
+    assert state.energies is not None
+    book = Balance(system, step, now, inertia, state.energies)
+    ends = EndForces(system)
     control = Increments(step, stops)
     if not step.fixed_increments and step.first_increment >= step.period:
         control.size = step.period / 100.0
@@ -145,20 +149,20 @@ def dynamic_step(
             continue
         system.commit()
         inertia.settle(now, motion.end, target - control.time)
-        if system.touching is None:
-            book.accept(motion)
-        else:
+        contact = None
+        if system.touching is not None:
             touching.accept(outcome.u, target)
             assert touching.touch is not None
-            book.accept(motion, touching.touch.force)
+            contact = touching.touch.force
+        book.accept(motion, contact)
         now = motion.end
-        state.u, state.v, state.a = now.u + turned, now.v, now.a
+        ends.find(motion, contact, target)
+        state.u, state.v, state.a = now.u + turned, now.v, ends.a
         if (more := _whole_turns(system, now.u)) is not None:
             now.u = now.u - more
             turned = turned + more
-        state.at = outcome.at
+        state.at, state.reaction = ends.at, ends.reaction
         state.step_time = target
-        state.work = book.external
         dt = target - control.time
         attempts = control.attempt
         control.accept(target, outcome.iterations)
@@ -180,6 +184,7 @@ def dynamic_step(
             )
     if step.scheme == "energy_momentum" and state.v is not None:
         state.carried = (state.u, state.v)
+    state.reaction = None
     # A static step that follows needs the static equation at this displacement.
     state.at = system.evaluate(state.u, step.period)
 
@@ -493,88 +498,3 @@ def _contact_error(
             )
             work += pair.law_energy(terms) - before
     return 10.0 * abs(work) / (step.error_tolerance * energy) if energy > 0.0 else 0.0
-
-
-class Balance:
-    """Energies and momenta along a step.
-
-    Work is summed with the mean of the forces at both ends of each increment, and with the
-    mid-point forces in the energy-momentum scheme, where the sums are exact.
-    """
-
-    def __init__(self, system: System, step: Dynamic, now: Moving, inertia: Inertia) -> None:
-        self.system, self.step, self.now, self.inertia = system, step, now, inertia
-        self.internal = self.external = self.damping = self.contact = 0.0
-        self.carried = step.scheme == "energy_momentum"
-        self.first = self._kinetic(now)
-        self.energy, self.mass = self.first[0], self.first[4]
-        self.kept = self._kept()
-
-    def _kept(self) -> float:
-        """What friction took so far and pressure laws hold; else contact does no work."""
-        touching = self.system.touching
-        if touching is None or touching.at is None:
-            return 0.0
-        pairs = zip(touching.pairs, touching.at.terms, strict=True)
-        return sum(pair.friction_work + pair.law_energy(terms) for pair, terms in pairs)
-
-    def _kinetic(self, now: Moving) -> list[float]:
-        return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
-
-    def driven(self, now: Moving) -> float:
-        """Energy of the body in the frame of what drives it: that of an impact from rest."""
-        moved = self.system.conditions.held & ~self.system.is_rotation
-        speed = np.abs(now.v[moved]).max(initial=0.0)
-        return 0.5 * self.mass * float(speed) ** 2
-
-    def accept(
-        self, motion: NewmarkMotion | ConservingMotion, contact: Floats | None = None
-    ) -> None:
-        """Add the work of an increment, in which contact has a force, shape (n_dofs,)."""
-        begin, end = motion.start, motion.end
-        held = self.system.conditions.held
-        if isinstance(motion, ConservingMotion):
-            d = motion.increment(end.u)
-            internal, external, damping = end.internal, end.external, end.damping
-            reaction = end.reaction()
-        else:
-            d = end.u - begin.u
-            internal, external, damping = (
-                0.5 * (getattr(begin, name) + getattr(end, name))
-                for name in ("internal", "external", "damping")
-            )
-            reaction = 0.5 * (begin.reaction() + end.reaction())
-        self.internal += float(internal @ d)
-        self.damping += float(damping @ d)
-        if contact is not None:
-            self.contact += float(contact @ d)
-            reaction = reaction - contact
-        # Supports that move do the work of the reaction.
-        reaction = np.where(held, reaction, 0.0)
-        self.external += float((external + reaction) @ d)
-        self.now = end
-        self.energy = max(self.energy, abs(self.internal), abs(self.external))
-
-    def add_to(self, scalars: dict[str, Any]) -> None:
-        """Write the balance into a frame's scalars."""
-        kinetic, px, py, angular, _ = self._kinetic(self.now)
-        if self.system.touching is not None:
-            scalars["contact work"] = self.contact
-        scalars.update(
-            {
-                "kinetic energy": kinetic,
-                "internal work": self.internal,
-                "external work": self.external,
-                "damping energy": self.damping,
-                "energy balance": kinetic
-                - self.first[0]
-                + self.internal
-                + self.damping
-                + self._kept()
-                - self.kept
-                - self.external,
-                "momentum x": px,
-                "momentum y": py,
-                "angular momentum": angular,
-            }
-        )

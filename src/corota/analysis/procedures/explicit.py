@@ -174,10 +174,16 @@ def explicit_step(
     inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
     _refuse_pushed(system, idle, at)
     a = -inverse * at.residual
+    account = state.energies
+    assert account is not None
+    account.drive(at.external, at.residual)
+    begin = account.work
     v = state.v + 0.5 * dt * a
-    work = internal = 0.0
+    work = internal = told = 0.0
     first = 0.5 * float(state.v @ (mass * state.v))
     known = Known(system, mass, first, dt)
+    account.set_kinetic(first)
+    driven = 0.5 * float((mass * state.v**2)[held].sum())
     for i in range(1, n + 1):
         time = i * dt
         du = np.where(held, system.conditions.prescribed(time, u) - u, dt * v)
@@ -186,12 +192,15 @@ def explicit_step(
         system.commit()
         _refuse_pushed(system, idle, new)
         a = -inverse * new.residual
-        mean_f = 0.5 * (at.external + new.external)
-        reaction = np.where(held, 0.5 * (at.residual + new.residual), 0.0)
-        worked = float((mean_f + reaction) @ du)
-        work += worked
+        account.add_work(du, new.external, new.residual)
         internal += float(0.5 * (at.internal + new.internal) @ du)
         whole = np.where(held, du / dt, v + 0.5 * dt * a)
+        # Supports accelerate the mass that moves with them.
+        moved = 0.5 * float((mass * whole**2)[held].sum())
+        account.work += moved - driven
+        worked = account.work - begin - work
+        driven, work = moved, account.work - begin
+        before = v
         v = np.where(held, du / dt, v + dt * a)
         stiff = float(np.where(moving, new.internal - at.internal, 0.0) @ du)
         inert = float(np.where(moving, mass * du, 0.0) @ du)
@@ -209,7 +218,10 @@ def explicit_step(
         if i % keep and i != n and i not in wanted:
             continue
         state.u, state.v, state.a, state.at = u, whole, a, new
-        state.step_time, state.work = time, work
+        state.step_time, account.kinetic = time, kinetic
+        account.internal += internal - told
+        told = internal
+        state.reaction = np.where(held, new.residual + mass * (du / dt - before) / dt, 0.0)
         save(
             state,
             i,
@@ -217,16 +229,16 @@ def explicit_step(
             {
                 "dt": dt,
                 "iterations": 1.0,
-                "external work": work,
-                "internal work": internal,
+                "external work": account.work,
+                "internal work": account.internal,
                 "kinetic energy": kinetic,
-                "energy balance": kinetic - first + internal - work,
             },
         )
         if observers.stop_requested:
             raise Interrupted(
                 f"stopped at step {number}, step time {time:g}; everything up to there is kept"
             )
+    state.reaction = None
     if keep > 1:
         warnings.warn(
             f"central differences took {n} increments of {dt:.3g} (stable: {stable:.3g}); every "

@@ -382,14 +382,19 @@ class ConservingMotion:
         begun = self._begun()
         x1, x0, v0 = (system.in_space(x) for x in (u, b.u, begun))
         system.heat(step_time - 0.5 * dt)
+
+        def assemble() -> None:
+            system.core.conserving(
+                x1, x0, v0, dt, self.inertia.kind, system.turning, force, internal, scale, values
+            )
+
         try:
             with system.timed("assemble"):
-                system.core.conserving(
-                    x1, x0, v0, dt, self.inertia.kind, system.turning,
-                    force, internal, scale, values,
-                )  # fmt: skip
+                system.user.assemble(x1, system.turning, assemble, between=True)
+                if system.user.blocks:
+                    system.user.linearize(assemble, values)
         except RuntimeError as error:
-            raise failure(system._labels(error.args[1])) from None
+            raise failure(system._labels(error.args[1]), error.args[0]) from None
         force, internal = system.at_nodes(force), system.at_nodes(internal)
         middle = 0.5 * (u + b.u)
         external, stiffness = system.conditions.external(

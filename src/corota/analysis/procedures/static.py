@@ -65,6 +65,7 @@ def static_step(
         If the structure is not held.
     """
     state.step_time = 0.0
+    state.stand_still()
     if step.path is not None:
         path_step(system, step, number, state, observers, save, step.path)
         return
@@ -155,7 +156,7 @@ def static_step(
             "iterations": float(outcome.iterations),
             "attempts": float(attempts),
             "residual": outcome.sizes[-1],
-            "external work": state.work,
+            "external work": state.energies.work if state.energies else 0.0,
         }
         if outcome.negative >= 0:
             scalars["negative pivots"] = float(outcome.negative)
@@ -283,15 +284,10 @@ def _with_loads(system: System, at: Evaluation, u: Floats, time: float) -> Evalu
 def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: float) -> None:
     new = outcome.at
     assert new is not None
-    if state.at is not None:
-        # Forces do work on all dofs, reactions on those that are moved; trapezoidal rule.
-        fixed = system.conditions.fixed
-        old = _with_loads(system, state.at, state.u, state.step_time)
-        mean = old.external + new.external
-        mean[fixed] += system.reaction(old)[fixed] + system.reaction(new)[fixed]
-        state.work += 0.5 * float(mean @ (outcome.u - state.u))
-        if system.touching is None:
-            system.release(state.at)
+    assert state.energies is not None
+    state.energies.add_quasi_static(outcome.u, state.u, new)
+    if state.at is not None and system.touching is None:
+        system.release(state.at)
     system.commit()
     state.u, state.at, state.failed = outcome.u, new, None
     state.step_time = target

@@ -52,6 +52,8 @@ class _Block:
     spherical: bool
     stress: Floats | None = None  # initial, (n, p, 4)
     start: Floats = field(init=False)
+    rows: Floats = field(init=False)  # strains that the core has, (n, p, 4)
+    last: tuple[Floats, Floats] | None = None  # rows of the last frame, and forces on them
 
 
 class FreeStrains:
@@ -89,6 +91,8 @@ class FreeStrains:
                     item.where,
                 ) from None
         self.offset: Floats | None = None
+        #: Work of changing thermal strain so far [force*length].
+        self.work = 0.0
         stresses = self._stresses(blocks)
         self._blocks: list[_Block] = []
         for index, block in enumerate(blocks):
@@ -99,8 +103,7 @@ class FreeStrains:
         self.now = self.start.copy()
         for own in self._blocks:
             own.start = self.start[own.nodes] @ own.shape.T
-            if own.stress is not None:
-                self._set(own, self.start)
+            self._set(own, self.start)
 
     def _stresses(self, blocks: Sequence[BlockOfCells]) -> list[Floats | None]:
         """Initial stress by block, shapes (n, p, 4)."""
@@ -195,7 +198,26 @@ class FreeStrains:
         free = block.expansion.strain(at_points, block.start) @ block.turn.T
         if block.stress is not None:
             free = free - block.stress @ block.compliance
-        self.core.set_initial(block.index, _rows(block, free).ravel())
+        block.rows = _rows(block, free)
+        self.core.set_initial(block.index, block.rows.ravel())
+
+    def record(self, index: int, force: Floats, volume: Floats) -> None:
+        """Add the work that the strains have done since the last call, by the trapezoidal rule.
+
+        Parameters
+        ----------
+        index : int
+            Block.
+        force : ndarray, shape (n, p, 4)
+            What the elements hold against the strains, in their rows [stress].
+        volume : ndarray, shape (n, p)
+        """
+        block = next(b for b in self._blocks if b.index == index)
+        if block.last is not None:
+            rows, before = block.last
+            moved = block.rows - rows
+            self.work -= 0.5 * float(np.einsum("epr,epr,ep->", force + before, moved, volume))
+        block.last = (block.rows, force)
 
 
 def _rows(block: _Block, free: Floats) -> Floats:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Change of the strain, relative to the largest, below which the linear part is exact.
 SETTLED = 1e-9
+#: Strains that a rigid motion leaves by rounding.
+ROUNDING = 1e-13
 #: Calls for one evaluation of elements with internal modes.
 MAX_CALLS = 30
 
@@ -38,6 +40,13 @@ class _Block:
     modes: bool
     committed: Floats
     trial: Floats = field(init=False)
+    # Strain and stress of both, and the work done so far by volume.
+    point: Floats | None = None
+    point_trial: Floats | None = None
+    work: Floats | float = 0.0
+    given: Floats = field(init=False)  # what the core has, and the same with own tangents
+    own: Floats = field(init=False)
+    stores: bool = False  # whether the function gives the recoverable energy
     # Equivalent plastic strain, where the function gives one.
     plastic: Floats | float = 0.0
     plastic_trial: Floats | float = 0.0
@@ -76,11 +85,14 @@ class UserBlocks:
                     )
                 )
 
-    def assemble(self, u: Floats, turning: bool, assemble: Callable[[], None]) -> None:
+    def assemble(
+        self, u: Floats, turning: bool, assemble: Callable[[], None], between: bool = False
+    ) -> None:
         """Assemble with the functions' answers at the strains of `u`.
 
         Elements with internal modes find them with the linear part of the answer; that is
-        repeated until the strains stay.
+        repeated until the strains stay. With `between` the elements also ask for the stress of
+        the committed state, which the linear part then gives too.
 
         Raises
         ------
@@ -94,7 +106,7 @@ class UserBlocks:
         seen = [self._strain(b, u, turning, True) for b in self.blocks]
         for _ in range(MAX_CALLS):
             for block, strain in zip(self.blocks, seen, strict=True):
-                self._give(block, strain)
+                self._give(block, strain, between)
             assemble()
             if assemble_once:
                 return
@@ -104,16 +116,19 @@ class UserBlocks:
                 float(np.abs(a - b).max(initial=0.0)) for a, b in zip(now, seen, strict=True)
             )
             self.largest = max(self.largest, size)
-            if change <= SETTLED * self.largest:
+            if change <= max(SETTLED * self.largest, ROUNDING):
                 return
             seen = now
-        raise ElementFailure("the internal modes of elements with a Python material did not settle")
+        raise ElementFailure(
+            "the internal modes of elements with a Python material did not settle"
+            + ("; use Q4, Q8 or OPT there, or another scheme" if between else "")
+        )
 
     def _strain(self, block: _Block, u: Floats, turning: bool, committed: bool) -> Floats:
         flat: Floats = self.core.strains(block.index, u, turning, committed)
         return flat.reshape(*block.shape, 3)
 
-    def _give(self, block: _Block, strain: Floats) -> None:
+    def _give(self, block: _Block, strain: Floats, between: bool) -> None:
         stress, tangent, block.trial, extra = block.material.call(
             strain, block.committed, block.plane
         )
@@ -131,14 +146,82 @@ class UserBlocks:
             if name in extra:
                 values[..., member] = extra[name]
         block.plastic_trial = values[..., 15]
+        block.stores = "energy" in extra
+        block.point_trial = values[..., :6].copy()
+        if between:
+            # From the committed state on, so that its stress is exact.
+            old = np.zeros((*block.shape, 6)) if block.point is None else block.point
+            values[..., :6] = old
+            block.own = values.copy()
+            secant = _through(symmetric, strain - old[..., :3], stress - old[..., 3:])
+            values[..., 6:12] = secant[..., rows, columns]
+        block.given = values
         self.core.give(block.index, values.ravel())
+
+    def linearize(self, assemble: Callable[[], None], tangent: Floats) -> None:
+        """After an assembly `between`: fill in `tangent` with the functions' own tangents."""
+        for block in self.blocks:
+            self.core.give(block.index, block.own.ravel())
+        assemble()
+        kept = tangent.copy()
+        for block in self.blocks:
+            self.core.give(block.index, block.given.ravel())
+        assemble()
+        tangent[:] = kept
 
     def commit(self) -> None:
         """Accept the last answers."""
         for block in self.blocks:
             block.committed = block.trial
             block.plastic = block.plastic_trial
+            new = block.point_trial
+            if new is not None:
+                old = np.zeros_like(new) if block.point is None else block.point
+                mean = 0.5 * (old[..., 3:] + new[..., 3:])
+                block.work = block.work + np.einsum(
+                    "epr,epr->ep", mean, new[..., :3] - old[..., :3]
+                )
+                block.point = new
+
+    def energies(self, index: int, stored: Floats, volume: Floats) -> tuple[float, float]:
+        """What a block stores beside what its function gave, and its dissipation.
+
+        A function without energies stores all the work that is done on it.
+
+        Parameters
+        ----------
+        index : int
+            Block.
+        stored : ndarray, shape (n, p)
+            Recoverable energy by volume that the function gave.
+        volume : ndarray, shape (n, p)
+        """
+        for block in self.blocks:
+            if block.index == index:
+                rest = float(np.sum((block.work - stored) * volume))
+                return (0.0, rest) if block.stores else (rest, 0.0)
+        return 0.0, 0.0
 
     def plastic_increment(self) -> float:
         """Largest growth of the equivalent plastic strain since the last commit."""
         return max((float(np.max(b.plastic_trial - b.plastic)) for b in self.blocks), default=0.0)
+
+
+def _through(tangent: Floats, strain: Floats, stress: Floats) -> Floats:
+    """The symmetric tangents next to `tangent` that map `strain` to `stress` (Powell 1970).
+
+    Parameters
+    ----------
+    tangent : ndarray, shape (n, p, 3, 3)
+    strain, stress : ndarray, shape (n, p, 3)
+    """
+    square = np.einsum("epr,epr->ep", strain, strain)
+    moves = square > ROUNDING**2 * 1e-8
+    s = strain / np.sqrt(np.where(moves, square, 1.0))[..., None]
+    rest = stress / np.sqrt(np.where(moves, square, 1.0))[..., None]
+    rest = np.where(moves[..., None], rest - np.einsum("eprs,eps->epr", tangent, s), 0.0)
+    along = np.einsum("epr,epr->ep", rest, s)[..., None, None]
+    cross = rest[..., :, None] * s[..., None, :]
+    twice = along * s[..., :, None] * s[..., None, :]
+    out: Floats = tangent + cross + np.swapaxes(cross, -1, -2) - twice
+    return out

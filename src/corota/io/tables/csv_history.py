@@ -86,7 +86,9 @@ def requested_nodes(
 
 
 def balance_error(scalars: dict[str, float]) -> float:
-    """Energy that appeared from nowhere, as a share of the largest term; 0 at the start."""
+    """Energy that appeared from nowhere, as a share of the largest so far; 0 at the start."""
+    if "energy balance error" in scalars:
+        return scalars["energy balance error"]
     stored = [v for k, v in scalars.items() if k.endswith("energy") or k.endswith("dissipation")]
     work = scalars.get("external work", 0.0)
     scale = max([abs(work), *map(abs, stored)], default=0.0)
@@ -107,6 +109,9 @@ class Histories:
 
     def __init__(self, model: Model, steps: Sequence[Step], extra: Sequence[str] = ()) -> None:
         self._supports = support_sets(model, steps)
+        self._points = model.mesh.points
+        self._labels = model.mesh.node_labels
+        self._turns = [getattr(step, "nlgeom", True) for step in steps]
         self._nodes = requested_nodes(model, steps, extra)
         self._before: tuple[int, float] = (0, 0.0)
 
@@ -128,12 +133,31 @@ class Histories:
         row["largest MISES"] = max((float(m.max(initial=0.0)) for m in stressed), default=0.0)
         for name, nodes in self._supports.items():
             total = frame.RF[nodes].sum(axis=0)
-            for part, value in zip(("RF1", "RF2", "RM3"), total.tolist(), strict=True):
-                row[f"{part} {name}"] = value
+            row[f"RF1 {name}"], row[f"RF2 {name}"] = total[:2].tolist()
+            heading, moment = self._moment(frame, nodes)
+            row[f"RM3 {name} {heading}"] = moment
         for heading, name, nodes in self._nodes:
             values = nodal_value(frame, name)[nodes]
             row[heading] = float(values.sum() if name[0] in "RFM" else values.mean())
         return row
+
+    def _moment(self, frame: Frame, nodes: Ints) -> tuple[str, float]:
+        """Total moment of the reactions, and the point it is about.
+
+        Of one node that is the node itself, where it is; of several the centroid of their
+        undeformed places. Forces act where the nodes are.
+        """
+        if len(nodes) == 1:
+            label = int(self._labels[nodes[0]])
+            return f"about node {label}", float(frame.RF[nodes[0], 2])
+        center = self._points[nodes].mean(axis=0)
+        arm = self._points[nodes] - center
+        turns = self._turns[frame.step - 1] if frame.step <= len(self._turns) else True
+        if turns:
+            arm = arm + frame.U[nodes]
+        force = frame.RF[nodes]
+        total = arm[:, 0] @ force[:, 1] - arm[:, 1] @ force[:, 0] + force[:, 2].sum()
+        return f"about ({center[0]:.6g} {center[1]:.6g})", float(total)
 
 
 def csv_text(rows: Sequence[dict[str, float]]) -> str:

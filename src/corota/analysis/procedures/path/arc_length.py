@@ -161,17 +161,9 @@ class PathStep:
 
     def _accept(self, found: Increment) -> CriticalPoint | None:
         state, system = self.state, self.system
-        before, at, u = state.at, self.along.plain(found.point.at), found.point.u[: system.n_dofs]
-        if before is not None:
-            du = u - state.u
-            held = system.conditions.held
-            old = system.conditions.external(self.factor * self.step.period, state.u)[0]
-            mean = 0.5 * (old + at.external)
-            pull = system.reaction(at) + before.internal - old
-            if before.link is not None:
-                pull += before.link.gather(before.internal - old) - (before.internal - old)
-            mean[held] += 0.5 * pull[held]
-            state.work += float(np.einsum("i,i->", mean, du))
+        at, u = self.along.plain(found.point.at), found.point.u[: system.n_dofs]
+        assert state.energies is not None
+        state.energies.add_quasi_static(u, state.u, at)
         state.u, state.at = u, at
         state.step_time += found.size * self.step.period
         state.negative = found.negative
@@ -182,7 +174,7 @@ class PathStep:
             "iterations": float(found.iterations),
             "attempts": float(found.attempts),
             "residual": system.judge(at, u).size,
-            "external work": state.work,
+            "external work": state.energies.work,
             "negative pivots": float(found.negative),
         }
         if found.negative < 0 and self.along.not_conservative not in state.notes:

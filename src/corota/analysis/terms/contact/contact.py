@@ -96,6 +96,7 @@ class Touching:
         #: Whether stabilising damping acts; it does not on paths, whose time is none.
         self.damps, self.persistent = True, False
         self.damping_work = 0.0
+        self._damping_force = np.zeros(0)
         # Dof of each variable 3 node + component, -1 where there is none.
         dof = np.full(3 * len(system.per_node), -1, np.int64)
         dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
@@ -274,8 +275,12 @@ class Touching:
             states, strict=True,
         ):  # fmt: skip
             pair.commit(terms, q, before, state == CLOSED)
+        # The equations of both ends have these forces, and so has the work of the loads.
+        before, self._damping_force = self._damping_force, np.zeros(0)
         if touch.damping is not None:
-            self.damping_work += float(touch.damping @ (u - self.u) ** 2)
+            self._damping_force = touch.damping * (u - self.u)
+            mean = self._damping_force + (before if len(before) else 0.0)
+            self.damping_work += 0.5 * float(mean @ (u - self.u))
         self.u, self.committed, self.time = u.copy(), touch.multipliers.copy(), step_time
         touch.states = [
             pair.states(terms, p, q)
@@ -314,6 +319,15 @@ class Touching:
         from corota.analysis.terms.contact.output import output
 
         return output(self)
+
+    def energies(self) -> dict[str, float]:
+        """What contact has dissipated so far and what its laws store [force*length]."""
+        terms = [] if self.at is None else self.at.terms
+        return {
+            "ALLFD": sum(pair.friction_work for pair in self.pairs),
+            "ALLSD": self.damping_work,
+            "ALLCL": sum(p.law_energy(t) for p, t in zip(self.pairs, terms, strict=False)),
+        }
 
     def label(self, pair: Pair, constraint: int) -> int:
         """The user's number of the slave node of a constraint."""

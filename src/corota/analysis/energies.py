@@ -1,0 +1,280 @@
+"""The energy account of an analysis: one for all procedures, over all steps.
+
+Every increment adds the work of loads, of supports that move, and of viscous forces by the
+trapezoidal rule (the energy-momentum scheme: by its mid-point forces). Terms of the equation
+contribute what they store or have dissipated so far. What is stored is a function of the state;
+dissipation comes from the return map and from slip. The total must stay: what it changes by is
+an error of the integration in time.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.procedures.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
+    from corota.model.steps import Dynamic, Step
+
+    Floats = NDArray[np.float64]
+
+#: Energies as Abaqus names them, and what they are; ALLTH and ALLCL are ours.
+TERMS = {
+    "ALLSE": "recoverable strain energy",
+    "ALLPD": "plastic work",
+    "ALLAE": "energy of the drilling penalty",
+    "ALLIE": "internal energy: ALLSE + ALLPD + ALLAE",
+    "ALLKE": "kinetic energy",
+    "ALLVD": "viscous dissipation: dashpots, Rayleigh damping",
+    "ALLFD": "frictional dissipation",
+    "ALLSD": "dissipation of contact stabilisation",
+    "ALLCL": "energy stored by contact pressure laws",
+    "ALLWK": "work of loads and of supports that move",
+    "ALLTH": "work of thermal expansion: what changes of temperature put into the body",
+    "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLWK - ALLTH",
+}
+#: Share of the largest energy from which a balance error is worth a warning.
+LARGE_ERROR = 0.02
+#: Energies below this share of the product of force and length are rounding.
+NOTHING = 1e-12
+
+
+class Energies:
+    """The account of one analysis.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    work, viscous, contact : float
+        Of external and viscous forces, and of contact forces, so far [force*length].
+    kinetic : float
+        Kinetic energy of the committed state [force*length].
+    error : float
+        Largest balance error so far over the largest energy so far.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.work = self.viscous = self.contact = self.internal = self.kinetic = 0.0
+        self.error, self.where = 0.0, (1, 0)
+        self.scheme = "static"
+        self._reference: float | None = None
+        self._largest = 0.0
+        # Forces that do work, at the committed state: loads, and reactions of held dofs.
+        self._driving: Floats | None = None
+
+    # -- steps and increments ----------------------------------------------------------
+
+    def begin(self, step: Step, internal: Floats) -> None:
+        """Start a step; in a static one nothing moves.
+
+        What is not in equilibrium then, as initial stress or a motion that was stopped, lets go
+        in the first increment, as if a force had held it.
+        """
+        if self._driving is None or (step.procedure == "static" and self.scheme != "static"):
+            touching = self.system.touching
+            contact = 0.0 if touching is None or touching.at is None else touching.at.force
+            self._driving = internal - contact
+        self.scheme = getattr(step, "scheme", "static")
+        if step.procedure == "static":
+            self.set_kinetic(0.0)
+
+    def set_kinetic(self, kinetic: float) -> None:
+        """A kinetic energy that a new step begins with, and not the last one's end."""
+        if self._reference is not None:
+            self._reference += kinetic - self.kinetic
+        self.kinetic = kinetic
+
+    def drive(self, external: Floats, reaction: Floats) -> None:
+        """Forces at the start of a motion; statics go on from the forces of the step before."""
+        self._driving = self._sum(external, reaction)
+
+    def _sum(self, external: Floats, reaction: Floats) -> Floats:
+        return external + np.where(self.system.conditions.held, reaction, 0.0)
+
+    def add_quasi_static(self, u: Floats, before: Floats, at: Evaluation) -> None:
+        """Work of a static increment that ends at `u`."""
+        self.add_work(u - before, at.external, self.system.reaction(at))
+
+    def add_work(self, d: Floats, external: Floats, reaction: Floats, middle: bool = False) -> None:
+        """Work on an increment `d` of forces at its end, or of those in its middle."""
+        driving = self._sum(external, reaction)
+        mean = driving
+        if not middle and self._driving is not None:
+            mean = 0.5 * (self._driving + driving)
+        self.work += float(np.einsum("i,i->", mean, d))
+        self._driving = driving
+
+    # -- output ------------------------------------------------------------------------
+
+    def add_to(
+        self, scalars: dict[str, Any], sums: dict[str, float] | None, where: tuple[int, int]
+    ) -> None:
+        """Write the account into a frame's scalars.
+
+        `sums` are those of the elements; without them the work of their forces counts.
+        """
+        touching = self.system.touching
+        inside = (
+            {"ALLIE": self.internal, "ALLTH": 0.0}
+            if sums is None
+            else {
+                "ALLSE": sums["strain energy"] - sums["artificial energy"],
+                "ALLPD": sums["plastic work"],
+                "ALLAE": sums["artificial energy"],
+                "ALLIE": sums["strain energy"] + sums["plastic work"],
+                "ALLTH": sums["thermal work"],
+            }
+        )
+        own = {
+            **inside,
+            "ALLKE": self.kinetic,
+            "ALLVD": self.viscous,
+            "ALLFD": 0.0, "ALLSD": 0.0, "ALLCL": 0.0,
+            **({} if touching is None else touching.energies()),
+            "ALLWK": self.work,
+        }  # fmt: skip
+        gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
+        own["ETOTAL"] = sum(own[k] for k in gained) - own["ALLWK"] - own["ALLTH"]
+        if self._reference is None:
+            self._reference = own["ETOTAL"]
+        missing = own["ETOTAL"] - self._reference
+        self._largest = max(self._largest, *(abs(v) for k, v in own.items() if k != "ETOTAL"))
+        nothing = NOTHING * self.system.scales.nothing * self.system.length
+        error = missing / self._largest if self._largest > nothing else 0.0
+        if abs(error) > abs(self.error):
+            self.error, self.where = error, where
+        scalars.update({name: own[name] for name in TERMS if name in own})
+        scalars["energy balance"] = missing
+        scalars["energy balance error"] = error
+
+    def remark(self) -> str:
+        """What to say of the largest error, empty where it is small."""
+        if abs(self.error) <= LARGE_ERROR:
+            return ""
+        verb = "gained" if self.error > 0.0 else "lost"
+        text = (
+            f"energy balance: {abs(self.error):.1%} of the largest energy is {verb} by step "
+            f"{self.where[0]}, increment {self.where[1]} (ETOTAL): "
+        )
+        touching = self.system.touching is not None
+        if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not touching):
+            return text + "use smaller increments"
+        if self.scheme == "newmark":
+            return text + (
+                "the trapezoidal rule does not conserve energy when contact opens and closes; "
+                "use scheme='energy_momentum', or smaller increments"
+            )
+        if self.scheme in ("hht", "generalized_alpha"):
+            return text + (
+                f"numerical dissipation of {self.scheme} and of contact that opens and closes; "
+                "use smaller increments, or scheme='energy_momentum', which has none"
+            )
+        return text + "the work of the loads is summed over the increments: use smaller ones"
+
+
+class Balance:
+    """What a dynamic step adds to the account, increment by increment.
+
+    Parameters
+    ----------
+    system : System
+    step : Dynamic
+    now : Moving
+        Where it starts.
+    inertia : Inertia
+    account : Energies
+    """
+
+    def __init__(
+        self, system: System, step: Dynamic, now: Moving, inertia: Inertia, account: Energies
+    ) -> None:
+        self.system, self.step, self.now, self.inertia = system, step, now, inertia
+        self.account = account
+        self.carried = step.scheme == "energy_momentum"
+        first = self._kinetic(now)
+        account.set_kinetic(first[0])
+        self.energy, self.mass = first[0], first[4]
+        self._inside = self._outside = 0.0
+        touching = system.touching
+        self._contact = None
+        if touching is not None:
+            at = touching.at
+            self._contact = np.zeros(system.n_dofs) if at is None else at.force
+        account.drive(now.external, self._reaction(now, self._contact))
+
+    @staticmethod
+    def _reaction(now: Moving, contact: Floats | None) -> Floats:
+        reaction = now.reaction()
+        return reaction if contact is None else reaction - contact
+
+    def _kinetic(self, now: Moving) -> list[float]:
+        return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
+
+    @property
+    def external(self) -> float:
+        """Work of external forces so far."""
+        return self.account.work
+
+    def driven(self, now: Moving) -> float:
+        """Energy of the body in the frame of what drives it: that of an impact from rest."""
+        moved = self.system.conditions.held & ~self.system.is_rotation
+        speed = np.abs(now.v[moved]).max(initial=0.0)
+        return 0.5 * self.mass * float(speed) ** 2
+
+    def accept(
+        self, motion: NewmarkMotion | ConservingMotion, contact: Floats | None = None
+    ) -> None:
+        """Add the work of an increment, in which contact has a force, shape (n_dofs,)."""
+        begin, end, account = motion.start, motion.end, self.account
+        middle = hasattr(motion, "increment")
+        if middle:
+            d = motion.increment(end.u)  # type: ignore[union-attr]
+            internal, damping = end.internal, end.damping
+        else:
+            d = end.u - begin.u
+            internal = 0.5 * (begin.internal + end.internal)
+            damping = 0.5 * (begin.damping + end.damping)
+        before = account.work
+        account.add_work(d, end.external, self._reaction(end, contact), middle)
+        inside = float(internal @ d)
+        account.internal += inside
+        account.viscous += float(damping @ d)
+        if contact is not None:
+            account.contact += float(contact @ d)
+        self._contact, self.now = contact, end
+        momenta = self._kinetic(end)
+        account.kinetic = momenta[0]
+        self.momenta = momenta[1:4]
+        self._inside += inside
+        self._outside += account.work - before
+        self.energy = max(self.energy, abs(self._inside), abs(self._outside))
+
+    def add_to(self, scalars: dict[str, Any]) -> None:
+        """Write momenta and the scheme's own sums into a frame's scalars."""
+        account = self.account
+        if self.system.touching is not None:
+            scalars["contact work"] = account.contact
+        px, py, angular = self.momenta
+        scalars.update(
+            {
+                "kinetic energy": account.kinetic,
+                "internal work": account.internal,
+                "external work": account.work,
+                "damping energy": account.viscous,
+                "momentum x": px,
+                "momentum y": py,
+                "angular momentum": angular,
+            }
+        )
+
+
+__all__ = ["LARGE_ERROR", "TERMS", "Balance", "Energies"]

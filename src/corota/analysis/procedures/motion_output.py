@@ -1,0 +1,73 @@
+"""Forces that frames of a motion show: those of the end of the increment."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.equations import Evaluation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.procedures.motion import ConservingMotion, NewmarkMotion
+
+    Floats = NDArray[np.float64]
+
+
+class EndForces:
+    """External forces and reactions at the end of an increment, for every scheme.
+
+    Schemes that weigh the equation between both ends have all forces of the end. The
+    energy-momentum scheme has those of the middle: stress and loads are taken anew, inertia and
+    damping go on linearly from the two last middles.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    at : Evaluation
+        Internal and external forces at the end.
+    reaction : ndarray, shape (n_dofs,)
+        By equilibrium there; zero where nothing is prescribed.
+    a : ndarray, shape (n_dofs,)
+        Acceleration.
+    """
+
+    at: Evaluation
+    reaction: Floats
+    a: Floats
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        # Time from the instant of the last known inertia to the end of that increment.
+        self._lag = 0.0
+
+    def find(
+        self, motion: NewmarkMotion | ConservingMotion, contact: Floats | None, step_time: float
+    ) -> None:
+        """Find the forces at the end of an accepted increment, where contact has a force."""
+        system, begin, end = self.system, motion.start, motion.end
+        inertia, self.a = end.inertia + end.damping, end.a
+        internal, external = end.internal, end.external
+        if hasattr(motion, "increment"):
+            half = 0.5 * motion.dt
+            share = half / (half + self._lag)
+            inertia = inertia + share * (inertia - begin.inertia - begin.damping)
+            self.a = end.a + share * (end.a - begin.a)
+            self._lag = half
+            own = system.forces(end.u, step_time)
+            internal, external = own.internal, own.external
+        if contact is not None:
+            internal = internal - contact
+        self.at = Evaluation(internal, external, internal, np.empty(0), None, end.link)
+        whole = end.gathered(internal + inertia - external)
+        self.reaction = np.where(system.conditions.held, whole, 0.0)
+
+
+__all__ = ["EndForces"]

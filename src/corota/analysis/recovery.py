@@ -1,0 +1,69 @@
+"""Fields and energies of the elements at a state."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.newton import ElementFailure
+from corota.results.results import PointFields
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.model.materials import Material
+
+    Floats = NDArray[np.float64]
+
+
+def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
+    """Fields at the quadrature points, and sums over them."""
+    fields, energy = [], 0.0
+    largest: tuple[float, Material | None] = (0.0, None)
+    artificial = plastic = 0.0
+    raw = system.core.recover(system.in_space(u), system.turning)
+    for index, (block, own) in enumerate(zip(system.blocks, raw, strict=True)):
+        for name, values in own["values"].items():
+            if not np.isfinite(values).all():
+                bad = int(np.argwhere(~np.isfinite(values))[0][0])
+                label = system.model.mesh.cell_labels[block.cells[bad]]
+                raise ElementFailure(
+                    f"{name} of element {label} is no number at the equilibrium that was "
+                    "found: its strain is beyond what its material and plane allow, as a "
+                    "thickness that vanishes; look at loads, moduli and units"
+                )
+        energy += own["total_energy"]
+        artificial += own.get("artificial_energy", 0.0)
+        if (work := own["values"].get("PWORK")) is not None:
+            plastic += float(np.einsum("ep,ep->", work, own["volume"]))
+        if "heat" in own:
+            system.free.record(index, own["heat"], own["volume"])
+        stored, lost = system.user.energies(index, own["values"]["ENER"], own["volume"])
+        energy, plastic = energy + stored, plastic + lost
+        section, strain = block.section, float(own["largest_strain"])
+        if system.turning and section.local_strain == "linear" and strain > largest[0]:
+            largest = strain, section.material
+        fields.append(
+            PointFields(
+                block.section.element,
+                block.cells,
+                own["points"],
+                own["shape"],
+                own["rotation"],
+                own["volume"],
+                own["values"],
+            )
+        )
+    system.largest_linear_strain = largest
+    return fields, {
+        "strain energy": energy,
+        "artificial energy": artificial,
+        "plastic work": plastic,
+        "thermal work": system.free.work,
+    }
+
+
+__all__ = ["recover"]
