@@ -76,6 +76,15 @@ impl Isotropic {
         }
     }
 
+    /// Integral of the yield stress over a step `dp` from `p`: Simpson's rule, exact for linear
+    /// hardening and within a piece of a table.
+    #[inline(always)]
+    pub fn work<T: Real>(&self, p: T, dp: T) -> T {
+        let (begin, middle) = (self.at(p).0, self.at(dp.fma(T::real(0.5), p)).0);
+        let end = self.at(p + dp).0;
+        (begin + middle.scale(4.0) + end) * dp.scale(1.0 / 6.0)
+    }
+
     /// Energy density that the hardening stores: integral of the yield stress above its
     /// initial value.
     pub fn stored(&self, p: f64) -> f64 {

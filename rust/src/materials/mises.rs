@@ -318,21 +318,26 @@ impl Material for Mises {
             failed = open;
             let at = self.trial(&y, p, &old, dp);
             let mut done: T = state.get(WORK);
+            let mut step = [T::zero(); 3];
             for k in 0..3 {
-                let step = (at.g * at.eta[k]).scale(self.flow[k]);
-                y[k] = step.fma(T::real(-self.relief[k]), y[k]);
-                done = (y[k] * step).fma(T::real(self.work[k]), done);
-                state.set(k, plastic[k] + step);
+                step[k] = (at.g * at.eta[k]).scale(self.flow[k]);
+                y[k] = step[k].fma(T::real(-self.relief[k]), y[k]);
+                state.set(k, plastic[k] + step[k]);
             }
             state.set(EQUIVALENT, p + at.dp);
-            state.set(WORK, done);
+            // Work of the return path, from the yield surface on: that of the yield stress is
+            // exact, that of the back-stress is the mean of both ends.
+            done += self.isotropic.work(p, at.dp);
             for (i, b) in self.back.iter().enumerate() {
                 let (kept, _) = b.kept(at.dp);
                 for k in 0..3 {
                     let gain = (at.g * at.eta[k]).scale(b.modulus * 2.0 / 3.0);
-                    state.set(BACK + 3 * i + k, kept * (old[i][k] + gain));
+                    let new = kept * (old[i][k] + gain);
+                    state.set(BACK + 3 * i + k, new);
+                    done = ((old[i][k] + new) * step[k]).fma(T::real(0.5 * self.work[k]), done);
                 }
             }
+            state.set(WORK, done);
             sum = e[0].fma(T::real(self.volume), y[0]);
             let mut size = limit;
             for k in 0..3 {

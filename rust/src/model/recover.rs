@@ -33,8 +33,11 @@ pub struct Fields {
     pub thickness: Vec<f64>,
     /// Rotation of the element frame in (-pi, pi], `[n]`.
     pub rotation: Vec<f64>,
-    /// Energy of the drilling penalty, `[n]`.
+    /// Energy of the drilling penalty, `[n]`; of springs, which have no volume, all of it.
     pub penalty: Vec<f64>,
+    /// Energy that the initial strain takes: minus the derivative of the energy density by its
+    /// rows, `[n, p, 4]`; zero where there is none.
+    pub heat: Vec<f64>,
     /// Largest local strain component.
     pub largest_strain: f64,
 }
@@ -55,6 +58,7 @@ impl Fields {
             thickness: vec![0.0; p],
             rotation: vec![0.0; n],
             penalty: vec![0.0; n],
+            heat: Vec::new(),
             largest_strain: 0.0,
         }
     }
@@ -79,6 +83,10 @@ impl Fields {
         copy(&mut self.thickness, &part.thickness);
         copy(&mut self.rotation, &part.rotation);
         copy(&mut self.penalty, &part.penalty);
+        if !part.heat.is_empty() {
+            self.heat.resize(4 * self.volume.len(), 0.0);
+            copy(&mut self.heat, &part.heat);
+        }
         for (to, from) in self.outputs.iter_mut().zip(&part.outputs) {
             copy(to, from);
         }
@@ -125,6 +133,9 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     let memory = members * n_points;
     let kept = memory + if members > 0 { E::MEMORY } else { 0 };
     let mut new = vec![0.0; kept];
+    if !chunk.initial_from(0).is_empty() {
+        out.heat = vec![0.0; 4 * out.volume.len()];
+    }
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
         let frame = Frame::new(&x, &u, context.turning && E::TURNS);
@@ -137,6 +148,9 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         if E::LINE {
             let axial = initial.first().copied().unwrap_or(0.0);
             let found = E::resultants(&x, &frame.q, section, axial);
+            if let Some(heat) = out.heat.get_mut(4 * e) {
+                *heat = found.stress;
+            }
             let volume = section.thickness * E::measure(&x, &section.points[0]);
             let mut position = [0.0; 2];
             for a in 0..N {
@@ -208,6 +222,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             let mut stress = section.law.update(strain, &mut state).stress;
             let state = &new[range];
             let (mut strain_zz, mut stress_zz) = section.law.out_of_plane(strain, stress, state);
+            let normal = stress_zz;
             let mut energy = section.law.energy(strain, stress, state);
             match section.plane {
                 Plane::Stress => strain_zz += offset(3),
@@ -220,6 +235,16 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             if section.plane == Plane::Strain && section.law.spherical() {
                 stress[0] += offset(3);
                 stress[1] += offset(3);
+            }
+            if let Some(heat) = out.heat.get_mut(4 * (e * n_points + p)..) {
+                for (row, v) in heat.iter_mut().zip(stress) {
+                    *row = v;
+                }
+                if section.plane == Plane::Strain && !heat.is_empty() {
+                    // The energy is quadratic in the initial stress.
+                    let [up, down] = [1.0, -1.0].map(|s| section.law.initial_energy(own, normal, s));
+                    heat[3] = 0.5 * (down - up) - (up + down) * offset(3);
+                }
             }
             let stretch = section.strain.stretch(strain_zz);
             let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);

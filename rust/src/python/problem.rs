@@ -431,6 +431,11 @@ impl PyProblem {
             let rows = |values: Vec<f64>, k: usize| values.into_pyarray(py).reshape([n, p, k]);
             let d = PyDict::new(py);
             d.set_item("total_energy", f.total_energy())?;
+            let artificial = if block.facts.line { 0.0 } else { f.penalty.iter().sum::<f64>() };
+            d.set_item("artificial_energy", artificial)?;
+            if !f.heat.is_empty() {
+                d.set_item("heat", rows(f.heat, 4)?)?;
+            }
             d.set_item("largest_strain", f.largest_strain)?;
             d.set_item("points", rows(f.points, 2)?)?;
             d.set_item("volume", scalar(f.volume)?)?;

@@ -36,7 +36,7 @@ def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, flo
                     "thickness that vanishes; look at loads, moduli and units"
                 )
         energy += own["total_energy"]
-        artificial += own.get("artificial_energy", 0.0)
+        artificial += own["artificial_energy"]
         if (work := own["values"].get("PWORK")) is not None:
             plastic += float(np.einsum("ep,ep->", work, own["volume"]))
         if "heat" in own:
