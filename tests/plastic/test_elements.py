@@ -12,6 +12,7 @@ import pytest
 
 import corota as ct
 from corota import _core
+from corota.model.local_strain import local_strain
 from plastic.test_point import CORNERS, DRIVER
 
 VECTORS = json.loads(
@@ -28,7 +29,7 @@ def evaluate(case: dict[str, Any], law: ct.Mises) -> tuple[np.ndarray, np.ndarra
         "law": law.law,
         "parameters": law.parameters(),
         "plane": case["plane"],
-        "local_strain": case["local_strain"],
+        "local_strain": local_strain(case["local_strain"]),
         "thickness": case["thickness"],
         "rho": 0.0,
         "nodes": np.arange(len(x), dtype=np.uint32),
