@@ -242,7 +242,8 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 }
                 if section.plane == Plane::Strain && !heat.is_empty() {
                     // The energy is quadratic in the initial stress.
-                    let [up, down] = [1.0, -1.0].map(|s| section.law.initial_energy(own, normal, s));
+                    let [up, down] =
+                        [1.0, -1.0].map(|s| section.law.initial_energy(own, normal, s));
                     heat[3] = 0.5 * (down - up) - (up + down) * offset(3);
                 }
             }
