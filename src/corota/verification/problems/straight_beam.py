@@ -12,6 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from corota import mesh as meshes
 from corota.model.materials import Elastic
 from corota.model.model import Model
@@ -35,12 +37,12 @@ ROWS = [
 def slanted(shape: str, shift: float, element: str) -> Mesh:
     """Six cells whose inner sides are slanted by `shift` either way."""
     mesh = meshes.rectangle(6.0, 0.2, 6, 1, cell(element), "right")
-    for n, (x, y) in enumerate(mesh.points):
-        i = round(float(x))
-        if 0 < i < 6:
-            side = 1.0 if y > 0.1 else -1.0
-            sign = 1.0 if shape == "parallelograms" or i % 2 else -1.0
-            mesh.points[n, 0] += shift * side * sign * (shape != "rectangles")
+    if shape != "rectangles":
+        # Linear between the sides, so that mid-side nodes stay in the middle.
+        signs = [1.0 if shape == "parallelograms" or i % 2 else -1.0 for i in range(7)]
+        signs[0] = signs[6] = 0.0
+        x, y = mesh.points.T
+        mesh.points[:, 0] += shift * (y / 0.1 - 1.0) * np.interp(x, np.arange(7.0), signs)
     return mesh
 
 
