@@ -89,7 +89,7 @@ def test_a_cycle_of_a_plastic_cantilever(element: str) -> None:
         errors.append(worst(results))
         last = results.frames[-1].scalars
         assert last["ALLPD"] > 0.5 * last["ALLWK"] > 0.0
-    assert errors[1] < 4e-3
+    assert errors[1] < 5e-3
     assert errors[1] < 0.4 * errors[0]
 
 

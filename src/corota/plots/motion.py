@@ -179,8 +179,8 @@ def energies(
         If there is no balance of energies.
     """
     frames = [f for f in results.frames if "energy balance" in f.scalars]
-    if not frames:
-        raise InputError("there is no balance of energies to draw: it comes from *DYNAMIC steps")
+    if not any(f.scalars.get(name) for f in frames for name in ENERGIES):
+        raise InputError("there are no energies to draw")
     time = np.array([f.time for f in frames])
     with look():
         figure = new_figure(5.6, 4.6, shown=path is None)

@@ -59,7 +59,9 @@ class EndForces:
             half = 0.5 * motion.dt
             share = half / (half + self._lag)
             inertia = inertia + share * (inertia - begin.inertia - begin.damping)
-            self.a = end.a + share * (end.a - begin.a)
+            # Prescribed dofs have the acceleration of their amplitude at the end already.
+            held = system.conditions.held
+            self.a = np.where(held, end.a, end.a + share * (end.a - begin.a))
             self._lag = half
             own = system.forces(end.u, step_time)
             internal, external = own.internal, own.external
