@@ -55,14 +55,18 @@ def test_ring_in_metres_and_millimetres():
 
 
 def test_yielding_ring_accounts_for_its_energy():
+    """Of what is stored and dissipated, within 1 %: the increments miss some of the flow. The
+    scheme's own balance, of the work of its mean forces, is closer."""
     flight = ring.fly("Q4D", around=32, plastic=True, speed=1.0, period=0.15, increments=0)
     assert flight.results is not None
     assert flight.plastic > 0.1
     assert flight.lack < 0.01
     first = 0.5 * ring.mass_of(flight.results)
-    # 1.01e-3 with plastic work exactly along the return path.
     for frame in flight.results.frames[1:]:
-        assert abs(frame.scalars["energy balance"]) < 1.2e-3 * first
+        of = frame.scalars
+        missing = of["kinetic energy"] + of["internal work"] - first - of["external work"]
+        assert abs(missing) < 1e-3 * first
+        assert abs(of["energy balance"]) < 0.01 * first
 
 
 def test_block_rests_on_a_wall_after_a_static_step():

@@ -157,7 +157,7 @@ def dynamic_step(
         book.accept(motion, contact)
         now = motion.end
         ends.find(motion, contact, target)
-        state.u, state.v, state.a = now.u + turned, now.v, ends.a
+        state.u, state.v, state.a = now.u + turned, now.v, now.a
         if (more := _whole_turns(system, now.u)) is not None:
             now.u = now.u - more
             turned = turned + more

@@ -35,13 +35,10 @@ class EndForces:
         Internal and external forces at the end.
     reaction : ndarray, shape (n_dofs,)
         By equilibrium there; zero where nothing is prescribed.
-    a : ndarray, shape (n_dofs,)
-        Acceleration.
     """
 
     at: Evaluation
     reaction: Floats
-    a: Floats
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -53,15 +50,12 @@ class EndForces:
     ) -> None:
         """Find the forces at the end of an accepted increment, where contact has a force."""
         system, begin, end = self.system, motion.start, motion.end
-        inertia, self.a = end.inertia + end.damping, end.a
+        inertia = end.inertia + end.damping
         internal, external = end.internal, end.external
         if hasattr(motion, "increment"):
             half = 0.5 * motion.dt
             share = half / (half + self._lag)
             inertia = inertia + share * (inertia - begin.inertia - begin.damping)
-            # Prescribed dofs have the acceleration of their amplitude at the end already.
-            held = system.conditions.held
-            self.a = np.where(held, end.a, end.a + share * (end.a - begin.a))
             self._lag = half
             own = system.forces(end.u, step_time)
             internal, external = own.internal, own.external
