@@ -54,7 +54,7 @@ lint: $(DEPS) clippy ## Check style, types and lints of both languages
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/lint-imports --no-logo --no-cache
+	PYTHONPATH=src $(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/python scripts/check_tree.py
 
 clippy: $(DEPS)
