@@ -56,6 +56,7 @@ lint: $(DEPS) clippy ## Check style, types and lints of both languages
 	$(BIN)/mypy
 	PYTHONPATH=src $(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/python scripts/check_tree.py
+	$(BIN)/python scripts/check_words.py
 
 clippy: $(DEPS)
 	cargo fmt --check

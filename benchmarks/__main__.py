@@ -10,9 +10,19 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 #: What is not a benchmark by itself.
 HELPERS = {
-    "__init__", "__main__", "common", "cantilever", "problems", "decks", "bench_figures",
-    "fault_readers", "fault_runs", "fault_world", "contact_problems", "free_body_decks",
-}  # fmt: skip
+    "__init__",
+    "__main__",
+    "common",
+    "cantilever",
+    "problems",
+    "decks",
+    "bench_figures",
+    "fault_readers",
+    "fault_runs",
+    "fault_world",
+    "contact_problems",
+    "free_body_decks",
+}
 #: What takes so long that it runs only when it is named.
 LONG = {"energy_balance", "faults", "fuzz_readers", "contact_torture", "free_bodies"}
 

@@ -82,7 +82,7 @@ class Case:
         system = self.system
         self.assemble()
         self.masked = self.values.copy()
-        system.core.mask(self.masked, system.conditions.held)
+        system.core.mask(self.masked, system.conditions.constrained)
         self.solver.analyze(system.indptr, system.indices, system.node_of_dof)
 
 

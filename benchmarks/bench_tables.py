@@ -71,10 +71,11 @@ def rows(records: list[Record]) -> list[list[object]]:
         for order in (1, 2):
             for program in PROGRAMS:
                 runs = [
-                    r for r in records
+                    r
+                    for r in records
                     if (r["size"], r["increments"], r["order"], r["program"], r["element"])
                     == (size, increments, order, program.name, program.element)
-                ]  # fmt: skip
+                ]
                 if not runs:
                     continue
                 good = [r for r in runs if r["ok"]]
@@ -88,21 +89,36 @@ def rows(records: list[Record]) -> list[list[object]]:
 
                 ratios = [each(r) / first[round_of(r)] for r in good if round_of(r) in first]
                 result = ", ".join(f"{v:.6g}" for v in good[0]["result"])
-                made.append([
-                    program.label, good[0]["dofs"], increments,
-                    int(middle("iterations")),
-                    1e3 * statistics.median(each(r) for r in good),
-                    f"{statistics.median(ratios):.2f}",
-                    f"{middle('total'):.3g}", f"{middle('peak_mb'):.0f}", result,
-                ])  # fmt: skip
+                made.append(
+                    [
+                        program.label,
+                        good[0]["dofs"],
+                        increments,
+                        int(middle("iterations")),
+                        1e3 * statistics.median(each(r) for r in good),
+                        f"{statistics.median(ratios):.2f}",
+                        f"{middle('total'):.3g}",
+                        f"{middle('peak_mb'):.0f}",
+                        result,
+                    ]
+                )
     return made
 
 
 def head(threads: int) -> list[str]:
     """Columns."""
     time = "CPU ms / iteration" if threads == 1 else "wall ms / iteration"
-    return ["program, element", "dofs", "increments", "iterations", time, "ratio",
-            "process, wall s", "peak MB", "result"]  # fmt: skip
+    return [
+        "program, element",
+        "dofs",
+        "increments",
+        "iterations",
+        time,
+        "ratio",
+        "process, wall s",
+        "peak MB",
+        "result",
+    ]
 
 
 def exponents(records: list[Record], problem: str, group: str) -> list[list[object]]:
@@ -113,10 +129,14 @@ def exponents(records: list[Record], problem: str, group: str) -> list[list[obje
         points = [(n, t) for n, t in points if n > 2000]
         if len(points) > 1:
             n, t = np.log(np.array(points)).T
-            made.append([
-                program.label, problem, f"{points[0][0]} to {points[-1][0]}",
-                f"{np.polyfit(n, t, 1)[0]:.2f}",
-            ])  # fmt: skip
+            made.append(
+                [
+                    program.label,
+                    problem,
+                    f"{points[0][0]} to {points[-1][0]}",
+                    f"{np.polyfit(n, t, 1)[0]:.2f}",
+                ]
+            )
     return made
 
 
@@ -166,11 +186,19 @@ def draw(records: list[Record], path: Path) -> None:
                     label = program.name + (" (deck)" if program.group == "deck" else "")
                     label += ", Q4I" if "Q4I" in program.element else ""
                     ax.loglog(
-                        n, t, marker=markers[program.name], markersize=4, linewidth=1.1,
-                        color=(*COLORS, "#000000")[k], label=label,
-                        linestyle=":" if program.group == "deck" else
-                        "--" if "Q4I" in program.element else "-",
-                    )  # fmt: skip
+                        n,
+                        t,
+                        marker=markers[program.name],
+                        markersize=4,
+                        linewidth=1.1,
+                        color=(*COLORS, "#000000")[k],
+                        label=label,
+                        linestyle=":"
+                        if program.group == "deck"
+                        else "--"
+                        if "Q4I" in program.element
+                        else "-",
+                    )
             whole = [c for first in own(problem) for c in curve(records, problem, *first)]
             large = np.log(np.array([c for c in whole if c[0] > 2000]))
             fits = [np.polyfit(*large.T, 1)[0]] if len(large) > 1 else []
@@ -184,8 +212,13 @@ def draw(records: list[Record], path: Path) -> None:
         for ax in axes:
             for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
                 handles.setdefault(label, handle)
-        axes[-1].legend(handles.values(), handles.keys(), fontsize=7, loc="upper left",
-                        bbox_to_anchor=(1.0, 1.0))  # fmt: skip
+        axes[-1].legend(
+            handles.values(),
+            handles.keys(),
+            fontsize=7,
+            loc="upper left",
+            bbox_to_anchor=(1.0, 1.0),
+        )
         save(figure, path, dpi=110)
 
 
@@ -208,9 +241,10 @@ def page(records: list[Record]) -> str:
         for threads in sorted({r["threads"] for r in records}):
             for group, what in GROUPS.items():
                 chosen = [
-                    r for r in records
+                    r
+                    for r in records
                     if (r["problem"], r["threads"], r["group"]) == (problem, threads, group)
-                ]  # fmt: skip
+                ]
                 if chosen:
                     text.append(f"#### {title}: {what}, {threads} thread(s)")
                     text.append(table(head(threads), rows(chosen)))

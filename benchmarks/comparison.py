@@ -28,9 +28,12 @@ PAGE = ROOT / "docs" / "comparison.md"
 IMAGES = ROOT / "docs" / "images"
 #: Color and marker of each element.
 LOOK = {
-    "Q4I": ("#0072B2", "o"), "Q8": ("#56B4E9", "D"), "Q9": ("#009E73", "s"),
-    "OPT": ("#D55E00", "^"), "Q4D": ("#CC79A7", "v"),
-}  # fmt: skip
+    "Q4I": ("#0072B2", "o"),
+    "Q8": ("#56B4E9", "D"),
+    "Q9": ("#009E73", "s"),
+    "OPT": ("#D55E00", "^"),
+    "Q4D": ("#CC79A7", "v"),
+}
 
 
 def cases() -> list[Case]:
@@ -73,9 +76,14 @@ def draw(case: Case, records: list[dict[str, Any]], path: Path) -> None:
                     ]
                     color, marker = LOOK[element]
                     ax.loglog(
-                        [r[key] for r in found], [r["error"] for r in found], marker=marker,
-                        color=color, label=element, markersize=3.5, linewidth=1.1,
-                    )  # fmt: skip
+                        [r[key] for r in found],
+                        [r["error"] for r in found],
+                        marker=marker,
+                        color=color,
+                        label=element,
+                        markersize=3.5,
+                        linewidth=1.1,
+                    )
                 ax.grid(True, which="major", alpha=0.3)
                 ax.set_xlabel("dofs" if key == "dofs" else "processor time [s]")
                 if row == 0:
@@ -127,18 +135,30 @@ def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> st
             good = [r for r in found if "error" in r]
             last = found[-1]
             dofs, seconds = cost(found, error, "dofs"), cost(found, error, "seconds")
-            rows.append([
-                variant, element,
-                f"{good[0]['error']:.1e} ({good[0]['dofs']})" if good else "",
-                f"{last['error']:.1e} ({last['dofs']})" if "error" in last else "stopped",
-                f"{last['iterations']}" if "iterations" in last else "",
-                "not reached" if math.isnan(dofs) else f"{dofs:.0f}",
-                "" if math.isnan(seconds) else f"{seconds:.3f}",
-                f"{last['seconds']:.2f}" if "error" in last else "",
-                *(f"{last[key]:.1e}" if key in last else "" for key in more),
-            ])  # fmt: skip
-    head = ("", "element", "coarsest: error (dofs)", "finest: error (dofs)", "iterations",
-            "dofs for 1 %", "CPU s for 1 %", "CPU s, finest", *more)  # fmt: skip
+            rows.append(
+                [
+                    variant,
+                    element,
+                    f"{good[0]['error']:.1e} ({good[0]['dofs']})" if good else "",
+                    f"{last['error']:.1e} ({last['dofs']})" if "error" in last else "stopped",
+                    f"{last['iterations']}" if "iterations" in last else "",
+                    "not reached" if math.isnan(dofs) else f"{dofs:.0f}",
+                    "" if math.isnan(seconds) else f"{seconds:.3f}",
+                    f"{last['seconds']:.2f}" if "error" in last else "",
+                    *(f"{last[key]:.1e}" if key in last else "" for key in more),
+                ]
+            )
+    head = (
+        "",
+        "element",
+        "coarsest: error (dofs)",
+        "finest: error (dofs)",
+        "iterations",
+        "dofs for 1 %",
+        "CPU s for 1 %",
+        "CPU s, finest",
+        *more,
+    )
     return table(head, rows)
 
 

@@ -30,9 +30,14 @@ if TYPE_CHECKING:
 
 #: Elements and their cells.
 CELLS = {
-    "Q4I": "quad4", "Q8R": "quad8", "Q8": "quad8", "T6": "tri6", "OPT": "tri3", "Q4D": "quad4",
+    "Q4I": "quad4",
+    "Q8R": "quad8",
+    "Q8": "quad8",
+    "T6": "tri6",
+    "OPT": "tri3",
+    "Q4D": "quad4",
     "Q4": "quad4",
-}  # fmt: skip
+}
 
 
 @dataclass
@@ -109,9 +114,13 @@ class Draw:
         """A model of one material."""
         model = ct.Model(mesh, name=name)
         model.section(
-            "all", element=self.element, material=self.material(), local_strain="logarithmic",
-            plane="strain", thickness=self.length,
-        )  # fmt: skip
+            "all",
+            element=self.element,
+            material=self.material(),
+            local_strain="logarithmic",
+            plane="strain",
+            thickness=self.length,
+        )
         return model
 
     def touch(self, model: ct.Model, slave: Any, master: Any, name: str, **options: Any) -> None:
@@ -149,8 +158,12 @@ def press(d: Draw) -> tuple[ct.Model, list[Step]]:
         low = bottom(t)
         return lambda s: (low[0], low[1] + s * (1.7 + gap - low[1]))
 
-    up = ct.mesh.mapped([bottom, at(2.0), lambda t: (0.8 + 1.2 * t, 1.7 + gap), at(0.8)],
-                        nx, max(2, nx // 3), d.cell)  # fmt: skip
+    up = ct.mesh.mapped(
+        [bottom, at(2.0), lambda t: (0.8 + 1.2 * t, 1.7 + gap), at(0.8)],
+        nx,
+        max(2, nx // 3),
+        d.cell,
+    )
     low = ct.mesh.rectangle(3.5, 1.0, mx, max(2, mx // 4), d.cell)
     mesh = d.scaled(ct.mesh.assembly(low=low, up=up))
     model = d.model(mesh, "press")
@@ -227,8 +240,12 @@ def wave(d: Draw) -> tuple[ct.Model, list[Step]]:
         return 3.0 * t, 1.0 + high * float(np.sin(waves * 3.0 * t))
 
     ends = (top(0.0)[1], top(1.0)[1])
-    low = ct.mesh.mapped([lambda t: (3.0 * t, 0.0), lambda t: (3.0, ends[1] * t), top,
-                          lambda t: (0.0, ends[0] * t)], mx, 3, d.cell)  # fmt: skip
+    low = ct.mesh.mapped(
+        [lambda t: (3.0 * t, 0.0), lambda t: (3.0, ends[1] * t), top, lambda t: (0.0, ends[0] * t)],
+        mx,
+        3,
+        d.cell,
+    )
     model = d.model(d.scaled(ct.mesh.assembly(low=low, up=up)), "wave")
     model.fix("low.bottom", rotation=True)
     d.touch(model, "up.bottom", "low.top", "pair")
@@ -252,8 +269,12 @@ def clip(d: Draw) -> tuple[ct.Model, list[Step]]:
     def top(t: float) -> tuple[float, float]:
         return 2.0 * t, float(np.interp(2.0 * t, corners[:, 0], corners[:, 1]))
 
-    arm = ct.mesh.mapped([lambda t: (2.0 * t, 0.0), lambda t: (2.0, 0.14 * t), top,
-                          lambda t: (0.0, 0.2 * t)], nx, ny, d.cell)  # fmt: skip
+    arm = ct.mesh.mapped(
+        [lambda t: (2.0 * t, 0.0), lambda t: (2.0, 0.14 * t), top, lambda t: (0.0, 0.2 * t)],
+        nx,
+        ny,
+        d.cell,
+    )
     way, kind = 0.8, str(rng.choice(["rigid", "rigid", "sharp", "deformable"]))
     fillet = 0.0 if kind == "sharp" else float(rng.uniform(0.01, 0.1))
     low, high, left, right = 0.24, 0.5, 2.02, 2.3
@@ -337,8 +358,9 @@ def stack(d: Draw) -> tuple[ct.Model, list[Step]]:
         n = d.cells(3, 10)
         wide, high = 1.0, float(rng.uniform(0.2, 0.4))
         shift = 0.05 * float(rng.normal())
-        bodies[f"b{i}"] = ct.mesh.rectangle(wide, high, n, max(1, n // 3), d.cell,
-                                            origin=(shift, y))  # fmt: skip
+        bodies[f"b{i}"] = ct.mesh.rectangle(
+            wide, high, n, max(1, n // 3), d.cell, origin=(shift, y)
+        )
         y += high
     d.friction = max(d.friction, 0.2)
     model = d.model(d.scaled(ct.mesh.assembly(**bodies)), "stack")

@@ -77,9 +77,11 @@ def run(number: int, limit: int, unit: float = 1.0) -> dict[str, Any]:
         out["force"] = max(map(abs, force.values()), default=0.0)
         size = float(np.abs(last.U).max()) / float(np.ptp(given.model.mesh.points, axis=0).max())
         out["moved"] = size
-        out["balance"] = _balance(given, last) if given.static else abs(
-            float(last.scalars.get("energy balance", 0.0))
-        )  # fmt: skip
+        out["balance"] = (
+            _balance(given, last)
+            if given.static
+            else abs(float(last.scalars.get("energy balance", 0.0)))
+        )
     return out
 
 
@@ -114,13 +116,16 @@ def score(rows: list[dict[str, Any]]) -> str:
         balance = max((r.get("balance", 0.0) for r in done if "drop" not in r["name"]), default=0.0)
         lines.append(
             [
-                family, str(len(mine)), f"{100.0 * len(done) / len(mine):.1f}",
+                family,
+                str(len(mine)),
+                f"{100.0 * len(done) / len(mine):.1f}",
                 f"{statistics.median(per):.1f}" if per else "",
                 f"{np.percentile(per, 95):.1f}" if per else "",
-                str(sum(r.get("cut-backs", 0) for r in done)), f"{balance:.0e}",
+                str(sum(r.get("cut-backs", 0) for r in done)),
+                f"{balance:.0e}",
                 f"{statistics.median(r['seconds'] for r in done):.1f}" if done else "",
             ]
-        )  # fmt: skip
+        )
     head = [
         "family",
         "problems",
@@ -181,9 +186,10 @@ def main() -> int:
     if args.against:
         old = {r["number"]: r for r in map(json.loads, args.against.read_text().splitlines())}
         both = [
-            (r, old[r["number"]]) for r in rows
+            (r, old[r["number"]])
+            for r in rows
             if r["end"] == "done" and old.get(r["number"], {}).get("end") == "done"
-        ]  # fmt: skip
+        ]
         if both:
             time_ratio = statistics.median(a["seconds"] / b["seconds"] for a, b in both)
             work = statistics.median(a["iterations"] / max(b["iterations"], 1) for a, b in both)

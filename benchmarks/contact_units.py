@@ -112,9 +112,14 @@ def compare(case: Case) -> tuple[list[object], list[str]]:
     (mm, cpu), (m, cpu_m), (binary, _) = (timed(case, unit) for unit in (1.0, 1000.0, 1024.0))
     lost = str(wasted(mm)) + (f" ({wasted(m)})" if wasted(m) != wasted(mm) else "")
     row: list[object] = [
-        f"`{case.module}.py`", case.what, mm.mesh.n_cells, *counts(mm), lost,
-        round(cpu, 1), round(cpu_m, 1),
-    ]  # fmt: skip
+        f"`{case.module}.py`",
+        case.what,
+        mm.mesh.n_cells,
+        *counts(mm),
+        lost,
+        round(cpu, 1),
+        round(cpu_m, 1),
+    ]
     problems = []
     if (counts(mm), wasted(mm)) != (counts(binary), wasted(binary)):
         problems.append(f"{(*counts(mm), wasted(mm))} and {(*counts(binary), wasted(binary))}")
@@ -143,9 +148,18 @@ def main() -> int:
         problems += [f"{case.module} {case.options}: {text}" for text in found]
         sys.stderr.write(f"{case.module} {case.options}: {'; '.join(found) or 'equal'}\n")
     head = [
-        "script", "what", "elements", "increments", "iterations", "cut-backs", "iterations lost",
-        "CPU s", "in m", "displacements differ by", "forces by",
-    ]  # fmt: skip
+        "script",
+        "what",
+        "elements",
+        "increments",
+        "iterations",
+        "cut-backs",
+        "iterations lost",
+        "CPU s",
+        "in m",
+        "displacements differ by",
+        "forces by",
+    ]
     text = f"`python -m benchmarks.contact_units --write`, {machine()}\n\n{table(head, rows)}"
     sys.stdout.write(text + "\n")
     sys.stdout.writelines(f"{line}\n" for line in problems)

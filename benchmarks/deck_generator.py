@@ -21,9 +21,18 @@ if TYPE_CHECKING:
 #: Decks of the family.
 COUNT = 400
 THEMES = (
-    "forces", "edges", "bodies", "supports", "temperatures", "mixed", "large rotations", "motion",
-    "frequencies", "buckling", "modal",
-)  # fmt: skip
+    "forces",
+    "edges",
+    "bodies",
+    "supports",
+    "temperatures",
+    "mixed",
+    "large rotations",
+    "motion",
+    "frequencies",
+    "buckling",
+    "modal",
+)
 #: Themes with full integration: CalculiX's reduced bricks have another mass, and half the geometric
 #: stiffness (Euler's column buckles at twice the load).
 FULL = ("motion", "frequencies", "buckling", "modal")
@@ -87,8 +96,14 @@ class _Writer:
         force = (0.02 if self.slender else 1.0) * self.random.choice(
             (0.3, 0.5, 0.7, 1.1, 1.3, -0.9)
         )
-        scale = {"force": 1.0, "pressure": 5.0, "gravity": 100.0, "centrifugal": 40.0,
-                 "moved": 0.15, "heat": 60.0}[kind]  # fmt: skip
+        scale = {
+            "force": 1.0,
+            "pressure": 5.0,
+            "gravity": 100.0,
+            "centrifugal": 40.0,
+            "moved": 0.15,
+            "heat": 60.0,
+        }[kind]
         return abs(force * scale) if kind == "centrifugal" else force * scale
 
     def amplitude(self, share: float = 0.4) -> str:
@@ -214,10 +229,16 @@ def _cards(
     """The load cards of a step."""
     random = writer.random
     groups = {
-        "forces": ["force"], "edges": ["edge"], "bodies": ["body"], "supports": ["moved", "force"],
-        "temperatures": ["heat", "force"], "frequencies": ["axial"], "buckling": ["axial"],
-        "modal": ["force", "edge", "body"], "motion": ["force", "edge", "body"],
-    }.get(theme, ["force", "edge", "body", "moved"])  # fmt: skip
+        "forces": ["force"],
+        "edges": ["edge"],
+        "bodies": ["body"],
+        "supports": ["moved", "force"],
+        "temperatures": ["heat", "force"],
+        "frequencies": ["axial"],
+        "buckling": ["axial"],
+        "modal": ["force", "edge", "body"],
+        "motion": ["force", "edge", "body"],
+    }.get(theme, ["force", "edge", "body", "moved"])
     if heats and procedure == "static" and "heat" not in groups:
         groups = [*groups, "heat"]
     text = ""
@@ -324,7 +345,12 @@ def _heat(writer: _Writer, random: Random) -> _Card:
 
 
 _MAKERS = {
-    "force": _force, "axial": _axial, "edge": _edge, "body": _body, "moved": _moved, "heat": _heat,
-}  # fmt: skip
+    "force": _force,
+    "axial": _axial,
+    "edge": _edge,
+    "body": _body,
+    "moved": _moved,
+    "heat": _heat,
+}
 
 __all__ = ["COUNT", "THEMES", "Deck", "generate"]

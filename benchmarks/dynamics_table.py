@@ -73,9 +73,13 @@ def node(mesh: ct.Mesh, x: float, y: float) -> int:
 
 
 def run(
-    case: str, element: str, mass: str, cells: int, increments: int,
+    case: str,
+    element: str,
+    mass: str,
+    cells: int,
+    increments: int,
     scheme: str = "energy_momentum",
-) -> tuple[np.ndarray, dict[str, float]]:  # fmt: skip
+) -> tuple[np.ndarray, dict[str, float]]:
     """Path of the tip at the coarse times, shape (n, 2), and the figures of a run."""
     length, depth, _, period, _ = CASES[case]
     made = model(case, element, cells)

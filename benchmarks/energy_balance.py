@@ -48,8 +48,10 @@ def main(names: list[str]) -> None:
     markdown = "--markdown" in names
     names = [name for name in names if not name.startswith("--")]
     found = watch()
-    every = [*catalogue.problems(), *(str(p.relative_to(ROOT)) for p in sorted(
-        (ROOT / "examples").rglob("*.py")))]  # fmt: skip
+    every = [
+        *catalogue.problems(),
+        *(str(p.relative_to(ROOT)) for p in sorted((ROOT / "examples").rglob("*.py"))),
+    ]
     heads = ("problem", "analyses", "worst error", "scheme", "above 1e-3")
     row = "| {} | {} | {} | {} | {} |" if markdown else "{:42s} {:>9} {:>12} {:20s} {}"
     print(row.format(*heads))

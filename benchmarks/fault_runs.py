@@ -298,8 +298,9 @@ def loose_deck(rng: random.Random) -> tuple[bytes, int]:
     c, s = np.cos(angle), np.sin(angle)
     points = [(x, y) for y in (0.0, 1.0) for x in range(n + 1)]
     lines = ["*NODE"]
-    lines += [f"{k + 1}, {c * x - s * y:.12g}, {s * x + c * y:.12g}" for k, (x, y) in
-              enumerate(points)]  # fmt: skip
+    lines += [
+        f"{k + 1}, {c * x - s * y:.12g}, {s * x + c * y:.12g}" for k, (x, y) in enumerate(points)
+    ]
     lines.append(f"*ELEMENT, TYPE={rng.choice(('CPS4', 'CPS4I', 'Q4D'))}, ELSET=E")
     lines += [f"{k + 1}, {k + 1}, {k + 2}, {n + k + 3}, {n + k + 2}" for k in range(n)]
     lines += ["*MATERIAL, NAME=M", "*ELASTIC", "1000., .3", "*SOLID SECTION, ELSET=E, MATERIAL=M"]

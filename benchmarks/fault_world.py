@@ -115,9 +115,12 @@ def signals(count: int, seed: int, folder: Path) -> Counter[str]:
         (folder / "deck.inp").write_text(deck)
         number = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)[k % 3]
         with subprocess.Popen(
-            [sys.executable, "-m", "corota", "run", "deck.inp", "--threads", "1"], cwd=folder,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
-        ) as run:  # fmt: skip
+            [sys.executable, "-m", "corota", "run", "deck.inp", "--threads", "1"],
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        ) as run:
             assert run.stdout is not None
             run.stdout.readline()
             time.sleep(rng.uniform(0.0, 1.0))

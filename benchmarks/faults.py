@@ -92,8 +92,16 @@ def _split(kind: str, total: int, part: int, seed: int) -> list[tuple[str, int, 
 
 def listed() -> Counter[str]:
     """The listed faults, each with its message, line and exit code: tests of their own."""
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider",
-               "tests/io/test_faults_run.py", "tests/output/test_streams.py"]  # fmt: skip
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "tests/io/test_faults_run.py",
+        "tests/output/test_streams.py",
+    ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     words = done.stdout.strip().splitlines()[-1:] or [done.stderr[-200:]]
     good = done.returncode == 0

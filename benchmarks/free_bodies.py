@@ -39,12 +39,12 @@ BALANCE = 1e-6
 SENSE = 100.0
 #: Rounding errors of the stiffness times the size of the model that count as a force, where nothing
 #: else acts: a body that turns with its supports has no forces but these.
-NOTHING = 1e4 * float(np.finfo(float).eps)
+NEGLIGIBLE = 1e4 * float(np.finfo(float).eps)
 #: Elements with rotations.
 DRILLING = ("OPT", "Q4D")
 #: Words of which a refusal holds one: a motion, or a reason.
 REASON = re.compile(
-    r"can move|can turn|held by nothing|stopped at|limit point|collapse|moves by|"
+    r"can move|can turn|unconstrained|stopped at|limit point|collapse|moves by|"
     r"turned inside out|used its|no path|free motion|move freely"
 )
 
@@ -138,7 +138,7 @@ def wrong(deck: Deck, data: dict[str, Floats]) -> list[str]:
     held = np.zeros(reaction.shape, bool)
     for label, dof in deck.supports:
         held[row[label], dof] = True
-    nothing = NOTHING * deck.modulus * deck.thickness * size
+    nothing = NEGLIGIBLE * deck.modulus * deck.thickness * size
     whole = max(*acting, np.abs(reaction[held]).sum(), nothing / BALANCE)
     reach = max(size, float(np.ptp(now, axis=0).max()), float(np.abs(now).max()))
     twist = 0.0 if deck.couples else abs(moment) / (whole * reach)

@@ -20,9 +20,11 @@ Ints = NDArray[np.int64]
 
 #: Elements by their number of nodes.
 TYPES = {
-    3: ("CPS3", "CPE3", "OPT"), 4: ("CPS4", "CPE4", "Q4I", "Q4D"), 6: ("CPS6", "CPE6"),
+    3: ("CPS3", "CPE3", "OPT"),
+    4: ("CPS4", "CPE4", "Q4I", "Q4D"),
+    6: ("CPS6", "CPE6"),
     8: ("CPS8", "CPE8"),
-}  # fmt: skip
+}
 #: Sides of an element, from 1, on the lower, right, upper and left side of a cell; of triangles
 #: also which of the two of a cell it is.
 SIDES = {3: ((0, 1), (0, 2), (1, 2), (1, 3)), 4: ((0, 1), (0, 2), (0, 3), (0, 4))}
@@ -75,9 +77,11 @@ class Body:
         """Elements (labels) and their sides that make up a side of the body."""
         nx, ny = self.shape
         cells = [
-            list(range(nx)), [j * nx + nx - 1 for j in range(ny)],
-            [(ny - 1) * nx + i for i in range(nx)], [j * nx for j in range(ny)],
-        ][number]  # fmt: skip
+            list(range(nx)),
+            [j * nx + nx - 1 for j in range(ny)],
+            [(ny - 1) * nx + i for i in range(nx)],
+            [j * nx for j in range(ny)],
+        ][number]
         corners = 3 if self.cells.shape[1] in (3, 6) else 4
         half, side = SIDES[corners][number]
         per = 2 if corners == 3 else 1
@@ -155,10 +159,15 @@ def body(
     grid = np.array(places) / [step * nx, step * ny]
     points = grid * box[2:] + box[:2]
     return Body(
-        name, points, np.array([number[p] for p in places]),
-        np.array([[number[p] for p in cell] for cell in cells]), first[1], grid, (nx, ny),
+        name,
+        points,
+        np.array([number[p] for p in places]),
+        np.array([[number[p] for p in cell] for cell in cells]),
+        first[1],
+        grid,
+        (nx, ny),
         draw.choice(TYPES[k]),
-    )  # fmt: skip
+    )
 
 
 def rigid_rows(points: Floats, which: int, n_bodies: int) -> Floats:
@@ -184,9 +193,12 @@ class _Maker:
         self.link = draw.choice(LINKS) if two else draw.choice(("none", "rigid end"))
         dynamic = draw.random() < 0.1
         self.features = {
-            "link": self.link, "bodies": 1 + two, "nlgeom": draw.random() < 0.6,
-            "dynamic": dynamic, "friction": draw.random() < 0.4,
-        }  # fmt: skip
+            "link": self.link,
+            "bodies": 1 + two,
+            "nlgeom": draw.random() < 0.6,
+            "dynamic": dynamic,
+            "friction": draw.random() < 0.4,
+        }
         w, h = self.size, self.size * draw.uniform(0.3, 1.0)
         lower = body("A", (0.0, 0.0, w, h), draw, (1, 1))
         self.bodies = [lower]
@@ -213,9 +225,7 @@ class _Maker:
         self.sets: list[str] = []
         self.model: list[str] = []
         self.step: list[str] = []
-        self.deck = Deck(
-            "", self.bodies, self.features, thickness=self.t, modulus=self.E
-        )  # fmt: skip
+        self.deck = Deck("", self.bodies, self.features, thickness=self.t, modulus=self.E)
         self.taken: set[int] = set()
         self.join()
         for number in range(len(self.bodies)):

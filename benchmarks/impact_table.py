@@ -85,10 +85,17 @@ def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
             for redistribute in (True, False):
                 b = budget(
                     run_ring(
-                        "Q4I", around, speed=1.0, sideways=along, friction=friction, scheme=scheme,
-                        redistribute=redistribute, increments=400, period=0.8,
+                        "Q4I",
+                        around,
+                        speed=1.0,
+                        sideways=along,
+                        friction=friction,
+                        scheme=scheme,
+                        redistribute=redistribute,
+                        increments=400,
+                        period=0.8,
                     )
-                )  # fmt: skip
+                )
                 found[f"{hit} {scheme} {redistribute}"] = b
                 size = abs(b.before[1])
                 gained, rest = b.after - b.before, (b.after - b.before - b.impulse) / size
@@ -99,7 +106,8 @@ def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
                         f"| {b.before[0] / size:.3f} to {abs(b.after[0]) / size:.4f} "
                         f"| {abs(rest[:2]).max():.0e} | {abs(gained[2]) / size:.4f} "
                         f"| {abs(rest[2]):.0e} | {b.travel:.4f} | {b.spin:.4f}"
-                        f" | {b.vibration:.4f} | {b.friction:.4f} | {b.lack:+.4f} | {b.contacts} "
+                        f" | {b.vibration:.4f} | {b.friction:.4f} | {b.energy_error:+.4f} "
+                        f"| {b.contacts} "
                         f"| {b.history['force y'].max() / size:.1f} |"
                     )
                 )
@@ -164,15 +172,23 @@ def yielding(around: int, cells: int) -> tuple[list[str], dict[str, Flight]]:
                         flights[f"{element} {speed}"] = f
                     else:
                         f = fly(
-                            element, plastic=True, speed=2.0 * speed, around=cells, through=4,
-                            body="bar", increments=0, period=0.4, tolerance=2e-3,
-                        )  # fmt: skip
+                            element,
+                            plastic=True,
+                            speed=2.0 * speed,
+                            around=cells,
+                            through=4,
+                            body="bar",
+                            increments=0,
+                            period=0.4,
+                            tolerance=2e-3,
+                        )
                 assert f.results is not None
                 lines.append(
                     say(
                         f"| {body} | {element} | {speed if body == 'ring' else 2 * speed:g} "
                         f"| {f.rebound:.4f} | {f.kinetic:.4f} "
-                        f"| {f.strain:.4f} | {f.plastic:.4f} | {f.lack:.2%} | {f.sideways:.0e} "
+                        f"| {f.strain:.4f} | {f.plastic:.4f} | {f.energy_error:.2%} "
+                        f"| {f.sideways:.0e} "
                         f"| {f.squash:+.4f} | {len(f.results.frames) - 1} | {f.iterations:.1f} "
                         f"| {time.process_time() - begin:.1f} |"
                     )
@@ -191,9 +207,13 @@ def picture(flight: Flight, path: Path) -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.2), layout="constrained")
     t = history["time"]
     left.stackplot(
-        t, history["kinetic"], history["strain"], history["plastic"],
-        labels=["kinetic", "elastic", "plastic"], colors=["#4477aa", "#ccbb44", "#cc6677"],
-    )  # fmt: skip
+        t,
+        history["kinetic"],
+        history["strain"],
+        history["plastic"],
+        labels=["kinetic", "elastic", "plastic"],
+        colors=["#4477aa", "#ccbb44", "#cc6677"],
+    )
     left.set(xlabel="time", ylabel="energy / energy of the start", xlim=(0, t[-1]), ylim=(0, 1.1))
     left.axhline(1.0, color="black", linewidth=0.8)
     left.legend(loc="lower left", frameon=True)

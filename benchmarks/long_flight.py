@@ -17,7 +17,7 @@ import warnings
 import numpy as np
 
 import corota as ct
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 from corota.results.results import Frame
 
 
@@ -30,7 +30,7 @@ def body(element: str) -> ct.Model:
     return model
 
 
-class Watch(Silent):
+class Watch(BaseObserver):
     """Keep the largest deviations and print them at powers of ten."""
 
     def __init__(self, steps: int) -> None:
@@ -71,15 +71,22 @@ def main() -> None:
     parser.add_argument("--tolerance", type=float, default=1e-12)
     args = parser.parse_args()
     step = ct.Dynamic(
-        period=0.02 * args.steps, increments=args.steps, scheme="energy_momentum",
-        mass=args.mass, tolerance=args.tolerance,
-    )  # fmt: skip
+        period=0.02 * args.steps,
+        increments=args.steps,
+        scheme="energy_momentum",
+        mass=args.mass,
+        tolerance=args.tolerance,
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         ct.solve(
-            body(args.element), step, observers=[Watch(args.steps)], threads=1, keep="last",
+            body(args.element),
+            step,
+            observers=[Watch(args.steps)],
+            threads=1,
+            keep="last",
             fields=False,
-        )  # fmt: skip
+        )
 
 
 if __name__ == "__main__":

@@ -19,13 +19,13 @@ import corota as ct
 from benchmarks import cantilever as p1
 from benchmarks.common import report
 from corota.mesh import Cells
-from corota.results.observer import Iteration, Silent
+from corota.results.observer import BaseObserver, Iteration
 
 #: Elements through the height of the cantilever: about 4, 40, 250 and 1000 thousand equations.
 SIZES = {"4k": 14, "40k": 45, "250k": 112, "1m": 223}
 
 
-class Watch(Silent):
+class Watch(BaseObserver):
     """Wall times between the reports of one attempt [s]."""
 
     def __init__(self) -> None:

@@ -77,10 +77,11 @@ def increments(size: str, threads: int, repeats: int) -> list[object]:
     steps = {
         "load": ct.Static(increments=INCREMENTS, fixed_increments=True),
         "arc": ct.Static(
-            increments=INCREMENTS, fixed_increments=True,
+            increments=INCREMENTS,
+            fixed_increments=True,
             path=ct.ArcLength(increments=INCREMENTS),
         ),
-    }  # fmt: skip
+    }
     for _ in range(repeats):
         for name, step in steps.items():
             seconds, _, results = run(model, step, threads)
@@ -88,10 +89,16 @@ def increments(size: str, threads: int, repeats: int) -> list[object]:
             counts[name] = (results.info["iterations"], results.frames[-1].factor)
     load, arc = (statistics.median(times[k]) / INCREMENTS for k in ("load", "arc"))
     return [
-        size, results.info["n_dofs"], threads, f"{counts['load'][0]} / {counts['arc'][0]}",
-        round(counts["arc"][1], 3), load, arc, arc / load,
+        size,
+        results.info["n_dofs"],
+        threads,
+        f"{counts['load'][0]} / {counts['arc'][0]}",
+        round(counts["arc"][1], 3),
+        load,
+        arc,
+        arc / load,
         "yes" if arc <= ARC_TARGET * load else "NO",
-    ]  # fmt: skip
+    ]
 
 
 def buckling(size: str, threads: int, repeats: int) -> list[object]:
@@ -105,9 +112,15 @@ def buckling(size: str, threads: int, repeats: int) -> list[object]:
     ratio = seconds / factor
     euler = 3.141592653589793**2 * 1000.0 * 10.0**3 / 12.0 / (4.0 * 100.0**2)
     return [
-        size, results.info["n_dofs"], threads, results.modes[0].factors[0] / euler, factor,
-        seconds, ratio, "yes" if ratio <= BUCKLING_TARGET else "NO",
-    ]  # fmt: skip
+        size,
+        results.info["n_dofs"],
+        threads,
+        results.modes[0].factors[0] / euler,
+        factor,
+        seconds,
+        ratio,
+        "yes" if ratio <= BUCKLING_TARGET else "NO",
+    ]
 
 
 def main() -> None:
@@ -122,11 +135,28 @@ def main() -> None:
         command = [sys.executable, "-m", "benchmarks.paths", *sys.argv[1:]]
         sys.exit(subprocess.run(command, env=environment, check=False).returncode)
     cases = [(s, args.threads, args.repeats) for s in args.sizes]
-    head = ["size", "equations", "threads", "iterations load/arc", "factor by arc",
-            "load [s/inc]", "arc [s/inc]", "ratio", f"<= {ARC_TARGET}"]  # fmt: skip
+    head = [
+        "size",
+        "equations",
+        "threads",
+        "iterations load/arc",
+        "factor by arc",
+        "load [s/inc]",
+        "arc [s/inc]",
+        "ratio",
+        f"<= {ARC_TARGET}",
+    ]
     report("Arc length beside load control", head, [increments(*c) for c in cases])
-    head = ["size", "equations", "threads", "factor / Euler", "factorisation [s]",
-            "buckling [s]", "ratio", f"<= {BUCKLING_TARGET:g}"]  # fmt: skip
+    head = [
+        "size",
+        "equations",
+        "threads",
+        "factor / Euler",
+        "factorisation [s]",
+        "buckling [s]",
+        "ratio",
+        f"<= {BUCKLING_TARGET:g}",
+    ]
     report("Three buckling modes", head, [buckling(*c) for c in cases])
 
 

@@ -53,12 +53,12 @@ m = np.random.default_rng(0).random((1200, 1200))
 print(2 * a.nbytes / best(lambda: np.copyto(b, a)), 2 * 1200**3 / best(lambda: m @ m))
 """
 #: Sizes between the named ones: elements through the height.
-MORE = {"12k": 24, "130k": 80}
+MAX_EXTRA_CONTACT_ITERATIONS = {"12k": 24, "130k": 80}
 
 
 def profile(size: str, element: str) -> tuple[int, int, dict[str, float], float]:
     """Dofs, iterations, processor seconds of each phase, peak memory [MB]."""
-    SIZES["P1"].update({name: (n, n) for name, n in MORE.items()})
+    SIZES["P1"].update({name: (n, n) for name, n in MAX_EXTRA_CONTACT_ITERATIONS.items()})
     p = build("P1", size, last=1)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
@@ -134,8 +134,15 @@ def draw(dofs: list[int], rows: list[dict[str, float]], path: Path) -> None:
         for k, phase in enumerate(drawn):
             seconds = [row[phase] for row in rows]
             label = f"{phase} ({exponent(dofs[-4:], seconds[-4:]):.2f})"
-            ax.loglog(dofs, seconds, marker="o", markersize=3, label=label, color=COLORS[k % 7],
-                      linestyle="-" if k < 7 else "--")  # fmt: skip
+            ax.loglog(
+                dofs,
+                seconds,
+                marker="o",
+                markersize=3,
+                label=label,
+                color=COLORS[k % 7],
+                linestyle="-" if k < 7 else "--",
+            )
         n = np.array([dofs[0], dofs[-1]], dtype=float)
         for power, text in ((1.0, "n"), (1.5, "n$^{1.5}$")):
             line = rows[-1]["factor"] * 3.0 * (n / n[-1]) ** power
@@ -167,11 +174,16 @@ def main() -> int:
             "assemble": iterations * moved / speed,
             "factor": iterations * dissection(10 * elements, elements + 1, 1) / rate,
         }
-        table.append([
-            n, iterations, *(found.get(p, 0.0) for p in PHASES), memory,
-            f"{found['assemble'] / floors['assemble']:.1f}",
-            f"{found['factor'] / floors['factor']:.1f}",
-        ])  # fmt: skip
+        table.append(
+            [
+                n,
+                iterations,
+                *(found.get(p, 0.0) for p in PHASES),
+                memory,
+                f"{found['assemble'] / floors['assemble']:.1f}",
+                f"{found['factor'] / floors['factor']:.1f}",
+            ]
+        )
         sys.stderr.write(f"{table[-1]}\n")
     if len(dofs) > 3:
         fits = [
@@ -184,8 +196,10 @@ def main() -> int:
     head = ["dofs", "iterations", *PHASES, "peak MB", "assemble / floor", "factor / floor"]
     report(
         f"Phases of one increment of P1, {args.element}, processor seconds, one thread; copy "
-        f"{speed / 1e9:.1f} GB/s, dense product {rate / 1e9:.1f} Gflop/s", head, table,
-    )  # fmt: skip
+        f"{speed / 1e9:.1f} GB/s, dense product {rate / 1e9:.1f} Gflop/s",
+        head,
+        table,
+    )
     if args.write:
         draw(dofs, phases, ROOT / "benchmarks" / "images" / "phases.png")
     return 0

@@ -83,9 +83,15 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=3)
     options = parser.parse_args()
     head = (
-        "element", "dofs", "yielding", "assembly elastic [ms]", "plastic [ms]",
-        "iteration elastic [ms]", "plastic [ms]", "ratio",
-    )  # fmt: skip
+        "element",
+        "dofs",
+        "yielding",
+        "assembly elastic [ms]",
+        "plastic [ms]",
+        "iteration elastic [ms]",
+        "plastic [ms]",
+        "ratio",
+    )
     rows = [measure(e, options.size, options.threads, options.repeats) for e in options.elements]
     report(f"One iteration, half of the points yielding, {options.threads} threads", head, rows)
 

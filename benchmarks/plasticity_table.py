@@ -104,8 +104,8 @@ def weight() -> str:
         for build, value in ((_weighted_beam, _beam_force), (_weighted_panel, _panel_tip)):
             for n in (4, 8):
                 model = build(n, beta0)
-                turning = build is _weighted_panel
-                results, _, _ = solve(model, ct.Static(first_increment=0.1, nlgeom=turning))
+                rotating = build is _weighted_panel
+                results, _, _ = solve(model, ct.Static(first_increment=0.1, nlgeom=rotating))
                 row.append(f"{value(model, results):.4f}")
         rows.append(row)
     head = ("beta0", "cantilever, 4", "cantilever, 8", "Cook, 4", "Cook, 8")
@@ -138,9 +138,16 @@ def locking() -> str:
     """Load on the ligament of the double-notched specimen in plane strain."""
     rows: list[list[object]] = []
     cases: tuple[tuple[str, bool], ...] = (
-        ("Q4", False), ("Q4", True), ("Q4I", False), ("Q8R", False), ("Q8R", True),
-        ("Q8", False), ("Q4D", False), ("Q4D", True), ("OPT", False),
-    )  # fmt: skip
+        ("Q4", False),
+        ("Q4", True),
+        ("Q4I", False),
+        ("Q8R", False),
+        ("Q8R", True),
+        ("Q8", False),
+        ("Q4D", False),
+        ("Q4D", True),
+        ("OPT", False),
+    )
     for element, mean in cases:
         row: list[object] = [element, "yes" if mean else "no"]
         for n in (4, 8):

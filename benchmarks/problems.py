@@ -103,13 +103,22 @@ def cantilever(n: int, order: int = 1, last: int = 0) -> Problem:
     root = np.flatnonzero(points[:, 0] == 0.0)
     shares = p1.tip_shares(points, order)
     return Problem(
-        "P1", points, cells,
-        np.repeat(root, 2), np.tile([0, 1], len(root)), np.zeros(2 * len(root)),
-        np.array(list(shares)), np.ones(len(shares), np.int64),
+        "P1",
+        points,
+        cells,
+        np.repeat(root, 2),
+        np.tile([0, 1], len(root)),
+        np.zeros(2 * len(root)),
+        np.array(list(shares)),
+        np.ones(len(shares), np.int64),
         p1.SHEAR * p1.THICKNESS * np.array(list(shares.values())),
         np.array([p1.tip_middle(points)]),
-        p1.INCREMENTS, last or p1.INCREMENTS, p1.YOUNG, p1.POISSON, p1.THICKNESS,
-    )  # fmt: skip
+        p1.INCREMENTS,
+        last or p1.INCREMENTS,
+        p1.YOUNG,
+        p1.POISSON,
+        p1.THICKNESS,
+    )
 
 
 def transient(n: int, order: int = 1, last: int = 0, load: float = 1000.0) -> Problem:
@@ -129,13 +138,24 @@ def strip(n: int, order: int = 1, last: int = 0) -> Problem:
     bottom, left, top = (find(mesh, a, v) for a, v in ((1, 0.0), (0, 0.0), (1, 18.0)))
     nothing = np.zeros(0, np.int64)
     return Problem(
-        "P2", mesh.points, np.concatenate([c.nodes for c in mesh.cells]),
+        "P2",
+        mesh.points,
+        np.concatenate([c.nodes for c in mesh.cells]),
         np.concatenate([bottom, left, top]),
         np.repeat([1, 0, 1], [len(bottom), len(left), len(top)]),
         np.repeat([0.0, 0.0, 0.3], [len(bottom), len(left), len(top)]),
-        nothing, nothing, np.zeros(0), top, 20, last or 20, 70000.0, 0.2, 0.01,
-        yield_stress=243.0, slope=2240.0,
-    )  # fmt: skip
+        nothing,
+        nothing,
+        np.zeros(0),
+        top,
+        20,
+        last or 20,
+        70000.0,
+        0.2,
+        0.01,
+        yield_stress=243.0,
+        slope=2240.0,
+    )
 
 
 def blocks(n: int, order: int = 1, last: int = 0, friction: float = 0.0) -> Problem:
@@ -157,14 +177,25 @@ def blocks(n: int, order: int = 1, last: int = 0, friction: float = 0.0) -> Prob
     face = len(first) + np.flatnonzero(v == 1.0)
     nothing = np.zeros(0, np.int64)
     return Problem(
-        "P3", np.concatenate([first, other]), np.concatenate([upper, len(first) + lower]),
+        "P3",
+        np.concatenate([first, other]),
+        np.concatenate([upper, len(first) + lower]),
         np.concatenate([np.repeat(base, 2), np.repeat(top, 2)]),
         np.tile([0, 1], len(base) + len(top)),
         np.concatenate([np.zeros(2 * len(base)), np.tile([0.0, -0.02], len(top))]),
-        nothing, nothing, np.zeros(0), top, 10, last or 10, 210000.0, 0.3, 0.01,
-        friction=friction, slave=np.stack([bottom[:-1], bottom[1:]], axis=1),
+        nothing,
+        nothing,
+        np.zeros(0),
+        top,
+        10,
+        last or 10,
+        210000.0,
+        0.3,
+        0.01,
+        friction=friction,
+        slave=np.stack([bottom[:-1], bottom[1:]], axis=1),
         master=np.stack([face[1:], face[:-1]], axis=1),
-    )  # fmt: skip
+    )
 
 
 def lattice(nx: int, ny: int) -> tuple[Floats, Floats, Ints]:

@@ -58,11 +58,12 @@ class Program:
 PROGRAMS = (
     Program("Corota", "Q4, modified", "P1 P4", driver="corota"),
     Program("Corota", "Q4, logarithmic", "P2", driver="corota", options=("strain=logarithmic",)),
+    Program("Corota", "Q4I", "P1 P4", driver="corota", options=("element=Q4I", "strain=linear")),
     Program(
-        "Corota", "Q4I", "P1 P4", driver="corota", options=("element=Q4I", "strain=linear")
-    ),
-    Program(
-        "Corota", "Q4I, logarithmic", "P2", driver="corota",
+        "Corota",
+        "Q4I, logarithmic",
+        "P2",
+        driver="corota",
         options=("element=Q4I", "strain=logarithmic"),
     ),
     Program("Corota", "Q4, HHT", "P4", driver="corota", options=("scheme=hht",)),
@@ -89,7 +90,7 @@ PROGRAMS = (
     Program("CalculiX", "CPS4", "P1 P2 P4", "deck"),
     Program("Corota", "CPS8", "P1 P2", "deck", order=2),
     Program("CalculiX", "CPS8", "P1 P2", "deck", order=2),
-)  # fmt: skip
+)
 
 
 def run_driver(program: Program, p: Problem, folder: Path, threads: int, limit: float) -> Any:
@@ -104,9 +105,15 @@ def run_driver(program: Program, p: Problem, folder: Path, threads: int, limit: 
     extra = [f"threads={threads}"] if program.driver == "corota" else []
     path = f"PYTHONPATH={ROOT}:{ROOT / 'src'}" if program.driver == "corota" else None
     command: list[str | Path] = [
-        "env", path or f"PYTHONPATH={ROOT}", python, "-m", f"benchmarks.peers.run_{program.driver}",
-        "problem.npz", *program.options, *extra,
-    ]  # fmt: skip
+        "env",
+        path or f"PYTHONPATH={ROOT}",
+        python,
+        "-m",
+        f"benchmarks.peers.run_{program.driver}",
+        "problem.npz",
+        *program.options,
+        *extra,
+    ]
     run = process(command, folder, threads=threads, limit=limit)
     record = {"total": run.seconds, "peak_mb": run.peak_mb, "ok": run.ok, "note": run.note}
     lines = [line for line in run.output.splitlines() if line.startswith('{"version"')]
@@ -125,16 +132,29 @@ def run_deck(program: Program, p: Problem, folder: Path, threads: int, limit: fl
         command, out = ["ccx", "-i", "job"], folder / "job"
     else:
         command = [
-            "env", f"PYTHONPATH={ROOT / 'src'}", sys.executable, "-m", "corota", "run", deck,
-            "-o", folder / "out", "--threads", str(threads),
-        ]  # fmt: skip
+            "env",
+            f"PYTHONPATH={ROOT / 'src'}",
+            sys.executable,
+            "-m",
+            "corota",
+            "run",
+            deck,
+            "-o",
+            folder / "out",
+            "--threads",
+            str(threads),
+        ]
         command += ["--element", program.element] if "=" in program.element else []
         out = folder / "out" / "job"
     run = process(command, folder, threads=threads, limit=limit)
     record: dict[str, Any] = {
-        "total": run.seconds, "solve": run.seconds, "cpu": run.cpu, "peak_mb": run.peak_mb,
-        "ok": run.ok, "note": run.note,
-    }  # fmt: skip
+        "total": run.seconds,
+        "solve": run.seconds,
+        "cpu": run.cpu,
+        "peak_mb": run.peak_mb,
+        "ok": run.ok,
+        "note": run.note,
+    }
     sta, dat = out.with_suffix(".sta"), out.with_suffix(".dat")
     if not (run.ok and sta.exists() and dat.exists()):
         return record | {"ok": False, "note": run.note or "no results"}
@@ -151,11 +171,19 @@ def run(
     """One run of a program, as the record that is kept."""
     p = build(name, size, program.order, last)
     record: dict[str, Any] = {
-        "problem": name, "size": size, "dofs": p.n_dofs, "elements": len(p.cells),
-        "increments": p.last, "threads": threads, "program": program.name,
-        "element": program.element, "group": program.group, "order": program.order,
-        "load": os.getloadavg()[0], "when": time.strftime("%Y-%m-%d %H:%M"),
-    }  # fmt: skip
+        "problem": name,
+        "size": size,
+        "dofs": p.n_dofs,
+        "elements": len(p.cells),
+        "increments": p.last,
+        "threads": threads,
+        "program": program.name,
+        "element": program.element,
+        "group": program.group,
+        "order": program.order,
+        "load": os.getloadavg()[0],
+        "when": time.strftime("%Y-%m-%d %H:%M"),
+    }
     with tempfile.TemporaryDirectory(prefix="corota-bench-") as place:
         work = run_deck if program.group == "deck" else run_driver
         return record | work(program, p, Path(place), threads, limit)

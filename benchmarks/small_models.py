@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import corota as ct
 from benchmarks.common import report
 from corota import _core
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 from corota.results.results import Frame
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ CLASSES = ("Problem", "Ldlt", "Lu", "EdgeLoads")
 TICK = 1e-3
 
 
-class Sampler(Silent):
+class Sampler(BaseObserver):
     """Counts ticks of processor time inside the core and outside, from increment 1 to the last."""
 
     def __init__(self) -> None:

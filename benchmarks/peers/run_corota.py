@@ -47,9 +47,11 @@ def main() -> None:
     step: ct.Static | ct.Dynamic
     if p.name == "P4":
         step = ct.Dynamic(
-            period=p.period * share, increments=p.last, mass="constant",
+            period=p.period * share,
+            increments=p.last,
+            mass="constant",
             scheme=options.get("scheme", "newmark"),
-        )  # fmt: skip
+        )
     else:
         # Amplitudes and ramps end at the whole load: run a share of it as a step of its own.
         for support in model.supports:
@@ -68,9 +70,12 @@ def main() -> None:
     else:
         result = [max(float(f.U[p.watch[0], 1]) for f in results.frames)]
     clock.tell(
-        ct.__version__, results.info["iterations"], result, profile=results.info["profile"],
+        ct.__version__,
+        results.info["iterations"],
+        result,
+        profile=results.info["profile"],
         increments=len(results.frames) - 1,
-    )  # fmt: skip
+    )
 
 
 if __name__ == "__main__":

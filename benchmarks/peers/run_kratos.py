@@ -54,9 +54,13 @@ def model_part(p: Problem, model: Any) -> Any:
     part.SetBufferSize(3)
     part.ProcessInfo[Kratos.DOMAIN_SIZE] = 2
     for variable in (
-        Kratos.DISPLACEMENT, Kratos.VELOCITY, Kratos.ACCELERATION, Kratos.REACTION,
-        Mechanics.POINT_LOAD, Kratos.VOLUME_ACCELERATION,
-    ):  # fmt: skip
+        Kratos.DISPLACEMENT,
+        Kratos.VELOCITY,
+        Kratos.ACCELERATION,
+        Kratos.REACTION,
+        Mechanics.POINT_LOAD,
+        Kratos.VOLUME_ACCELERATION,
+    ):
         part.AddNodalSolutionStepVariable(variable)
     for k, (x, y) in enumerate(p.points.tolist()):
         part.CreateNewNode(k + 1, x, y, 0.0)
@@ -98,9 +102,15 @@ def main() -> None:
         solvers.ConstructSolver(Kratos.Parameters(json.dumps(settings)))
     )
     strategy = Kratos.ResidualBasedNewtonRaphsonStrategy(
-        part, scheme, Kratos.ResidualCriteria(tolerance(p), 1e-12), builder,
-        MAX_ITERATIONS, True, False, True,
-    )  # fmt: skip
+        part,
+        scheme,
+        Kratos.ResidualCriteria(tolerance(p), 1e-12),
+        builder,
+        MAX_ITERATIONS,
+        True,
+        False,
+        True,
+    )
     strategy.SetEchoLevel(0)
     strategy.Initialize()
     moved = [

@@ -36,7 +36,7 @@ def write_mesh(p: Problem) -> None:
         "All": (range(len(p.points)), range(1, len(p.cells) + 1), ()),
         "Top": (np.unique(moved), (), ()),
         "Bottom": (np.unique(still), (), ()),
-        "Touching": (np.unique(edges - 1), (), both),
+        "ContactTerm": (np.unique(edges - 1), (), both),
         "Slave": (np.unique(p.slave), (), slave),
         "Master": (np.unique(p.master), (), range(len(p.slave) + 1, len(edges) + 1)),
     }
@@ -88,7 +88,7 @@ def parameters(p: Problem) -> dict[str, Any]:
     contact: dict[str, Any] = {
         "model_part_name": "Structure",
         "assume_master_slave": {"0": ["Slave"]},
-        "contact_model_part": {"0": ["Touching"]},
+        "contact_model_part": {"0": ["ContactTerm"]},
         "contact_type": kind,
     }
     if p.friction:
@@ -97,30 +97,42 @@ def parameters(p: Problem) -> dict[str, Any]:
     down = float(p.held_values.min())
     return {
         "problem_data": {
-            "problem_name": "job", "parallel_type": "OpenMP", "start_time": 0.0,
-            "end_time": end * (1.0 - 1e-6), "echo_level": 0,
+            "problem_name": "job",
+            "parallel_type": "OpenMP",
+            "start_time": 0.0,
+            "end_time": end * (1.0 - 1e-6),
+            "echo_level": 0,
         },
         "solver_settings": {
-            "model_part_name": "Structure", "domain_size": 2, "solver_type": "Static",
-            "echo_level": 0, "analysis_type": "non_linear",
+            "model_part_name": "Structure",
+            "domain_size": 2,
+            "solver_type": "Static",
+            "echo_level": 0,
+            "analysis_type": "non_linear",
             "model_import_settings": {"input_type": "mdpa", "input_filename": "job"},
             "material_import_settings": {"materials_filename": "material.json"},
             "contact_settings": {"mortar_type": f"ALMContact{kind}"},
-            "clear_storage": False, "reform_dofs_at_each_step": False,
+            "clear_storage": False,
+            "reform_dofs_at_each_step": False,
             "time_stepping": {"time_step": 1.0 / p.increments},
             "convergence_criterion": "contact_residual_criterion",
-            "residual_relative_tolerance": TOLERANCE, "residual_absolute_tolerance": 1e-10,
+            "residual_relative_tolerance": TOLERANCE,
+            "residual_absolute_tolerance": 1e-10,
             "max_iteration": MAX_ITERATIONS,
             "linear_solver_settings": {"solver_type": "LinearSolversApplication.sparse_lu"},
         },
         "processes": {
             "constraints_process_list": [hold("Bottom", 0.0), hold("Top", f"{down}*t")],
-            "contact_process_list": [{
-                "python_module": "alm_contact_process", "kratos_module": CONTACT,
-                "process_name": "contact", "Parameters": contact,
-            }],
+            "contact_process_list": [
+                {
+                    "python_module": "alm_contact_process",
+                    "kratos_module": CONTACT,
+                    "process_name": "contact",
+                    "Parameters": contact,
+                }
+            ],
         },
-    }  # fmt: skip
+    }
 
 
 class Analysis(structural_mechanics_analysis.StructuralMechanicsAnalysis):

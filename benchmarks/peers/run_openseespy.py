@@ -19,9 +19,7 @@ def shell(p: Problem) -> None:
     ops.model("basic", "-ndm", 3, "-ndf", 6)
     for k, (x, y) in enumerate(p.points.tolist()):
         ops.node(k + 1, x, y, 0.0)
-    ops.section(
-        "ElasticMembranePlateSection", 1, p.young, p.poisson, p.thickness, p.density
-    )  # fmt: skip
+    ops.section("ElasticMembranePlateSection", 1, p.young, p.poisson, p.thickness, p.density)
     for k, nodes in enumerate((p.cells + 1).tolist()):
         ops.element("ASDShellQ4", k + 1, *nodes, 1, "-corotational")
     clamped = set(p.held_nodes.tolist())

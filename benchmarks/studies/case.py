@@ -98,10 +98,17 @@ def measure(case: Case, element: str, variant: str, n: int) -> dict[str, Any]:
     exact = reference(case, variant)
     found = np.asarray(case.value(results), dtype=float)
     more = case.extra(results) if case.extra else {}
-    return record | more | {
-        "error": distance(found, exact), "moves": moves(case, variant), "seconds": seconds,
-        "iterations": int(results.info["iterations"]), "value": np.ravel(found)[-1].item(),
-    }  # fmt: skip
+    return (
+        record
+        | more
+        | {
+            "error": distance(found, exact),
+            "moves": moves(case, variant),
+            "seconds": seconds,
+            "iterations": int(results.info["iterations"]),
+            "value": np.ravel(found)[-1].item(),
+        }
+    )
 
 
 def distance(found: Floats, exact: Floats) -> float:

@@ -17,8 +17,11 @@ if TYPE_CHECKING:
 
 ELEMENTS = ("Q4I", "Q8", "OPT", "Q4D")
 VARIANTS = (
-    "mortar", "node to segment", "mortar, friction 0.3", "node to segment, friction 0.3",
-)  # fmt: skip
+    "mortar",
+    "node to segment",
+    "mortar, friction 0.3",
+    "node to segment, friction 0.3",
+)
 
 
 def pair(model: ct.Model, variant: str, slave: str, master: Any) -> None:
@@ -71,9 +74,16 @@ def blocks(element: str, variant: str, n: int) -> tuple[ct.Model, ct.Static]:
 
     low = float(face(0.0)[1])
     upper = ct.mesh.mapped(
-        [face, line((0.5, low), (0.5, 1.5)), line((-0.5, 1.5), (0.5, 1.5)),
-         line((-0.5, low), (-0.5, 1.5))], n, max(1, n // 2), cell,
-    )  # fmt: skip
+        [
+            face,
+            line((0.5, low), (0.5, 1.5)),
+            line((-0.5, 1.5), (0.5, 1.5)),
+            line((-0.5, low), (-0.5, 1.5)),
+        ],
+        n,
+        max(1, n // 2),
+        cell,
+    )
     lower = ct.mesh.rectangle(2.0, 1.0, 3 * n // 2, max(1, 3 * n // 4), cell, origin=(-1.0, 0.0))
     mesh = ct.mesh.assembly(upper=upper, lower=ct.mesh.distort(lower, 0.2, seed=7))
     model = ct.Model(mesh)
@@ -94,21 +104,39 @@ def on_mesh(build: Any, n: int, variant: str) -> Floats:
 
 CASES = (
     Case(
-        "contact", "contact-slender", "Slender: strip bent by a rigid disc",
+        "contact",
+        "contact-slender",
+        "Slender: strip bent by a rigid disc",
         "Clamped strip 10 x 0.5, E = 1e6, nu = 0.3; a rigid disc of radius 1 above x = 8 moves "
         "down by 1.4 and slides along it; twenty increments. Force on the disc: vertical, "
         "mean over the way and at its end, and horizontal at its end, against Q9 with 256 x 32 "
         "cells and mortar contact.",
-        VARIANTS, (1, 2, 4, 8), strip, force, partial(on_mesh, strip, 32), ELEMENTS,
-        "error of the force", per_variant=True, coarser=partial(on_mesh, strip, 16),
+        VARIANTS,
+        (1, 2, 4, 8),
+        strip,
+        force,
+        partial(on_mesh, strip, 32),
+        ELEMENTS,
+        "error of the force",
+        per_variant=True,
+        coarser=partial(on_mesh, strip, 16),
     ),
     Case(
-        "contact", "contact-bulky", "Bulky: two blocks, curved face, distorted mesh",
+        "contact",
+        "contact-bulky",
+        "Bulky: two blocks, curved face, distorted mesh",
         "Problem P3: block 1 x 0.5 with a face of radius 8 pressed by 0.02 into a block 2 x 1, "
         "E = 210000, nu = 0.3; meshes that do not match, the inner nodes of the lower one shifted "
         "at random by up to 0.2 of a side; ten increments. Force between them as above, "
         "against Q9 with 64 cells along the face and mortar contact.",
-        VARIANTS, (4, 8, 16), blocks, force, partial(on_mesh, blocks, 64), ELEMENTS,
-        "error of the force", per_variant=True, coarser=partial(on_mesh, blocks, 32),
+        VARIANTS,
+        (4, 8, 16),
+        blocks,
+        force,
+        partial(on_mesh, blocks, 64),
+        ELEMENTS,
+        "error of the force",
+        per_variant=True,
+        coarser=partial(on_mesh, blocks, 32),
     ),
-)  # fmt: skip
+)

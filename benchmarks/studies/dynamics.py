@@ -81,20 +81,36 @@ def block_on(n: int, variant: str) -> Floats:
 
 CASES = (
     Case(
-        "dynamics", "dynamics-slender", "Slender: free rod",
+        "dynamics",
+        "dynamics-slender",
+        "Slender: free rod",
         "Rod 10 x 0.5, E = 1e4, free, spins with 2 rad per unit of time and is bent by a pulse at "
         "one end; two cells across; 120 increments of the trapezoidal rule. Path of the end over a "
         "turn (root mean square) against Q9 with 64 cells and the same increments, so that only "
         "mesh and mass count.",
-        MASSES, (4, 8, 16, 32), rod, rod_path, partial(rod_on, 64), ELEMENTS,
-        "error of the path", coarser=partial(rod_on, 32),
+        MASSES,
+        (4, 8, 16, 32),
+        rod,
+        rod_path,
+        partial(rod_on, 64),
+        ELEMENTS,
+        "error of the path",
+        coarser=partial(rod_on, 32),
     ),
     Case(
-        "dynamics", "dynamics-bulky", "Bulky: tumbling block, distorted mesh",
+        "dynamics",
+        "dynamics-bulky",
+        "Bulky: tumbling block, distorted mesh",
         "Block 2 x 1, E = 1e3, free, spins with 4 rad per unit of time and is pulled by a pulse on "
         "one side; inner nodes shifted at random by up to 0.2 of a side; 120 increments of the "
         "trapezoidal rule. Path of a corner against Q9 with 64 x 32 cells and the same increments.",
-        MASSES, (1, 2, 4, 8, 16), block, block_path, partial(block_on, 32), ELEMENTS,
-        "error of the path", coarser=partial(block_on, 16),
+        MASSES,
+        (1, 2, 4, 8, 16),
+        block,
+        block_path,
+        partial(block_on, 32),
+        ELEMENTS,
+        "error of the path",
+        coarser=partial(block_on, 16),
     ),
-)  # fmt: skip
+)

@@ -31,8 +31,9 @@ def force(results: ct.Results) -> Floats:
     """Vertical force on the nodes that are moved."""
     frame = results.frames[-1]
     moved = [s for s in results.model.supports if s.value != 0.0]
-    nodes = np.concatenate([results.mesh.nodes_of(s.nodes) if isinstance(s.nodes, str) else s.nodes
-                            for s in moved])  # fmt: skip
+    nodes = np.concatenate(
+        [results.mesh.nodes_of(s.nodes) if isinstance(s.nodes, str) else s.nodes for s in moved]
+    )
     return np.array([frame.RF[nodes, 1].sum()])
 
 
@@ -85,29 +86,54 @@ def panel_on(n: int, variant: str) -> Floats:
 
 CASES = (
     Case(
-        "plasticity", "plasticity-slender", "Slender: perfectly plastic cantilever",
+        "plasticity",
+        "plasticity-slender",
+        "Slender: perfectly plastic cantilever",
         "Cantilever 10 x 1, its end moved by 0.5 (about three times the elastic limit); cells "
         "twice as long as high; ten increments. Force at the end against Q9 with the "
         "logarithmic strain, extrapolated (first order) from 16 and 32 cells in the height.",
-        STRAINS, (2, 4, 8, 16), beam, force, partial(beam_on, 32), ELEMENTS,
-        "error of the force", coarser=partial(beam_on, 16),
+        STRAINS,
+        (2, 4, 8, 16),
+        beam,
+        force,
+        partial(beam_on, 32),
+        ELEMENTS,
+        "error of the force",
+        coarser=partial(beam_on, 16),
     ),
     Case(
-        "plasticity", "plasticity-bulky", "Bulky: strip with a hole",
+        "plasticity",
+        "plasticity-bulky",
+        "Bulky: strip with a hole",
         "The quarter strip 10 x 18 with a hole of radius 5, drawn by 0.3 with linear hardening "
         "(problem P2); cells of a mapped mesh, skewed towards the corner; ten increments. Force "
         "against Q9 with 40 cells along an eighth of the hole and the logarithmic strain. The "
         "ligament strains by a few tenths: what the local strains differ by is the model's error.",
-        STRAINS, (3, 5, 10, 20), strip, force, partial(strip_on, 40), ELEMENTS,
-        "error of the force", coarser=partial(strip_on, 20),
+        STRAINS,
+        (3, 5, 10, 20),
+        strip,
+        force,
+        partial(strip_on, 40),
+        ELEMENTS,
+        "error of the force",
+        coarser=partial(strip_on, 20),
     ),
     Case(
-        "plasticity", "plasticity-cook", "Bulky and bent: Cook's panel, distorted mesh",
+        "plasticity",
+        "plasticity-cook",
+        "Bulky and bent: Cook's panel, distorted mesh",
         "Cook's panel, yield stress 0.243, hardening 0.135, under a dead shear force of 1.8, inner "
         "nodes shifted at random by up to 0.2 of a side; in the fourth column with a hardening of "
         "0.3, above the stress. Displacement of the upper corner against Q9 with 48 x 48 cells "
         "and the logarithmic strain.",
-        (*STRAINS, HARDENS), (4, 8, 16, 24), panel, panel_tip, partial(panel_on, 48), ELEMENTS,
-        "error of the tip displacement", coarser=partial(panel_on, 24), per_variant=True,
+        (*STRAINS, HARDENS),
+        (4, 8, 16, 24),
+        panel,
+        panel_tip,
+        partial(panel_on, 48),
+        ELEMENTS,
+        "error of the tip displacement",
+        coarser=partial(panel_on, 24),
+        per_variant=True,
     ),
-)  # fmt: skip
+)

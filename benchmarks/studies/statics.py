@@ -71,24 +71,37 @@ def panel_on(n: int, variant: str) -> Floats:
 
 CASES = (
     Case(
-        "statics", "statics-slender", "Slender: strip 20 to 1",
+        "statics",
+        "statics-slender",
+        "Slender: strip 20 to 1",
         "Clamped strip 10 x 0.5 under a dead shear at its end, `P L^2 / (E I) = 4`: the end turns "
         "by 64 degrees; ten increments; cells five times as long as high, in the second column "
         "trapezoids whose upright sides lean to and fro by 0.3 of a cell. Mean displacement of the "
         "corners of the end against Q9 with 160 x 8 square cells.",
-        ("rectangles", "trapezoids"), (1, 2, 4, 8, 16), strip, strip_tip,
-        partial(strip_on, 8), quantity="error of the tip displacement",
+        ("rectangles", "trapezoids"),
+        (1, 2, 4, 8, 16),
+        strip,
+        strip_tip,
+        partial(strip_on, 8),
+        quantity="error of the tip displacement",
         coarser=partial(strip_on, 4),
     ),
     Case(
-        "statics", "statics-bulky", "Bulky: Cook's panel",
+        "statics",
+        "statics-bulky",
+        "Bulky: Cook's panel",
         "Panel (0, 0), (48, 44), (48, 60), (0, 44), E = 1, nu = 1/3, clamped left, dead shear 0.2 "
         "on the right (displacement 4.4 of a height of 16); four increments; in the second column "
         "inner nodes are shifted at random by up to 0.2 of a side, in the third the local strain "
         "is `green_lagrange`. Displacement of the middle of the right side against Q9 with "
         "64 x 64 cells.",
-        ("regular", "random", "green_lagrange"), (2, 4, 8, 16, 32), panel, panel_tip,
-        partial(panel_on, 64), quantity="error of the tip displacement", per_variant=True,
+        ("regular", "random", "green_lagrange"),
+        (2, 4, 8, 16, 32),
+        panel,
+        panel_tip,
+        partial(panel_on, 64),
+        quantity="error of the tip displacement",
+        per_variant=True,
         coarser=partial(panel_on, 32),
     ),
-)  # fmt: skip
+)

@@ -39,11 +39,14 @@ def beam(nx: int = 40, ny: int = 2, element: str = "Q4I", unit: float = 1.0) -> 
 
     body = ct.mesh.mapped(
         [
-            curve(-0.5 * DEPTH), lambda t: upright(t, 0.5 * SPAN, 0.0),
-            curve(0.5 * DEPTH), lambda t: upright(t, 0.0, HEIGHT),
+            curve(-0.5 * DEPTH),
+            lambda t: upright(t, 0.5 * SPAN, 0.0),
+            curve(0.5 * DEPTH),
+            lambda t: upright(t, 0.0, HEIGHT),
         ],
-        nx, ny,
-    )  # fmt: skip
+        nx,
+        ny,
+    )
     top = (HEIGHT + 0.5 * DEPTH + RADIUS) / unit
     probe = ct.mesh.add_node(body, 0.0, top, name="probe")
     model = ct.Model(body, name="bistable beam")
@@ -61,9 +64,12 @@ def beam(nx: int = 40, ny: int = 2, element: str = "Q4I", unit: float = 1.0) -> 
 def run(unit: float = 1.0, **options: int | str) -> ct.Results:
     """Push slowly, a dozen periods of the beam, which a little damping brings to rest."""
     down = ct.Dynamic(
-        period=0.1, alpha=-0.3, ramp=True, rayleigh=(500.0, 0.0),
+        period=0.1,
+        alpha=-0.3,
+        ramp=True,
+        rayleigh=(500.0, 0.0),
         supports=[Fixed("probe", 1, -DOWN / unit)],
-    )  # fmt: skip
+    )
     return ct.solve(beam(unit=unit, **options), down)  # type: ignore[arg-type]
 
 

@@ -33,11 +33,14 @@ def clip(
 
     body = ct.mesh.mapped(
         [
-            lambda t: (length * t, 0.0), lambda t: (length, ys[-1] * t),
-            top, lambda t: (0.0, ys[0] * t),
+            lambda t: (length * t, 0.0),
+            lambda t: (length, ys[-1] * t),
+            top,
+            lambda t: (0.0, ys[0] * t),
         ],
-        nx, ny,
-    )  # fmt: skip
+        nx,
+        ny,
+    )
     model = ct.Model(body, name="clip")
     polymer = ct.Mises(
         E=2300.0 * unit**2, nu=0.38, yield_stress=45.0 * unit**2, isotropic=150.0 * unit**2

@@ -32,9 +32,13 @@ def ring(
         E=210e3 * unit**2, nu=0.3, yield_stress=YIELD * unit**2, isotropic=1000.0 * unit**2
     )
     model.section(
-        "all", element=element, material=steel, plane="strain", thickness=1.0 / unit,
+        "all",
+        element=element,
+        material=steel,
+        plane="strain",
+        thickness=1.0 / unit,
         local_strain="logarithmic",
-    )  # fmt: skip
+    )
     for name in ("start", "end"):
         model.fix(name, y=None)
     wide = 2.0 * high

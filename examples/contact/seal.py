@@ -27,9 +27,13 @@ def seal(n: int = 60, ny: int = 4, element: str = "Q4I", unit: float = 1.0) -> c
     model = ct.Model(half, name="seal")
     rubber = ct.Elastic(E=5.0 * unit**2, nu=0.45)
     model.section(
-        "all", element=element, material=rubber, plane="strain", thickness=1.0 / unit,
+        "all",
+        element=element,
+        material=rubber,
+        plane="strain",
+        thickness=1.0 / unit,
         local_strain="logarithmic",
-    )  # fmt: skip
+    )
     for name in ("start", "end"):
         model.fix(name, y=None)
     # The tube lies to the left of both: inside the groove, outside the rib.

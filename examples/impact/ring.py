@@ -28,7 +28,7 @@ def main() -> None:
             f = fly(element, plastic=plastic, speed=1.0, around=args.around, increments=0)
             sys.stdout.write(
                 f"{'yielding' if plastic else 'elastic':9}{element:7}{f.rebound:9.4f}"
-                f"{f.kinetic:9.4f}{f.strain:9.4f}{f.plastic:9.4f}{f.lack:9.1e}{f.squash:7.3f}"
+                f"{f.kinetic:9.4f}{f.strain:9.4f}{f.plastic:9.4f}{f.energy_error:9.1e}{f.squash:7.3f}"
                 f"{f.iterations:7.1f}\n"
             )
 

@@ -75,9 +75,13 @@ def turn(increments: int = 120, turns: float = 0.5) -> ct.results.Results:
     model.velocity(spin=SPEED)
     load = ct.Static(loads=[spin], supports=held)
     free = ct.Dynamic(
-        period=turns * 2.0 * np.pi / SPEED, increments=increments, scheme="energy_momentum",
-        new_loads=True, new_supports=True, max_iterations=40,
-    )  # fmt: skip
+        period=turns * 2.0 * np.pi / SPEED,
+        increments=increments,
+        scheme="energy_momentum",
+        new_loads=True,
+        new_supports=True,
+        max_iterations=40,
+    )
     return ct.solve(model, [load, free])
 
 

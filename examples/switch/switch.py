@@ -50,8 +50,11 @@ def switch(load: float = 1.0, cells: int = 24) -> tuple[ct.Model, int]:
     """Build the part with a push of `load` downward on the shuttle, and its loaded node."""
     parts = [flexure(level, side, cells) for level in (0.0, GAP) for side in (-1, 1)]
     low = RISE - DEPTH / 2.0
-    for bottom, height, rows in ((low, DEPTH, 2), (low + DEPTH, GAP - DEPTH, 8),
-                                 (low + GAP, DEPTH, 2)):  # fmt: skip
+    for bottom, height, rows in (
+        (low, DEPTH, 2),
+        (low + DEPTH, GAP - DEPTH, 8),
+        (low + GAP, DEPTH, 2),
+    ):
         block = ct.mesh.rectangle(2.0 * SHUTTLE, height, nx=4, ny=rows, cell="quad8")
         for names in (block.node_sets, block.edge_sets):
             names.clear()

@@ -58,7 +58,8 @@ JOINED = {
     "equations": (
         "".join(
             f"*EQUATION\n2\n{a}, {d}, 1., {b}, {d}, -1.\n"
-            for a, b in ((11, 4), (12, 3)) for d in (1, 2)
+            for a, b in ((11, 4), (12, 3))
+            for d in (1, 2)
         ),
         True,
     ),
@@ -80,7 +81,7 @@ JOINED = {
         "SLAVE, MASTER\n",
         False,
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("joined", sorted(JOINED))
@@ -96,9 +97,11 @@ def test_check_and_run_agree_on_what_is_held(joined, tmp_path, capsys):
 @pytest.mark.parametrize("held", [True, False])
 @pytest.mark.parametrize(
     ("kind", "section"),
-    [("T2D2", "*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n"),
-     ("B21", "*BEAM SECTION, ELSET=E, MATERIAL=M, SECTION=RECT\n.1, .1\n0., 0., -1.\n")],
-)  # fmt: skip
+    [
+        ("T2D2", "*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n"),
+        ("B21", "*BEAM SECTION, ELSET=E, MATERIAL=M, SECTION=RECT\n.1, .1\n0., 0., -1.\n"),
+    ],
+)
 def test_lines_are_checked(kind, section, held, tmp_path, capsys):
     """Decks with trusses and beams ended with an internal error."""
     path = tmp_path / "job.inp"

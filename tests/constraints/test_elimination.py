@@ -16,9 +16,9 @@ TRIALS = [(k, e) for k in KINDS for e in ("Q4I", "Q4D")]
 def dense(system: System, at: Evaluation) -> np.ndarray:
     """The reduced matrix."""
     assert at.link is not None
-    assert system.ties is not None
-    places = system.ties.places
-    m = len(system.ties.free)
+    assert system.constraints is not None
+    places = system.constraints.places
+    m = len(system.constraints.free)
     values = at.link.reduce(at.values, at.residual)
     upper = sp.csc_array(
         (values, places.indices.astype(int), places.indptr.astype(int)), shape=(m, m)
@@ -34,20 +34,20 @@ def trial(system: System, seed: int) -> np.ndarray:
 def test_tangent_is_the_derivative_of_the_residual(kind: str, element: str) -> None:
     model, _ = constrained(kind, element)
     system = system_of(model)
-    ties = system.ties
-    assert ties is not None
+    constraints = system.constraints
+    assert constraints is not None
     u = trial(system, 3)
     at = system.evaluate(u, 0.0)
     k = dense(system, at)
 
     def residual(column: int, h: float) -> np.ndarray:
         moved = u.copy()
-        moved[ties.free[column]] += h
+        moved[constraints.free[column]] += h
         there = system.evaluate(moved, 0.0)
-        return system.reaction(there)[ties.free]
+        return system.reaction(there)[constraints.free]
 
     h = 1e-6
-    for column in range(len(ties.free)):
+    for column in range(len(constraints.free)):
         slope = (residual(column, h) - residual(column, -h)) / (2.0 * h)
         assert np.abs(slope - k[:, column]).max() < 1e-8 * np.abs(k).max()
 
@@ -73,7 +73,7 @@ def test_inertia_counts_the_reduced_matrix(kind: str) -> None:
     if kind == "kinematic x":
         model.fix([reference], x=None)
     system = system_of(model)
-    assert system.ties is not None
+    assert system.constraints is not None
     from corota.model.steps import Static
 
     negative = set()
@@ -81,7 +81,7 @@ def test_inertia_counts_the_reduced_matrix(kind: str) -> None:
         system.begin(Static(), 0.0, np.zeros(system.n_dofs), None)
         u = trial(system, seed)
         at = system.evaluate(u, 0.0)
-        free = ~system.conditions.held[system.ties.free]
+        free = ~system.conditions.constrained[system.constraints.free]
         k = dense(system, at)[np.ix_(free, free)]
         zero = np.zeros(system.n_dofs)
         _, count = system.correct(at, zero, zero)
@@ -103,9 +103,9 @@ def test_corrections_satisfy_the_linearised_constraints(kind: str) -> None:
     at = system.evaluate(trial(system, 8), 1.0)
     u = at.link.u  # type: ignore[union-attr]
     du, _ = system.predict(at, np.zeros(system.n_dofs))
-    assert system.ties is not None
+    assert system.constraints is not None
     h = 1e-7 / np.abs(du).max()
     one, two = u + h * du, u - h * du
-    system.ties.complete(one)
-    system.ties.complete(two)
+    system.constraints.complete(one)
+    system.constraints.complete(two)
     assert np.abs((one - two) / (2.0 * h) - du).max() < 1e-6 * np.abs(du).max()

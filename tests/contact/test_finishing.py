@@ -10,7 +10,7 @@ import pytest
 import corota as ct
 from benchmarks.contact_problems import problem
 from benchmarks.contact_torture import run
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 #: Numbers of the torture set that stopped before.
 STOPPED = (7, 10, 16)
@@ -27,7 +27,7 @@ def test_what_stopped_finishes(number):
 def test_the_log_says_where_states_came_from_pivoting():
     notes = []
 
-    class Log(Silent):
+    class Log(BaseObserver):
         def iteration(self, info):
             notes.append(info.note)
 

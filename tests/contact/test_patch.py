@@ -57,9 +57,12 @@ def test_patch_after_sliding_on_part_of_the_master(element, slave):
     mesh = ct.mesh.move(ct.mesh.assembly(low=low, up=up), angle=30.0)
     model = ct.Model(mesh)
     model.section(
-        "all", element=element, material=ct.Elastic(E=E, nu=NU), plane="strain",
+        "all",
+        element=element,
+        material=ct.Elastic(E=E, nu=NU),
+        plane="strain",
         local_strain="green_lagrange",
-    )  # fmt: skip
+    )
     model.fix("low", x=0.0, y=0.0, rotation=True)
     model.local_axes(mesh.node_sets["up.top"], angle=np.radians(30.0))
     c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))

@@ -7,7 +7,7 @@ import pytest
 import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Faer
-from corota.analysis.terms.contact.equations import TouchingSystem
+from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 
 STEP = 1e-6
@@ -26,35 +26,35 @@ def problem(method, law):
     model.contact("up.top", circle, method=method, friction=0.3)
     system = System(model, Faer())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
-    return TouchingSystem(system, system)
+    return ContactEquations(system, system)
 
 
 @pytest.mark.parametrize("law", [None, ct.PressureLaw("linear", 20.0)])
 @pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
 def test_rows_and_columns_are_derivatives(method, law):
     self = problem(method, law)
-    n, m = self.n, self.touching.n
+    n, m = self.n, self.contact_term.n
     rng = np.random.default_rng(1)
     z = np.concatenate([0.01 * rng.standard_normal(n), rng.uniform(0.5, 2.0, m)])
     at = self.evaluate(z, 1.0)
-    for pair in self.touching.pairs:
+    for pair in self.contact_term.pairs:
         pair.frozen = True
         pair.area = pair.full * 0.9
     states = []
-    for pair, terms, (p, q) in self._pairs(at.touch):
+    for pair, terms, (p, q) in self._pairs(at.contact_state):
         assert (terms.area > 0.1 * pair.full).sum() >= 2
         state = pair.states(terms, p, q)
         state[terms.area > 0.1 * pair.full] = [CLOSED, SLIPPING][pair.first > 0]
         state[terms.area <= 0.1 * pair.full] = OPEN
         states.append(state)
-        self.senses[pair.first] = pair.sense(terms, q)
+        self.slip_directions[pair.first] = pair.slip_direction(terms, q)
 
     def equations(z):
         """Force of contact and the rows of all constraints, with the states as they are."""
-        touch = self.evaluate(z, 1.0).touch
+        touch = self.evaluate(z, 1.0).contact_state
         out = []
         for (pair, terms, (p, q)), s in zip(self._pairs(touch), states, strict=True):
-            _, rp, _, rq, ratio = pair.rows(terms, s, p, q, self.senses[pair.first])
+            _, rp, _, rq, ratio = pair.rows(terms, s, p, q, self.slip_directions[pair.first])
             out += [-rp, np.where(s == SLIPPING, q - ratio * p, -rq)]
         return touch.force, np.concatenate(out)
 
@@ -62,22 +62,22 @@ def test_rows_and_columns_are_derivatives(method, law):
         up, down = equations(z + STEP * dz), equations(z - STEP * dz)
         return tuple((a - b) / (2.0 * STEP) for a, b in zip(up, down, strict=True))
 
-    coupling, _, _ = self._coupling(at.touch, states)
+    coupling, _, _ = self._coupling(at.contact_state, states)
     dz = rng.standard_normal(n + m)
     du, dp = dz[:n], dz[n:]
     force, rows = np.zeros(n), coupling.diagonal * dp
-    for part, x in ((coupling.bend, du), (coupling.rows, dp), (coupling.follow, dp)):
+    for part, x in ((coupling.geometric_stiffness, du), (coupling.rows, dp), (coupling.follow, dp)):
         np.add.at(force, part.rows, part.values * x[part.columns])
     back = coupling.rows
     np.add.at(rows, back.columns, back.values * du[back.rows])
     # Tractions that the matrix has not: those of open nodes, and of slipping ones, which are a
     # multiple of the pressure.
     gone = np.zeros(m, bool)
-    for pair, s in zip(self.touching.pairs, states, strict=True):
+    for pair, s in zip(self.contact_term.pairs, states, strict=True):
         first, second = pair.first, pair.first + pair.n
         gone[first:second], gone[second : first + pair.width] = s == OPEN, s != CLOSED
         slips = np.flatnonzero(s == SLIPPING)
-        follow = pair.friction * self.senses[first][slips] * dp[first + slips]
+        follow = pair.friction * self.slip_directions[first][slips] * dp[first + slips]
         dz[n + first : n + second][s == OPEN] = 0.0
         dz[n + second : n + first + pair.width][s != CLOSED] = 0.0
         dz[n + second + slips] = follow

@@ -55,10 +55,16 @@ def test_heat_of_a_held_bar(law: str, plane: str) -> None:
         "elastic": lambda: ct.Elastic(E=young, nu=0.3, expansion=alpha),
         "mises": lambda: ct.Mises(E=young, nu=0.3, yield_stress=1e3, expansion=alpha),
         "orthotropic": lambda: ct.Orthotropic(
-            E1=young, E2=300.0, E3=500.0, nu12=0.2, nu13=0.1, nu23=0.3, G12=200.0,
+            E1=young,
+            E2=300.0,
+            E3=500.0,
+            nu12=0.2,
+            nu13=0.1,
+            nu23=0.3,
+            G12=200.0,
             expansion=(alpha, 2.0 * alpha, 3.0 * alpha),
         ),
-    }[law]()  # fmt: skip
+    }[law]()
     for pull in (0.0, 0.02):
         model = bar(material, plane)
         model.fix("right", x=pull, y=None)

@@ -104,7 +104,7 @@ def test_what_is_worked_out_once_holds_at_every_displacement(element: str, kind:
     (load,) = (x.force for x in system.conditions.distributed.loads)
     for flags in (np.zeros(0, bool), light):
         for mass in MASSES:
-            system.core.set_light(flags)
+            system.core.set_massless(flags)
             system.conditions.set_mass(mass)
             for scale, at, start in ((1.0, 0.3 * u, np.zeros(0)), (-0.7, u, 0.5 * u)):
                 to = LoadSum(np.zeros(n), np.zeros(len(system.indices)), 0.4, start)

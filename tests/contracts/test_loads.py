@@ -25,7 +25,7 @@ def total(frame):
     return frame.F[:, :2].sum(axis=0)
 
 
-def turning(model, frame):
+def rotating(model, frame):
     x = model.mesh.points
     return float(x[:, 0] @ frame.F[:, 1] - x[:, 1] @ frame.F[:, 0] + frame.F[:, 2].sum())
 
@@ -55,7 +55,7 @@ def test_resultants(element):
             model.gravity(x=2.0, y=-1.0)
         frame = linear(model)
         assert np.abs(total(frame) - force).max() <= ROUNDOFF * 10, kind
-        assert abs(turning(model, frame) - moment) <= ROUNDOFF * 30, kind
+        assert abs(rotating(model, frame) - moment) <= ROUNDOFF * 30, kind
         assert max(balance(model, frame, moved=False)) <= 1e-10, kind
         assert ((np.abs(frame.F[:, 2]).max() > 0.0) == (element in DRILLING)) or kind == "force"
 

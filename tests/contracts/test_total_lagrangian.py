@@ -41,9 +41,17 @@ def test_force_and_tangent_of_random_large_states(element, plane):
     for _ in range(50):
         x, u = random_state(n, random)
         force, tangent = assemble(
-            single(element, x, E=E, nu=NU, plane=plane, local_strain="green_lagrange",
-                   thickness=THICKNESS), u
-        )  # fmt: skip
+            single(
+                element,
+                x,
+                E=E,
+                nu=NU,
+                plane=plane,
+                local_strain="green_lagrange",
+                thickness=THICKNESS,
+            ),
+            u,
+        )
         expected, slope = continuum.element(
             x[None],
             u[None],

@@ -25,8 +25,9 @@ SCHEMES = ("newmark", "hht", "generalized_alpha", "energy_momentum")
 def test_a_steel_bar_drifts(element, scheme, speed):
     mesh = ct.mesh.rectangle(1.0, 0.05, 20, 1, cell(element))
     model = ct.Model(mesh)
-    model.section("all", element=element, material=ct.Elastic(E=2.1e11, nu=0.3, rho=7800.0),
-                  thickness=0.01)  # fmt: skip
+    model.section(
+        "all", element=element, material=ct.Elastic(E=2.1e11, nu=0.3, rho=7800.0), thickness=0.01
+    )
     model.velocity(x=speed)
     step = Dynamic(period=0.2, increments=10, scheme=scheme)
     frame = ct.solve(model, step, threads=1, fields=False).frames[-1]

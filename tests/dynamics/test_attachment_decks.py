@@ -105,8 +105,10 @@ def test_deck_prints_what_calculix_prints(case, tmp_path):
     assert [len(row) for row in mine] == [len(row) for row in other]
     # Displacements, energies of elements, their sums; CalculiX stops at half a per cent.
     for k, n in ((4, 1), (2, 3), (1, 3)):
-        pair = [np.array([row[-1 if k < 4 else 1] for row in rows if len(row) == k])
-                for rows in (mine, other)]  # fmt: skip
+        pair = [
+            np.array([row[-1 if k < 4 else 1] for row in rows if len(row) == k])
+            for rows in (mine, other)
+        ]
         if k == 2:
             # Two elements in each of three tables.
             pair = [values.reshape(-1, 3, 2) for values in pair]

@@ -43,8 +43,16 @@ def oscillator(scheme, c=0.0, rayleigh=(0.0, 0.0), between=False, n=400):
             model.dashpot(int(model.mesh.nodes_of("left")[level][0]), int(node), c=0.5 * c)
         elif c:
             model.dashpot(int(node), x=0.5 * c)
-    results = run(model, period=2.0, increments=n, scheme=scheme, rayleigh=rayleigh, alpha=0.0,
-                  rho_inf=1.0, tolerance=1e-11)  # fmt: skip
+    results = run(
+        model,
+        period=2.0,
+        increments=n,
+        scheme=scheme,
+        rayleigh=rayleigh,
+        alpha=0.0,
+        rho_inf=1.0,
+        tolerance=1e-11,
+    )
     tip = model.mesh.nodes_of("right")[0]
     return np.array([f.U[tip, 0] for f in results.frames[1:]]), results
 

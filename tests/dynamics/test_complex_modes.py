@@ -120,8 +120,10 @@ def test_an_isotropic_rotor_has_the_frequencies_of_forward_and_backward_whirl(el
     base = ct.mesh.move(
         ct.mesh.rectangle(1.0, 1.0, nx=2, ny=2, cell=CELL[element]), shift=(-0.5, -0.5)
     )
-    corners = [int(np.argmin(np.hypot(*(base.points - p).T)))
-               for p in ([-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5])]  # fmt: skip
+    corners = [
+        int(np.argmin(np.hypot(*(base.points - p).T)))
+        for p in ([-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5])
+    ]
     label = base.n_cells
     points = np.repeat(corners, 2)[:, None]
     springs = Cells("point1", points, np.arange(label + 1, label + 9))

@@ -19,7 +19,7 @@ def states(system, seed):
     rng = np.random.default_rng(seed)
     pair = [0.3 * rng.standard_normal(system.n_dofs) for _ in range(2)]
     for u in pair:
-        system.ties.complete(u)
+        system.constraints.complete(u)
     return pair
 
 
@@ -34,9 +34,11 @@ def turning_equation():
     model, reference = beam()
     right = model.mesh.nodes_of("right")
     model.equation(
-        (reference, "x", 1.0), (right[0], "theta", 0.7), (right[1], "theta", -0.4),
+        (reference, "x", 1.0),
+        (right[0], "theta", 0.7),
+        (right[1], "theta", -0.4),
         (right[1], "y", 0.3),
-    )  # fmt: skip
+    )
     model.equation((right[2], "theta", 1.0), (reference, "y", 0.5), (right[0], "theta", 2.0))
     return model
 
@@ -51,9 +53,9 @@ def test_discrete_derivatives_are_exact_between_any_two_states():
         system = system_of(model)
         begin, end = states(system, 2)
         d = increments(system, begin, end)
-        link = system.ties.secant(begin, end)
-        assert np.abs(link.move(d) - d)[system.ties.dependent].max() <= 1e-13
-        at_one = system.ties.secant(end, end).g - system.ties.link(end).g
+        link = system.constraints.secant(begin, end)
+        assert np.abs(link.move(d) - d)[system.constraints.dependent].max() <= 1e-13
+        at_one = system.constraints.secant(end, end).g - system.constraints.link(end).g
         assert abs(at_one).max() <= 1e-14
 
 
@@ -66,14 +68,14 @@ def test_rates_are_those_of_a_path():
 
         def at(t, u=u, v=v, a=a, system=system):
             path = u + t * v + 0.5 * t**2 * a
-            system.ties.complete(path)
+            system.constraints.complete(path)
             return path
 
-        dependent = system.ties.dependent
+        dependent = system.constraints.dependent
         p = [at(k * h) for k in (-2, -1, 0, 1, 2)]
         rate = (p[0] - 8.0 * p[1] + 8.0 * p[3] - p[4]) / (12.0 * h)
         growth = (-p[0] + 16.0 * p[1] - 30.0 * p[2] + 16.0 * p[3] - p[4]) / (12.0 * h * h)
-        system.ties.complete_rates(u, v, a)
+        system.constraints.complete_rates(u, v, a)
         assert np.abs(rate - v)[dependent].max() <= 1e-8
         assert np.abs(growth - a)[dependent].max() <= 1e-6
 
@@ -151,9 +153,13 @@ def flying(kind, element):
 @pytest.mark.parametrize("kind", ["rigid", "distributing", "rigid in axes"])
 def test_free_flight_with_constraints_keeps_energy_and_momenta(kind, element):
     results = run(
-        flying(kind, element), period=2.0, increments=40, scheme="energy_momentum",
-        tolerance=1e-11, max_iterations=30,
-    )  # fmt: skip
+        flying(kind, element),
+        period=2.0,
+        increments=40,
+        scheme="energy_momentum",
+        tolerance=1e-11,
+        max_iterations=30,
+    )
     kinetic = column(results, "kinetic energy")
     assert np.ptp(column(results, "energy balance")) <= 1e-10 * kinetic.max()
     for name in ("momentum x", "momentum y", "angular momentum"):

@@ -63,11 +63,16 @@ def test_explicit_dynamic_is_lumped(tmp_path):
 
 
 def test_frequency_and_modal_steps(tmp_path):
-    text = HEAD + FREQUENCY + (
-        "*STEP\n*MODAL DYNAMIC\n.01, .5\n*MODAL DAMPING\n1, 3, .02\n*CLOAD\n6, 2, -1.\n*END STEP\n"
-        "*STEP\n*STEADY STATE DYNAMICS\n.1, 20., 5\n*MODAL DAMPING\n1, 3, .02\n"
-        "*CLOAD\n6, 2, -1.\n*END STEP\n"
-    )  # fmt: skip
+    text = (
+        HEAD
+        + FREQUENCY
+        + (
+            "*STEP\n*MODAL DYNAMIC\n.01, .5\n*MODAL DAMPING\n1, 3, .02\n"
+            "*CLOAD\n6, 2, -1.\n*END STEP\n"
+            "*STEP\n*STEADY STATE DYNAMICS\n.1, 20., 5\n*MODAL DAMPING\n1, 3, .02\n"
+            "*CLOAD\n6, 2, -1.\n*END STEP\n"
+        )
+    )
     model = read(tmp_path, text)
     frequency, modal, steady = model.steps
     assert isinstance(frequency, Frequency)
@@ -161,8 +166,9 @@ def test_errors_name_the_line(tmp_path, card, data, line, words):
 
 
 def test_missing_density_is_refused_with_the_material(tmp_path):
-    model = read(tmp_path, HEAD.replace("*DENSITY\n1.\n", "")
-                 + "*STEP\n*DYNAMIC\n.01, .1\n*END STEP\n")  # fmt: skip
+    model = read(
+        tmp_path, HEAD.replace("*DENSITY\n1.\n", "") + "*STEP\n*DYNAMIC\n.01, .1\n*END STEP\n"
+    )
     with pytest.raises(CorotaError, match="has no density") as caught:
         ct.solve(model, threads=1)
     assert "deck.inp" in str(caught.value)

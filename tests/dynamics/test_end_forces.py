@@ -29,9 +29,10 @@ def test_forces_of_the_frames_instant(scheme: Any) -> None:
     model.traction("right", x=6.0, amplitude="up")
     options = {"alpha": -0.3} if scheme == "hht" else {}
     results = ct.solve(
-        model, ct.Dynamic(period=1.0, increments=10, scheme=scheme, nlgeom=False, **options),
+        model,
+        ct.Dynamic(period=1.0, increments=10, scheme=scheme, nlgeom=False, **options),
         threads=1,
-    )  # fmt: skip
+    )
     for frame in results.frames[1:]:
         load = 6.0 * frame.time
         assert frame.F[:, 0].sum() == pytest.approx(load, rel=1e-12)

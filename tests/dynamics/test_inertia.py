@@ -192,8 +192,14 @@ def test_steady_spin_needs_the_centripetal_force_of_the_body(element):
     system.core.inertia(zero, v, a, "consistent", [0.0, 0.0, 0.0], force, scale, np.zeros(0))
     centripetal = np.zeros(system.n_dofs)
     system.core.body_force(
-        "centrifugal", [omega**2, 0.0, 0.0], "consistent",
-        [np.ones(system.model.mesh.n_cells, bool)], zero, np.zeros(0), 0.0, centripetal,
+        "centrifugal",
+        [omega**2, 0.0, 0.0],
+        "consistent",
+        [np.ones(system.model.mesh.n_cells, bool)],
+        zero,
         np.zeros(0),
-    )  # fmt: skip
+        0.0,
+        centripetal,
+        np.zeros(0),
+    )
     assert np.abs(force + centripetal).max() <= 1e-12 * np.abs(force).max()

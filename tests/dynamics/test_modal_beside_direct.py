@@ -29,13 +29,11 @@ def cantilever(**keys):
 LOADS = {
     "force": [NodalForce("right", 1, -0.1)],
     "force by amplitude": [NodalForce("right", 1, -0.1, "sine")],
-    "two amplitudes": [
-        NodalForce("right", 1, -0.1, "sine"), NodalForce("top", 0, 0.05, "smooth")
-    ],
+    "two amplitudes": [NodalForce("right", 1, -0.1, "sine"), NodalForce("top", 0, 0.05, "smooth")],
     "traction": [EdgeLoad("top", "traction", (0.1, -0.2))],
     "pressure": [EdgeLoad("top", "pressure", (0.2,), "sine")],
     "gravity": [BodyForce("", "gravity", (0.3, -1.0))],
-}  # fmt: skip
+}
 MODELS = {
     "plain": lambda m: None,
     "point mass": lambda m: m.point_mass("right", 2.0),
@@ -55,14 +53,19 @@ def direct(model, loads, rayleigh=(0.0, 0.0), n=40):
         ct.solve(
             model,
             ct.Dynamic(
-                period=PERIOD, increments=k * n, scheme="newmark", nlgeom=False, loads=loads,
-                rayleigh=rayleigh, error_tolerance=1.0,
+                period=PERIOD,
+                increments=k * n,
+                scheme="newmark",
+                nlgeom=False,
+                loads=loads,
+                rayleigh=rayleigh,
+                error_tolerance=1.0,
             ),
             threads=1,
             fields=False,
         ).frames[-1]
         for k in (1, 2)
-    ]  # fmt: skip
+    ]
     return (4.0 * ends[1].U - ends[0].U) / 3.0, (4.0 * ends[1].V - ends[0].V) / 3.0
 
 
@@ -148,9 +151,9 @@ def test_base_motion_with_dashpots_and_a_start_beside_an_ode_integrator():
 
     exact = solve_ivp(rate, (0.0, 2.0), [0.0, 0.0, 0.7, 0.0], rtol=1e-10, atol=1e-12)
     steps = [
-        ct.Frequency(modes=2, nlgeom=False), ct.ModalDynamic(period=2.0, increments=400,
-                                                             nlgeom=False)
-    ]  # fmt: skip
+        ct.Frequency(modes=2, nlgeom=False),
+        ct.ModalDynamic(period=2.0, increments=400, nlgeom=False),
+    ]
     frame = ct.solve(model, steps, threads=1).frames[-1]
     assert frame.U[1:, 0] == pytest.approx(exact.y[:2, -1], rel=1e-4, abs=1e-6)
     assert frame.V[1:, 0] == pytest.approx(exact.y[2:, -1], rel=1e-3, abs=1e-4)
@@ -194,9 +197,9 @@ def test_modal_stresses_are_those_of_a_linear_static_step():
     model.amplitudes["slow"] = Amplitude([0.0, 100.0], [0.0, 1.0])
     slow = [NodalForce("right", 1, -500.0, "slow")]
     steps = [
-        ct.Frequency(modes=24), ct.ModalDynamic(period=100.0, increments=4, loads=slow,
-                                                rayleigh=(2.0, 0.0))
-    ]  # fmt: skip
+        ct.Frequency(modes=24),
+        ct.ModalDynamic(period=100.0, increments=4, loads=slow, rayleigh=(2.0, 0.0)),
+    ]
     frame = ct.solve(model, steps, threads=1).frames[-1]
     assert np.abs(frame.U - still.U).max() <= 2e-2 * np.abs(still.U).max()
     for name in ("S", "E", "MISES", "ENER"):
@@ -215,9 +218,9 @@ def sweep(model, loads, modes=None, **keys):
     frames = ct.solve(model, steps, threads=1, fields=False).frames
     frames = [f for f in frames if "frequency" in f.scalars]
     f = np.array([x.scalars["frequency"] for x in frames])
-    u = np.array([x.U for x in frames]) - 1j * np.array(
-        [x.V[:, :2] for x in frames]
-    ) / (2.0 * np.pi * f[:, None, None])  # fmt: skip
+    u = np.array([x.U for x in frames]) - 1j * np.array([x.V[:, :2] for x in frames]) / (
+        2.0 * np.pi * f[:, None, None]
+    )
     return f, u, frames
 
 
@@ -251,10 +254,14 @@ def test_harmonic_base_motion_and_quadrature_loads_of_a_chain(direct):
     steps = [ct.Frequency(modes=2, nlgeom=False)]
     steps.append(
         ct.SteadyState(
-            lowest=0.5, highest=3.0, points=5, nlgeom=False, direct=direct,
+            lowest=0.5,
+            highest=3.0,
+            points=5,
+            nlgeom=False,
+            direct=direct,
             imaginary_loads=[NodalForce([2], 0, 4.0)],
         )
-    )  # fmt: skip
+    )
     frames = ct.solve(model, steps, threads=1).frames
     frames = [f for f in frames if "frequency" in f.scalars]
     assert len(frames) > 4
@@ -279,10 +286,14 @@ def test_ranges_of_modal_damping():
     steps = [
         ct.Frequency(modes=2, nlgeom=False),
         ct.SteadyState(
-            lowest=0.1, highest=4.0, points=41, nlgeom=False, loads=[NodalForce([1], 0, 1.0)],
+            lowest=0.1,
+            highest=4.0,
+            points=41,
+            nlgeom=False,
+            loads=[NodalForce([1], 0, 1.0)],
             damping=[(1, 1, 0.01), (2, 2, 0.04)],
         ),
-    ]  # fmt: skip
+    ]
     results = ct.solve(model, steps, threads=1)
     modes = results.modes[0]
     frames = [f for f in results.frames if "frequency" in f.scalars]

@@ -43,8 +43,9 @@ def test_base_has_the_acceleration_of_a_smooth_amplitude(scheme, rigid):
         node = model.mesh.nodes_of("left")[0]
         t = np.array([f.time for f in frames])
         v, a = (np.array([getattr(f, name)[node, 1] for f in frames]) for name in "VA")
-        errors.append((np.abs(v - 2.0 * np.sin(2.0 * t)).max(),
-                       np.abs(a - 4.0 * np.cos(2.0 * t)).max()))  # fmt: skip
+        errors.append(
+            (np.abs(v - 2.0 * np.sin(2.0 * t)).max(), np.abs(a - 4.0 * np.cos(2.0 * t)).max())
+        )
     coarse, fine = np.array(errors)
     # The last frame is a one-sided difference, with the error 11/12 h^2 a(4).
     assert (fine < 0.04).all()
@@ -92,8 +93,9 @@ def on_a_moving_base(support):
         node = ct.mesh.add_node(model.mesh, -0.1, 0.1)
         model.rigid(base, node)
         base = np.array([node])
-    model.fix(base, x=0.0, y=0.01, rotation=True if support == "rigid face" else None,
-              amplitude="base")  # fmt: skip
+    model.fix(
+        base, x=0.0, y=0.01, rotation=True if support == "rigid face" else None, amplitude="base"
+    )
     return model, base
 
 
@@ -106,12 +108,13 @@ def test_modal_base_moves_to_the_last_frame_of_every_step(support, rayleigh):
     """
     model, base = on_a_moving_base(support)
     model.amplitudes["base"].total_time = True
-    steps = [ct.ModalDynamic(period=0.5, increments=100, residual=True, rayleigh=rayleigh)
-             for _ in range(2)]  # fmt: skip
+    steps = [
+        ct.ModalDynamic(period=0.5, increments=100, residual=True, rayleigh=rayleigh)
+        for _ in range(2)
+    ]
     modal = ct.solve(model, [ct.Frequency(modes=16), *steps], fields=False).frames[-200:]
     model, base = on_a_moving_base(support)
-    step = ct.Dynamic(period=1.0, increments=200, scheme="newmark", nlgeom=False,
-                      rayleigh=rayleigh)  # fmt: skip
+    step = ct.Dynamic(period=1.0, increments=200, scheme="newmark", nlgeom=False, rayleigh=rayleigh)
     direct = ct.solve(model, step, fields=False).frames[-200:]
     time = 0.005 * np.arange(1, 201)
     v, a = (np.array([getattr(f, name)[base[0], 1] for f in modal]) for name in "VA")

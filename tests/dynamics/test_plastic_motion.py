@@ -52,9 +52,13 @@ def test_yielding_takes_energy_and_never_gives_it_back(element, scheme):
 def test_free_body_that_yields_keeps_its_momenta():
     model = struck("Q4I", free=True)
     results = run(
-        model, period=1.0, increments=200, scheme="energy_momentum", max_iterations=40,
+        model,
+        period=1.0,
+        increments=200,
+        scheme="energy_momentum",
+        max_iterations=40,
         tolerance=1e-11,
-    )  # fmt: skip
+    )
     late = np.array([f.time for f in results.frames[1:]]) > 0.41
     size = np.sqrt(2.0 * column(results, "kinetic energy").max() * 2.0)
     for name in ("momentum x", "momentum y", "angular momentum"):

@@ -25,9 +25,13 @@ def run(model, **keys):
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_energy_momentum_scheme_conserves_energy_and_momenta(element, strain, mass):
     results = run(
-        flyer(element, strain), period=2.0, increments=40, scheme="energy_momentum", mass=mass,
+        flyer(element, strain),
+        period=2.0,
+        increments=40,
+        scheme="energy_momentum",
+        mass=mass,
         tolerance=1e-11,
-    )  # fmt: skip
+    )
     kinetic, angular = column(results, "kinetic energy"), column(results, "angular momentum")
     assert np.ptp(column(results, "energy balance")) <= 1e-11 * kinetic.max()
     assert np.ptp(angular) <= 1e-12 * np.abs(angular).max()
@@ -52,10 +56,15 @@ def test_a_second_step_of_the_conserving_scheme_goes_on(element, rigid):
         if rigid or element != "Q4I":
             model.force([tip], moment=5.0)
         steps = [
-            ct.Dynamic(period=p, increments=round(100 * p), scheme="energy_momentum",
-                       tolerance=1e-12, max_iterations=40)
+            ct.Dynamic(
+                period=p,
+                increments=round(100 * p),
+                scheme="energy_momentum",
+                tolerance=1e-12,
+                max_iterations=40,
+            )
             for p in periods
-        ]  # fmt: skip
+        ]
         results = ct.solve(model, steps, threads=1, fields=False)
         last = results.frames[-1]
         ends.append((last.U, [last.scalars[f"momentum {axis}"] for axis in "xy"]))

@@ -30,8 +30,9 @@ def errors(scheme, n, steps=1, element="Q4I", **keys):
     exact = ARM * np.array([np.cos(SPIN) - 1.0, np.sin(SPIN)])
     momentum = max(
         np.hypot(f.scalars["momentum x"], f.scalars["momentum y"])
-        for f in frames if "momentum x" in f.scalars
-    )  # fmt: skip
+        for f in frames
+        if "momentum x" in f.scalars
+    )
     return np.abs(frames[-1].U[4] - exact).max(), momentum, frames
 
 
@@ -39,8 +40,9 @@ def errors(scheme, n, steps=1, element="Q4I", **keys):
 def test_first_accelerations_of_a_rigid_body_are_centripetal(element):
     """Closed form: a = -w^2 r at every node of a block that turns steadily."""
     if element == "T3":
-        model = ct.Model(with_nodes(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1, cell="tri3"),
-                                    (0.5 + ARM, 0.5)))  # fmt: skip
+        model = ct.Model(
+            with_nodes(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1, cell="tri3"), (0.5 + ARM, 0.5))
+        )
         model.section("all", element=element, material=ct.Elastic(E=1e3, nu=0.3, rho=1.0))
         model.rigid(np.arange(4), 4)
         model.velocity(spin=SPIN, about=(0.5, 0.5))

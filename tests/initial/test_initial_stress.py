@@ -103,8 +103,12 @@ def test_prestress_raises_the_frequency(kind: str) -> None:
     if kind == "BEAM":
         n = 40
         model = ct.Model(chain(n, length))
-        model.beam(np.arange(n), material=ct.Elastic(young, 0.0, rho=rho), area=depth,
-                   inertia=depth**3 / 12.0)  # fmt: skip
+        model.beam(
+            np.arange(n),
+            material=ct.Elastic(young, 0.0, rho=rho),
+            area=depth,
+            inertia=depth**3 / 12.0,
+        )
         ends = [0, n]
     else:
         mesh = ct.mesh.rectangle(length, depth, nx=40, ny=1, cell="quad8", origin=(0.0, -0.5))

@@ -116,8 +116,9 @@ def test_plastic_law_below_yield_is_the_elastic_one(plane: str) -> None:
 
 def test_held_bar_yields_when_it_is_heated() -> None:
     """Plane strain, free across: sxx = szz, so that yield is at that stress itself."""
-    model = plate("Q4I", ct.Mises(E, NU, yield_stress=1.0, isotropic=0.0, expansion=ALPHA),
-                  plane="strain")  # fmt: skip
+    model = plate(
+        "Q4I", ct.Mises(E, NU, yield_stress=1.0, isotropic=0.0, expansion=ALPHA), plane="strain"
+    )
     for side in ("left", "right"):
         model.fix(side, y=None)
     model.fix("bottom", x=None)
@@ -154,9 +155,11 @@ def test_orthotropic_plane_strain_against_the_inverted_compliance() -> None:
     own = np.linalg.solve(material.compliance(), [-2e-3, -6e-3, -4e-3, 0.0])
     c, s = np.cos(angle), np.sin(angle)
     expected = [
-        c * c * own[0] + s * s * own[1], s * s * own[0] + c * c * own[1], own[2],
+        c * c * own[0] + s * s * own[1],
+        s * s * own[0] + c * c * own[1],
+        own[2],
         c * s * (own[0] - own[1]),
-    ]  # fmt: skip
+    ]
     found = stresses(frame)
     # The middle of the plate moves a little: it is not symmetric to the fibres.
     assert found.mean(axis=0) == pytest.approx(expected, rel=2e-2)
@@ -215,8 +218,9 @@ def test_amplitude_and_steps_carry_the_temperature() -> None:
     for side in ("left", "right"):
         model.fix(side, y=None)
     model.fix("bottom", x=None)
-    model.amplitudes["UP"] = ct.Amplitude(np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0, 0.5]),
-                                          name="UP")  # fmt: skip
+    model.amplitudes["UP"] = ct.Amplitude(
+        np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0, 0.5]), name="UP"
+    )
     model.temperature(10.0, amplitude="UP")
     second = ct.Static(nlgeom=False, increments=2)
     steps = [ct.Static(nlgeom=False, increments=4), second]
@@ -258,8 +262,12 @@ def test_heated_column_buckles(element: str) -> None:
         from support.lines import chain
 
         model = ct.Model(chain(20, length))
-        model.beam(np.arange(20), material=ct.Elastic(E, 0.0, expansion=ALPHA), area=depth,
-                   inertia=depth**3 / 12.0)  # fmt: skip
+        model.beam(
+            np.arange(20),
+            material=ct.Elastic(E, 0.0, expansion=ALPHA),
+            area=depth,
+            inertia=depth**3 / 12.0,
+        )
         ends = [0, 20]
     else:
         mesh = ct.mesh.rectangle(length, depth, nx=40, ny=1, cell="quad8", origin=(0.0, -0.5))

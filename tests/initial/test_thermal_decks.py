@@ -98,10 +98,15 @@ def test_expansion_as_a_table_and_along_axes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ["eall, 10., 0., 5.", "eall, 10., 0., 0., 5.", "eall, 10., 0., 0., 5., 0., 0.",
-             "1, 1, 10., 0., 0., 5., 0., 0.\n2, 1, 10., 0., 0., 5., 0., 0.\n"
-             "2, 2, 10., 0., 0., 5., 0., 0."]
-)  # fmt: skip
+    "line",
+    [
+        "eall, 10., 0., 5.",
+        "eall, 10., 0., 0., 5.",
+        "eall, 10., 0., 0., 5., 0., 0.",
+        "1, 1, 10., 0., 0., 5., 0., 0.\n2, 1, 10., 0., 0., 5., 0., 0.\n"
+        "2, 2, 10., 0., 0., 5., 0., 0.",
+    ],
+)
 def test_initial_stress_of_both_programs(tmp_path: Path, line: str) -> None:
     deck = DECK.replace("*TEMPERATURE\nnall, 120.\n", "*TEMPERATURE\nnall, 20.\n")
     deck = deck.replace("*STEP\n", f"*INITIAL CONDITIONS, TYPE=STRESS\n{line}\n*STEP\n", 1)

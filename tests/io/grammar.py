@@ -13,20 +13,49 @@ from corota.io.deck.keywords import KEYWORDS
 NAMES = ["nall", "eall", "TIP", "END", "steel", "1", "2", "a", "s", "up"]
 VALUES = ["1", "2", "3", "4", "5", "6", "20", ".5", "1.", "-2.", "1e-3", "0", "210000.", ".3"]
 PARAMETERS = {
-    "TYPE": ["CPS4", "CPS3", "CPE8R", "Q4D", "OPT", "ELEMENT", "NODE", "R", "ISOTROPIC", "C",
-             "VELOCITY", "ENGINEERING CONSTANTS", "LAMINA"],
+    "TYPE": [
+        "CPS4",
+        "CPS3",
+        "CPE8R",
+        "Q4D",
+        "OPT",
+        "ELEMENT",
+        "NODE",
+        "R",
+        "ISOTROPIC",
+        "C",
+        "VELOCITY",
+        "ENGINEERING CONSTANTS",
+        "LAMINA",
+    ],
     "HARDENING": ["ISOTROPIC", "KINEMATIC", "COMBINED"],
     "OP": ["NEW", "MOD"],
     "PLANE": ["STRESS", "STRAIN"],
     "LOCALSTRAIN": ["SIMPLIFIED", "MODIFIED", "LINEAR", "LOGARITHMIC", "GREEN LAGRANGE"],
-}  # fmt: skip
+}
 PROCEDURES = (
-    "STATIC", "STATIC", "BUCKLE", "DYNAMIC", "FREQUENCY", "MODALDYNAMIC", "STEADYSTATEDYNAMICS",
-)  # fmt: skip
+    "STATIC",
+    "STATIC",
+    "BUCKLE",
+    "DYNAMIC",
+    "FREQUENCY",
+    "MODALDYNAMIC",
+    "STEADYSTATEDYNAMICS",
+)
 IN_STEPS = (
-    "BOUNDARY", "CLOAD", "CLOAD", "DLOAD", "DSLOAD", "CONTROLS", "MODALDAMPING", "NODEPRINT",
-    "ELPRINT", "NODEFILE", "ELFILE", "OUTPUT",
-)  # fmt: skip
+    "BOUNDARY",
+    "CLOAD",
+    "CLOAD",
+    "DLOAD",
+    "DSLOAD",
+    "CONTROLS",
+    "MODALDAMPING",
+    "NODEPRINT",
+    "ELPRINT",
+    "NODEFILE",
+    "ELFILE",
+    "OUTPUT",
+)
 #: Share of parameters and fields that are of no sense.
 ODD = 0.06
 

@@ -59,9 +59,16 @@ def _binary_old() -> bytes:
     cells += struct.pack("<iii", 2, 2, 2)
     cells += struct.pack("<6i", 2, 1, 1, 2, 3, 6) + struct.pack("<6i", 3, 1, 1, 2, 6, 5)
     return (
-        b"$MeshFormat\n2.2 1 8\n" + one + b"\n$EndMeshFormat\n" + NAMES.encode()
-        + b"$Nodes\n6\n" + nodes + b"\n$EndNodes\n$Elements\n3\n" + cells + b"\n$EndElements\n"
-    )  # fmt: skip
+        b"$MeshFormat\n2.2 1 8\n"
+        + one
+        + b"\n$EndMeshFormat\n"
+        + NAMES.encode()
+        + b"$Nodes\n6\n"
+        + nodes
+        + b"\n$EndNodes\n$Elements\n3\n"
+        + cells
+        + b"\n$EndElements\n"
+    )
 
 
 def _binary_new() -> bytes:
@@ -74,10 +81,18 @@ def _binary_new() -> bytes:
     cells = struct.pack("<4Q", 1, 2, 1, 2) + struct.pack("<iiiQ", 2, 1, 3, 2)
     cells += struct.pack("<5Q", 1, 1, 2, 5, 4) + struct.pack("<5Q", 2, 2, 3, 6, 5)
     return (
-        b"$MeshFormat\n4.1 1 8\n" + one + b"\n$EndMeshFormat\n" + NAMES.encode()
-        + b"$Entities\n" + entities + b"\n$EndEntities\n$Nodes\n" + nodes
-        + b"\n$EndNodes\n$Elements\n" + cells + b"\n$EndElements\n"
-    )  # fmt: skip
+        b"$MeshFormat\n4.1 1 8\n"
+        + one
+        + b"\n$EndMeshFormat\n"
+        + NAMES.encode()
+        + b"$Entities\n"
+        + entities
+        + b"\n$EndEntities\n$Nodes\n"
+        + nodes
+        + b"\n$EndNodes\n$Elements\n"
+        + cells
+        + b"\n$EndElements\n"
+    )
 
 
 SEEDS = (OLD, NEW, _binary_old(), _binary_new())

@@ -47,10 +47,13 @@ def test_the_first_surface_is_the_slave(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "method"),
     [
-        ("NODE TO SURFACE", "node_to_segment"), ("SURFACE TO SURFACE", "mortar"),
-        ("MORTAR", "mortar"), ("LINMORTAR", "mortar"), ("PGLINMORTAR", "mortar"),
+        ("NODE TO SURFACE", "node_to_segment"),
+        ("SURFACE TO SURFACE", "mortar"),
+        ("MORTAR", "mortar"),
+        ("LINMORTAR", "mortar"),
+        ("PGLINMORTAR", "mortar"),
     ],
-)  # fmt: skip
+)
 def test_types(tmp_path: Path, name: str, method: str) -> None:
     lines = INTERACTION + PAIR.replace("SURFACE TO SURFACE", name)
     assert read(tmp_path, deck(lines)).contacts[0].method == method
@@ -179,20 +182,24 @@ FAULTS = [
     (INTERACTION + "*FRICTION\n-.3\n", "-.3", "must be >= 0"),
     (
         INTERACTION + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n-5.\n" + PAIR,
-        "*SURFACE BEHAVIOR", "must be > 0",
+        "*SURFACE BEHAVIOR",
+        "must be > 0",
     ),
     (
         INTERACTION + "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=CUBIC\n-5.\n" + PAIR,
-        "CUBIC", "expected HARD, LINEAR",
+        "CUBIC",
+        "expected HARD, LINEAR",
     ),
     (
         INTERACTION + PAIR + "*CLEARANCE, SLAVE=high, MASTER=low, VALUE=.1\n",
-        "*CLEARANCE", "no *CONTACT PAIR of high and low",
+        "*CLEARANCE",
+        "no *CONTACT PAIR of high and low",
     ),
     (INTERACTION + PROFILE + PAIR.replace("Low, High", "Die, Low"), "Die, Low", "cannot be the sl"),
     (
         INTERACTION + PROFILE.replace("2., 3.\n", "2., 3.5\n") + PAIR.replace("High", "Die"),
-        "CIRCL", "equally far",
+        "CIRCL",
+        "equally far",
     ),
     (PROFILE.replace("START, 3., 4.\n", ""), "LINE", "comes first"),
     (PROFILE.replace("CIRCL", "PARAB"), "PARAB", "START, LINE or CIRCL"),
@@ -201,11 +208,12 @@ FAULTS = [
     ("*TIE, NAME=T\nLow\n", "Low\n", "master surface is missing"),
     (
         INTERACTION + "*SURFACE, NAME=One, TYPE=NODE\n5\n" + PAIR.replace("Low", "One"),
-        "One, High", "no outer element edge",
+        "One, High",
+        "no outer element edge",
     ),
     ("*CONTACT\n", "*CONTACT", "not supported"),
     (INTERACTION + "*FRICTION, ROUGH\n", "ROUGH", "ROUGH"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("lines", "place", "text"), FAULTS)

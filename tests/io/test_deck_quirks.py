@@ -53,9 +53,11 @@ def test_gmsh_lines_become_edges_and_nodes(tmp_path: Path) -> None:
 
 
 def test_a_set_of_lines_with_a_section_is_a_truss(tmp_path: Path) -> None:
-    text = GMSH + SECTION.replace("eall", "Surface1") + (
-        "*SOLID SECTION, ELSET=foot, MATERIAL=steel\n0.5\n"
-    )  # fmt: skip
+    text = (
+        GMSH
+        + SECTION.replace("eall", "Surface1")
+        + ("*SOLID SECTION, ELSET=foot, MATERIAL=steel\n0.5\n")
+    )
     model = read(tmp_path, text)
     assert [(s.element, s.profile[0]) for s in model.sections[1:]] == [("TRUSS", 0.5)]
     assert model.mesh.cell_sets["foot"].tolist() == [0]

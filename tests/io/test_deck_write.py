@@ -30,9 +30,17 @@ def sections(model: ct.Model) -> list[tuple[object, ...]]:
         constants = tuple(np.round(s.material.parameters(), 10))
         for label in model.mesh.cell_labels[cells]:
             found.append(
-                (label, s.element, constants, s.material.rho, s.thickness, s.plane,
-                 s.local_strain, round(s.orientation, 12))
-            )  # fmt: skip
+                (
+                    label,
+                    s.element,
+                    constants,
+                    s.material.rho,
+                    s.thickness,
+                    s.plane,
+                    s.local_strain,
+                    round(s.orientation, 12),
+                )
+            )
     return sorted(found)
 
 
@@ -74,15 +82,27 @@ def same(a: ct.Model, b: ct.Model) -> None:
         assert conditions(a, one.supports) == conditions(b, two.supports)  # type: ignore[arg-type]
         assert conditions(a, one.loads) == conditions(b, two.loads)  # type: ignore[arg-type]
         for name in (
-            "nlgeom", "period", "first_increment", "smallest_increment", "largest_increment",
-            "fixed_increments", "max_increments", "new_supports", "new_loads", "ramp",
-            "tolerance", "max_iterations",
-        ):  # fmt: skip
+            "nlgeom",
+            "period",
+            "first_increment",
+            "smallest_increment",
+            "largest_increment",
+            "fixed_increments",
+            "max_increments",
+            "new_supports",
+            "new_loads",
+            "ramp",
+            "tolerance",
+            "max_iterations",
+        ):
             assert getattr(one, name) == getattr(two, name)
         for old, new in zip(one.outputs, two.outputs, strict=True):
             assert (old.kind, old.variables, old.frequency, old.totals) == (
-                new.kind, new.variables, new.frequency, new.totals,
-            )  # fmt: skip
+                new.kind,
+                new.variables,
+                new.frequency,
+                new.totals,
+            )
     assert {k.upper() for k in a.amplitudes} == {k.upper() for k in b.amplitudes}
 
 

@@ -87,9 +87,14 @@ def run(path: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
 
 @pytest.mark.parametrize(("code", "line", "words", "old", "new"), CASES)
 def test_a_fault_has_its_exit_code_and_place(
-    deck: Path, capsys: pytest.CaptureFixture[str], code: int, line: int, words: str, old: str,
+    deck: Path,
+    capsys: pytest.CaptureFixture[str],
+    code: int,
+    line: int,
+    words: str,
+    old: str,
     new: str,
-) -> None:  # fmt: skip
+) -> None:
     assert old in DECK
     deck.write_text(DECK.replace(old, new, 1))
     found, said = run(deck, capsys)
@@ -108,15 +113,27 @@ HARDLY_DECKS = [
     ("crlf and tabs", DECK.replace("\n", "\r\n").replace(", ", ",\t").encode(), 0),
     ("no end of line", DECK.rstrip().encode(), 0),
     ("no load", DECK.replace("*CLOAD\n3, 2, -5.\n", "").encode(), 0),
-    ("large numbers", DECK.replace("3, 2., 0.", "2147483647, 2., 0.")
-     .replace("2, 2, 3, 6", "2, 2, 2147483647, 6")
-     .replace("\n3, 2, -5.", "\n2147483647, 2, -5.").encode(), 0),
+    (
+        "large numbers",
+        DECK.replace("3, 2., 0.", "2147483647, 2., 0.")
+        .replace("2, 2, 3, 6", "2, 2, 2147483647, 6")
+        .replace("\n3, 2, -5.", "\n2147483647, 2, -5.")
+        .encode(),
+        0,
+    ),
     ("one line of a megabyte", (DECK + "**" + "x" * 1_000_000 + "\n").encode(), 0),
-    ("many sets", (DECK.replace("*BOUNDARY", "".join(
-        f"*NSET, NSET=s{i}\n1\n" for i in range(2000)) + "*BOUNDARY", 1)).encode(), 0),
+    (
+        "many sets",
+        (
+            DECK.replace(
+                "*BOUNDARY", "".join(f"*NSET, NSET=s{i}\n1\n" for i in range(2000)) + "*BOUNDARY", 1
+            )
+        ).encode(),
+        0,
+    ),
     ("not held against turning", DECK.replace("4, 1\n", "").encode(), 3),
     ("too large a load", DECK.replace("3, 2, -5.", "3, 2, -5e9").encode(), 4),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(

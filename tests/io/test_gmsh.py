@@ -56,9 +56,14 @@ def plate(shape: str, order: int) -> None:
     gmsh.option.setNumber("Mesh.SecondOrderIncomplete", int(shape == "serendipity"))
     gmsh.option.setNumber("Mesh.ElementOrder", order)
     for dimension, tags, name in (
-        (2, [one], "one"), (2, [two], "two"), (2, [one, two], "both"), (1, [f], "left side"),
-        (1, [d, e], "top"), (1, [g], "seam"), (0, [points[5]], "corner"),
-    ):  # fmt: skip
+        (2, [one], "one"),
+        (2, [two], "two"),
+        (2, [one, two], "both"),
+        (1, [f], "left side"),
+        (1, [d, e], "top"),
+        (1, [g], "seam"),
+        (0, [points[5]], "corner"),
+    ):
         gmsh.model.addPhysicalGroup(dimension, tags, name=name)
     gmsh.model.mesh.generate(2)
 

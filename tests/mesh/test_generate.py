@@ -78,8 +78,10 @@ def test_mapped_follows_curved_sides() -> None:
             lambda t: (t, 1.0),
             lambda t: (0.0, t),
         ],
-        6, 4, "quad9",
-    )  # fmt: skip
+        6,
+        4,
+        "quad9",
+    )
     check(found)
     x, y = found.points[found.node_sets["bottom"]].T
     assert np.allclose(y, -0.2 * np.sin(np.pi * x))

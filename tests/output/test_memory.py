@@ -44,9 +44,12 @@ def test_an_address_limit_is_seen_before_it_is_met(tmp_path: Path, left: int, co
     model.steps.append(ct.Static(increments=1))
     write(model, tmp_path / "strip.inp")
     done = subprocess.run(
-        [sys.executable, "-c", RUN, str(left)], cwd=tmp_path, capture_output=True, text=True,
+        [sys.executable, "-c", RUN, str(left)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
         check=False,
-    )  # fmt: skip
+    )
     assert done.returncode == code, done.stderr
     assert (tmp_path / "strip.vtkhdf").exists() == (code == 0)
     if code:

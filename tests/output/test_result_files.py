@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from corota.errors import CorotaError, FileError, InputError
-from corota.io.atomic_file import TextFile, TwinFile
+from corota.io.atomic_file import AtomicFile, TextFile
 from corota.io.job import JobFiles
 from corota.io.result_reader import read_results
 from corota.io.writers import WRITERS
@@ -229,7 +229,7 @@ def test_status_file_marks_the_attempt_given_up(model, fake, tmp_path):
 
 
 def test_twin_file_shows_only_committed_states(tmp_path):
-    twin = TwinFile(tmp_path / "t")
+    twin = AtomicFile(tmp_path / "t")
     rng = random.Random(4)
     image = bytearray()
     for _ in range(30):
@@ -255,7 +255,7 @@ def test_twin_file_without_hard_links(tmp_path, monkeypatch):
         raise OSError("no links here")
 
     monkeypatch.setattr(os, "link", refuse)
-    twin = TwinFile(tmp_path / "t")
+    twin = AtomicFile(tmp_path / "t")
     for number in range(4):
         twin.seek(number)
         twin.write(b"%d" % number)

@@ -84,7 +84,7 @@ def test_factors_are_those_of_the_dense_pencil():
     values = system.evaluate(u, 0.0).values
     response, _ = system.correct(system.evaluate(u, 0.0), force, move)
     change = _derivative(system, u, values, response, loads)
-    free = np.flatnonzero(~system.conditions.held)
+    free = np.flatnonzero(~system.conditions.constrained)
     n = system.n_dofs
 
     def dense(data):
@@ -160,7 +160,7 @@ def test_pivots_count_dense_negative_eigenvalues_along_a_path(seed):
     results = ct.solve(model, ct.Static(path=path), fields=False)
     system = System(model, Faer())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
-    free = np.flatnonzero(~system.conditions.held)
+    free = np.flatnonzero(~system.conditions.constrained)
     n = system.n_dofs
     counts = set()
     for frame in results.frames[1:]:

@@ -42,9 +42,11 @@ def test_the_path_is_the_exact_one_whatever_the_first_increment(follow, first, s
         exact = exact_load(rise, -increment.point.u[3]) / 1e-3
         assert increment.point.factor == pytest.approx(exact, abs=NEWTON)
     best = minimize_scalar(
-        lambda w: -exact_load(rise, w), bounds=(0, rise), method="bounded",
+        lambda w: -exact_load(rise, w),
+        bounds=(0, rise),
+        method="bounded",
         options={"xatol": 1e-13},
-    )  # fmt: skip
+    )
     points = [i for i in path if i.critical]
     assert [i.critical.kind for i in points] == ["limit", "limit"]
     assert points[0].point.factor == pytest.approx(-best.fun / 1e-3, rel=NEWTON)
@@ -115,7 +117,7 @@ def test_negative_pivots_are_the_negative_eigenvalues(follow):
         load[5] = -0.01
         system = Truss(joints, bars, [0, 1, 2 * n - 2, 2 * n - 1], load)
         for increment in follow(system, increments=25):
-            free = ~system.held
+            free = ~system.constrained
             matrix = system.evaluate(increment.point.u, increment.point.factor).matrix
             values = np.linalg.eigvalsh(matrix[np.ix_(free, free)])
             if increment.critical is None:

@@ -21,10 +21,16 @@ def element(name: str, measure: str, u: np.ndarray) -> tuple[np.ndarray, np.ndar
     mesh = ct.mesh.mapped([(0, 0), (2, 0.3), (2.2, 1.6), (-0.1, 1.2)], 1, 1, CELL[name])
     law = ct.Mises(E=1000.0, nu=0.45, yield_stress=8.0, isotropic=40.0)
     block = {
-        "element": name, "law": law.law, "parameters": law.parameters(), "plane": "strain",
-        "local_strain": measure, "thickness": 1.3, "rho": 0.0, "mean_dilatation": True,
+        "element": name,
+        "law": law.law,
+        "parameters": law.parameters(),
+        "plane": "strain",
+        "local_strain": measure,
+        "thickness": 1.3,
+        "rho": 0.0,
+        "mean_dilatation": True,
         "nodes": mesh.cells[0].nodes[0].astype(np.uint32),
-    }  # fmt: skip
+    }
     core = _core.Problem(mesh.points, [block], np.zeros(0, np.uint8))
     n = core.n_dofs
     force, scale, values = np.empty(n), np.empty(n), np.empty(len(core.indices))

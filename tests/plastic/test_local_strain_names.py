@@ -52,10 +52,13 @@ def test_an_unknown_name_is_refused_with_the_nearest(wrong, meant):
 @pytest.mark.parametrize(
     ("spelled", "name"),
     [
-        ("LINEAR", "linear"), ("SIMPLIFIED", "linear"), ("LOGARITHMIC", "logarithmic"),
-        ("MODIFIED", "logarithmic"), ("Green Lagrange", "green_lagrange"),
+        ("LINEAR", "linear"),
+        ("SIMPLIFIED", "linear"),
+        ("LOGARITHMIC", "logarithmic"),
+        ("MODIFIED", "logarithmic"),
+        ("Green Lagrange", "green_lagrange"),
     ],
-)  # fmt: skip
+)
 def test_decks_take_the_names_and_keep_them(spelled, name, tmp_path):
     path = tmp_path / "deck.inp"
     ct.io.formats.write(strip(ELASTIC, "logarithmic"), path)

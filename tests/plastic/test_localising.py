@@ -95,10 +95,15 @@ def least(element, n, material, path):
     mesh = ct.mesh.rectangle(1.0, 1.0, n, n, CELL[element])
     x = mesh.points
     block = {
-        "element": element, "law": material.law, "parameters": material.parameters(),
-        "plane": "stress", "local_strain": "logarithmic", "thickness": 1.0, "rho": 0.0,
+        "element": element,
+        "law": material.law,
+        "parameters": material.parameters(),
+        "plane": "stress",
+        "local_strain": "logarithmic",
+        "thickness": 1.0,
+        "rho": 0.0,
         "nodes": np.asarray(mesh.cells[0].nodes, np.uint32).ravel(),
-    }  # fmt: skip
+    }
     core = _core.Problem(x, [block], np.zeros(0, np.uint8))
     size = core.n_dofs
     force, scale, values = np.empty(size), np.empty(size), np.empty(len(core.indices))

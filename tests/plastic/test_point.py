@@ -19,7 +19,9 @@ HARDENING = {
     "kinematic": {"yield_stress": 250.0, "kinematic": 4000.0},
     "combined": {"yield_stress": 250.0, "isotropic": 1000.0, "kinematic": 3000.0},
     "voce and kinematic": {
-        "yield_stress": 250.0, "isotropic": ct.Voce(120.0, 300.0), "kinematic": 3000.0,
+        "yield_stress": 250.0,
+        "isotropic": ct.Voce(120.0, 300.0),
+        "kinematic": 3000.0,
     },
     "chaboche": {"yield_stress": 250.0, "chaboche": [(60000.0, 400.0), (9000.0, 0.0)]},
     "chaboche and voce": {
@@ -27,7 +29,7 @@ HARDENING = {
         "isotropic": ct.Voce(50.0, 30.0),
         "chaboche": [(60000.0, 400.0), (20000.0, 90.0), (3000.0, 3.0)],
     },
-}  # fmt: skip
+}
 
 
 def material(name: str) -> ct.Mises:

@@ -27,8 +27,11 @@ def run(code: str, seconds: float = 60.0) -> str:
     """Standard output of a program in a process of its own."""
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", MODEL + code],
-        capture_output=True, text=True, timeout=seconds, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=seconds,
+        check=False,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

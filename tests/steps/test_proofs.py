@@ -58,8 +58,12 @@ def shapes(r: float, s: float) -> tuple[np.ndarray, np.ndarray]:
     n, d = [], []
     for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
         n.append(0.25 * (1 + a * r) * (1 + b * s) * (a * r + b * s - 1))
-        d.append((0.25 * a * (1 + b * s) * (2 * a * r + b * s),
-                  0.25 * b * (1 + a * r) * (2 * b * s + a * r)))  # fmt: skip
+        d.append(
+            (
+                0.25 * a * (1 + b * s) * (2 * a * r + b * s),
+                0.25 * b * (1 + a * r) * (2 * b * s + a * r),
+            )
+        )
     for a, b in ((0, -1), (1, 0), (0, 1), (-1, 0)):
         if a == 0:
             n.append(0.5 * (1 - r * r) * (1 + b * s))

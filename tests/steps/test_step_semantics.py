@@ -147,8 +147,12 @@ def test_total_time_runs_on_for_supports_and_temperatures(tmp_path: Path) -> Non
 
 
 #: Cards that press on the same edge.
-SAME_EDGE = ("*DLOAD\n1, P3, {}", "*DLOAD\nOTHER, P3, {}", "*DSLOAD\nLID, P, {}",
-             "*DSLOAD\nAGAIN, P, {}")  # fmt: skip
+SAME_EDGE = (
+    "*DLOAD\n1, P3, {}",
+    "*DLOAD\nOTHER, P3, {}",
+    "*DSLOAD\nLID, P, {}",
+    "*DSLOAD\nAGAIN, P, {}",
+)
 
 
 @pytest.mark.parametrize("first", SAME_EDGE)

@@ -4,9 +4,16 @@
 import numpy as np
 
 CELLS = {
-    "T3": "tri3", "OPT": "tri3", "T6": "tri6", "Q4": "quad4", "Q4I": "quad4", "Q4D": "quad4",
-    "Q8": "quad8", "Q8R": "quad8", "Q9": "quad9",
-}  # fmt: skip
+    "T3": "tri3",
+    "OPT": "tri3",
+    "T6": "tri6",
+    "Q4": "quad4",
+    "Q4I": "quad4",
+    "Q4D": "quad4",
+    "Q8": "quad8",
+    "Q8R": "quad8",
+    "Q9": "quad9",
+}
 
 
 def stresses(results, turn):

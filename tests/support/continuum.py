@@ -15,9 +15,18 @@ from scipy.sparse.linalg import spsolve
 from corota.verification.shapes import QUAD, TRIANGLE, gauss, shape
 
 __all__ = [
-    "QUAD", "RULE", "TRIANGLE", "biot_linear", "element", "fourth", "gauss", "moduli",
-    "saint_venant_kirchhoff", "shape", "solve",
-]  # fmt: skip
+    "QUAD",
+    "RULE",
+    "TRIANGLE",
+    "biot_linear",
+    "element",
+    "fourth",
+    "gauss",
+    "moduli",
+    "saint_venant_kirchhoff",
+    "shape",
+    "solve",
+]
 
 #: Quadrature of the package's elements, for agreement to rounding.
 RULE = {
@@ -44,9 +53,11 @@ def fourth(c):
     """Moduli as a tensor C_ijkl."""
     row = {(0, 0): 0, (1, 1): 1, (0, 1): 2, (1, 0): 2}
     return np.array(
-        [[[[c[row[i, j], row[k, m]] for m in (0, 1)] for k in (0, 1)] for j in (0, 1)]
-         for i in (0, 1)]
-    )  # fmt: skip
+        [
+            [[[c[row[i, j], row[k, m]] for m in (0, 1)] for k in (0, 1)] for j in (0, 1)]
+            for i in (0, 1)
+        ]
+    )
 
 
 def saint_venant_kirchhoff(f, c):

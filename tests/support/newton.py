@@ -7,7 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import corota as ct
-from corota.results.observer import Iteration, Silent
+from corota.results.observer import BaseObserver, Iteration
 
 if TYPE_CHECKING:
     from corota.model.steps import Step
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 ROUNDING = 1e-11
 
 
-class Residuals(Silent):
+class Residuals(BaseObserver):
     """Residuals of every attempt, by step, increment and attempt."""
 
     def __init__(self) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from corota.analysis.newton import Judgement
+from corota.analysis.newton import ResidualNorms
 from corota.errors import SingularError
 
 
@@ -44,8 +44,8 @@ class Truss:
         self.bars, self.load = bars, np.asarray(load, float)
         n = self.load.size
         self.move = np.zeros(n) if move is None else np.asarray(move, float)
-        self.held = np.zeros(n, bool)
-        self.held[held] = True
+        self.constrained = np.zeros(n, bool)
+        self.constrained[held] = True
         self.n_dofs = n
         self.springs = springs or {}
         self.counted = np.ones(n, bool)
@@ -73,20 +73,20 @@ class Truss:
             matrix[dof, dof] += stiffness
         return State(force, step_time * self.load, matrix)
 
-    def judge(self, at, u):
+    def residual_norms(self, at, u):
         scale = max(np.abs(at.internal).max(), np.abs(at.external).max(), 1e-300)
-        residual = np.where(self.held, 0.0, np.abs(at.residual)) / scale
-        return Judgement(float(residual.max()), 0.0, 1e-14, int(residual.argmax()))
+        residual = np.where(self.constrained, 0.0, np.abs(at.residual)) / scale
+        return ResidualNorms(float(residual.max()), 0.0, 1e-14, int(residual.argmax()))
 
     def load_rate(self, u):
         return self.load, self.move
 
-    def correct(self, at, rhs, du_held):
+    def correct(self, at, rhs, du_prescribed):
         self.factorizations += 1
-        free = ~self.held
+        free = ~self.constrained
         self.last = at.matrix[np.ix_(free, free)]
-        x = np.array(du_held, float)
-        b = (rhs - at.matrix @ du_held)[free]
+        x = np.array(du_prescribed, float)
+        b = (rhs - at.matrix @ du_prescribed)[free]
         try:
             x[free] = np.linalg.solve(self.last, b)
         except np.linalg.LinAlgError:
@@ -115,9 +115,9 @@ class Truss:
     def around(self, *_):
         return None
 
-    def solve_again(self, rhs):
+    def solve_with_last_factor(self, rhs):
         x = np.zeros_like(rhs)
-        x[~self.held] = np.linalg.solve(self.last, rhs[~self.held])
+        x[~self.constrained] = np.linalg.solve(self.last, rhs[~self.constrained])
         return x
 
     def commit(self):
@@ -128,9 +128,12 @@ def von_mises(rise, half=1.0, stiffness=1.0, spring=0.0, size=1.0):
     """Two bars that meet at an apex pushed down by a unit load; `size` scales lengths."""
     joints = size * np.array([[-half, 0.0], [0.0, rise], [half, 0.0]])
     return Truss(
-        joints, [(0, 1, stiffness), (1, 2, stiffness)], [0, 1, 4, 5], [0, 0, 0, -1, 0, 0],
+        joints,
+        [(0, 1, stiffness), (1, 2, stiffness)],
+        [0, 1, 4, 5],
+        [0, 0, 0, -1, 0, 0],
         springs={2: spring},
-    )  # fmt: skip
+    )
 
 
 def exact_load(rise, drop, half=1.0, stiffness=1.0):

@@ -51,10 +51,10 @@ def test_no_number_is_no_success() -> None:
 def test_the_command_measures_and_counts(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", "straight_*", "--jobs", "1"]) == 0
     said = capsys.readouterr().out
-    assert "1 of 1 problems and 33 of 33 values" in said
+    assert "1 of 1 problems and 36 of 36 values" in said
     assert main(["verify", "straight_beam", "--json"]) == 0
     records = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
-    assert [r["event"] for r in records] == ["value"] * 33 + ["end"]
+    assert [r["event"] for r in records] == ["value"] * 36 + ["end"]
     assert all(r["ok"] for r in records[:-1])
 
 

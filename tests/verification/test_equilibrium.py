@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.newton import Judgement
+from corota.analysis.newton import ResidualNorms
 from corota.errors import ConvergenceError
 from corota.model.steps import Static
 from support import continuum
@@ -85,14 +85,14 @@ def test_random_loads_never_converge_without_equilibrium():
 
 
 def test_a_moment_that_is_no_number_is_no_convergence():
-    assert not Judgement(1e-12, float("nan"), 0.0, 0).size <= 1e-9
-    assert not Judgement(float("nan"), 1e-12, 0.0, 0).size <= 1e-9
+    assert not ResidualNorms(1e-12, float("nan"), 0.0, 0).size <= 1e-9
+    assert not ResidualNorms(float("nan"), 1e-12, 0.0, 0).size <= 1e-9
 
 
 def test_small_moments_do_not_excuse_large_forces():
     """Where there are no moments to compare with, their rounding says nothing of forces."""
-    assert Judgement(1e-13, 1e-6, 1e-13, 0, 1e-6).rounding(1e-9)
-    assert not Judgement(1e-6, 0.0, 1e-13, 0, 1e-6).rounding(1e-9)
+    assert ResidualNorms(1e-13, 1e-6, 1e-13, 0, 1e-6).rounding(1e-9)
+    assert not ResidualNorms(1e-6, 0.0, 1e-13, 0, 1e-6).rounding(1e-9)
 
 
 @pytest.mark.parametrize("nlgeom", [False, True])

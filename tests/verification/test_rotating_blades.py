@@ -44,11 +44,26 @@ def beam(ratio: float, force: float = 0.0, offset: float = 0.0) -> float:
     for e in range(n):
         dofs = slice(2 * e, 2 * e + 4)
         for g, w in zip(0.5 * (points + 1.0), 0.5 * h * weights, strict=True):
-            shape = np.array([1 - 3*g**2 + 2*g**3, h*(g - 2*g**2 + g**3),
-                              3*g**2 - 2*g**3, h*(g**3 - g**2)])  # fmt: skip
-            slope = np.array([-6*g + 6*g**2, h*(1 - 4*g + 3*g**2),
-                              6*g - 6*g**2, h*(3*g**2 - 2*g)]) / h  # fmt: skip
-            bend = np.array([-6 + 12*g, h*(-4 + 6*g), 6 - 12*g, h*(6*g - 2)]) / h**2  # fmt: skip
+            shape = np.array(
+                [
+                    1 - 3 * g**2 + 2 * g**3,
+                    h * (g - 2 * g**2 + g**3),
+                    3 * g**2 - 2 * g**3,
+                    h * (g**3 - g**2),
+                ]
+            )
+            slope = (
+                np.array(
+                    [
+                        -6 * g + 6 * g**2,
+                        h * (1 - 4 * g + 3 * g**2),
+                        6 * g - 6 * g**2,
+                        h * (3 * g**2 - 2 * g),
+                    ]
+                )
+                / h
+            )
+            bend = np.array([-6 + 12 * g, h * (-4 + 6 * g), 6 - 12 * g, h * (6 * g - 2)]) / h**2
             tension = m * w2 * (1.0 - ((e + g) * h) ** 2) / 2.0
             k[dofs, dofs] += w * EI * np.outer(bend, bend)
             k[dofs, dofs] += w * (

@@ -6,9 +6,9 @@ pub mod hyper;
 pub mod memory;
 pub mod pack;
 pub mod pool;
-pub mod race;
 pub mod real;
 pub mod small;
+pub mod thread_autotuner;
 
 pub use dual::Dual;
 pub use hyper::{Hyper, Smooth};

@@ -89,7 +89,7 @@ pub fn overlap(
 }
 
 /// Where a slave edge sees several masters one behind the other, leaves it the closest.
-pub fn hide(overlaps: &mut Vec<Overlap>) {
+pub fn clip_occluded(overlaps: &mut Vec<Overlap>) {
     let mut order: Vec<usize> = (0..overlaps.len()).collect();
     order.sort_by(|&a, &b| overlaps[a].distance.total_cmp(&overlaps[b].distance));
     let mut seen: Vec<Overlap> = Vec::with_capacity(order.len());

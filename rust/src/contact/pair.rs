@@ -21,7 +21,7 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Two boundaries that may touch.
-    Touching,
+    FacingFacets,
     /// A boundary with itself.
     Itself,
     /// Two boundaries that stay together.
@@ -75,7 +75,7 @@ impl Contact {
         let kind = match (&master, tied) {
             (None, _) => Kind::Itself,
             (_, true) => Kind::Tied,
-            _ => Kind::Touching,
+            _ => Kind::FacingFacets,
         };
         let master = master.unwrap_or_else(|| Surface::Edges(slave.0.clone()));
         let middles = tied || method == Method::NodeToSegment;
@@ -158,7 +158,7 @@ impl Contact {
         let mut kept = Vec::new();
         for i in 0..self.slave.edges.len() {
             let mut overlaps = self.overlaps(i, x);
-            mortar::hide(&mut overlaps);
+            mortar::clip_occluded(&mut overlaps);
             for o in overlaps {
                 let candidate = self.search.candidates[o.pair];
                 let master = self.master.place(candidate.1, x);
@@ -238,7 +238,7 @@ impl Contact {
 
     fn edge(&self, i: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
         let mut overlaps = self.overlaps(i, x);
-        mortar::hide(&mut overlaps);
+        mortar::clip_occluded(&mut overlaps);
         let width = self.slave.edges[i].variables().len();
         let small = |o: &Overlap| {
             width + self.master.variables(self.search.candidates[o.pair].1).len() <= 8

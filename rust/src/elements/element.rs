@@ -59,7 +59,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     const HOURGLASS: usize = 0;
     /// Share of the normal edge traction that goes into end moments (0 without drilling).
     const ALPHA_B: f64 = 0.0;
-    /// Whether it is a structural companion (truss, beam, spring) and no part of the plane.
+    /// Whether it is a line element (truss, beam, spring) and no part of the plane.
     const LINE: bool = false;
     /// Whether its frame turns with it.
     const TURNS: bool = true;

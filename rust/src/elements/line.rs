@@ -1,4 +1,4 @@
-//! Structural companions of planar elements: trusses, beams and springs. They ride in the same
+//! Line elements: trusses, beams and springs. They ride in the same
 //! frame, which for two nodes is the chord; their local law is linear in resultants.
 // SPDX-License-Identifier: BSD-3-Clause
 

@@ -28,7 +28,7 @@ pub struct Step<'a, const N: usize, const M: usize> {
     pub v0: &'a Nodal<f64, N, M>,
     pub u1: &'a Nodal<f64, N, M>,
     pub dt: f64,
-    pub turning: bool,
+    pub nlgeom: bool,
     pub tangent: bool,
 }
 
@@ -67,10 +67,10 @@ impl<const N: usize> Between<N> {
         if M == 3 {
             for n in 0..N {
                 let dphi = step.u1[n][M - 1] - step.u0[n][M - 1];
-                b.psi[n] = if step.turning { 2.0 * (0.5 * dphi).tan() } else { dphi };
+                b.psi[n] = if step.nlgeom { 2.0 * (0.5 * dphi).tan() } else { dphi };
             }
         }
-        if !step.turning {
+        if !step.nlgeom {
             return b;
         }
         let (mut mean_x, mut mean_u) = ([0.0; 2], [0.0; 2]);
@@ -152,8 +152,8 @@ pub fn element<E, const N: usize, const M: usize, const A: usize>(
 where
     E: Element<N, M, A>,
 {
-    let f0 = Frame::new(x, step.u0, step.turning);
-    let f1 = Frame::new(x, step.u1, step.turning);
+    let f0 = Frame::new(x, step.u0, step.nlgeom);
+    let f1 = Frame::new(x, step.u1, step.nlgeom);
     let begin = local::<E, f64, N, M, A>(x, &f0.q, section, history, false);
     let hyperelastic =
         section.law.n_state() == 0 && !(section.law.is_linear() && section.strain.is_linear());
@@ -179,8 +179,8 @@ where
                 middle[n][i] = 0.5 * (step.u0[n][i] + step.u1[n][i]);
             }
         }
-        let frame = Frame::new(x, &middle, step.turning);
-        if step.turning {
+        let frame = Frame::new(x, &middle, step.nlgeom);
+        if step.nlgeom {
             frame.stiffness(&mean, &mut end.stiffness);
         }
         tangent = end.stiffness;
@@ -302,7 +302,7 @@ pub fn body_force<const N: usize, const M: usize>(
     (at_origin, omega2): ([f64; 2], f64),
 ) -> Nodal<f64, N, M> {
     let v0 = nodal::<f64, N, M>();
-    let step = Step { u0, v0: &v0, u1, dt: 1.0, turning: true, tangent: false };
+    let step = Step { u0, v0: &v0, u1, dt: 1.0, nlgeom: true, tangent: false };
     let (f0, f1) = (Frame::new(x, u0, true), Frame::new(x, u1, true));
     let between = Between::new(x, &step, &f0, &f1);
     let bulges = Bulges::new(mass, &step, &between, [&f0, &f1]);
@@ -347,7 +347,7 @@ impl<const N: usize> Bulges<N> {
                 own.y[end][k] = frame.to_global(mass.s[k]).map(|w| p * w);
             }
             let factor = (1.0 + 0.25 * between.tau * between.tau)
-                * if step.turning { kappa(between.psi[k], between.psi[k1]) } else { 1.0 };
+                * if step.nlgeom { kappa(between.psi[k], between.psi[k1]) } else { 1.0 };
             own.column[k] = between.turn(mass.s[k]).map(|w| factor * w);
         }
         own

@@ -22,10 +22,10 @@ impl<T: Real, const N: usize, const M: usize> Frame<T, N, M> {
     /// Frame of an element with reference positions `x` and displacements `u`; with
     /// `turning == false` the frame stays (geometrically linear analysis).
     #[inline(always)]
-    pub fn new(x: &Nodal<T, N, 2>, u: &Nodal<T, N, M>, turning: bool) -> Self {
+    pub fn new(x: &Nodal<T, N, 2>, u: &Nodal<T, N, M>, nlgeom: bool) -> Self {
         let mut g = [[T::zero(); M]; N];
         let mut a = [[T::zero(); M]; N];
-        if !turning {
+        if !nlgeom {
             return Self { cos: T::one(), sin: T::zero(), q: *u, g, a };
         }
         let share = 1.0 / N as f64;

@@ -4,7 +4,7 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::delayed::Special;
+use super::delayed_pivots::Special;
 use super::multifrontal::Numeric;
 use super::symbolic::{Front, Symbolic};
 

@@ -14,7 +14,7 @@ use super::symbolic::Symbolic;
 use super::{Inertia, LinearSolver, check_rhs};
 use crate::base::memory;
 use crate::base::pool;
-use crate::base::race::Race;
+use crate::base::thread_autotuner::ThreadAutotuner;
 
 /// Backward error above which one step of refinement is made.
 const REFINE_ABOVE: f64 = 1e-14;
@@ -48,8 +48,8 @@ pub struct Ldlt {
     ready: bool,
     work: Vec<f64>,
     permuted: Vec<f64>,
-    factor_race: Race,
-    solve_race: Race,
+    factor_tuner: ThreadAutotuner,
+    solve_tuner: ThreadAutotuner,
     /// Pivoting LU of the same matrix, made when a residual asks for it.
     fallback: Option<Box<Lu>>,
 }
@@ -57,11 +57,11 @@ pub struct Ldlt {
 impl Ldlt {
     fn back_substitute(&mut self, x: &mut [f64]) {
         let (size, threads) = (self.symbolic.factor_len as f64, self.threads);
-        let Self { symbolic, numeric, permuted, solve_race, .. } = self;
+        let Self { symbolic, numeric, permuted, solve_tuner, .. } = self;
         for (p, &d) in permuted.iter_mut().zip(&symbolic.order) {
             *p = x[d as usize];
         }
-        team(solve_race, threads, size, SHARED_SOLVE, |threads| {
+        team(solve_tuner, threads, size, SHARED_SOLVE, |threads| {
             let solve = Backsolve { symbolic, numeric, threads };
             pool::run(threads, || solve.solve(permuted));
         });
@@ -207,12 +207,12 @@ impl LinearSolver for Ldlt {
 
     fn set_threads(&mut self, threads: usize) {
         self.threads = threads;
-        (self.factor_race, self.solve_race) = Default::default();
+        (self.factor_tuner, self.solve_tuner) = Default::default();
     }
 
     fn analyze(&mut self, pattern: &Pattern<'_>) -> Result<(), LinearError> {
         self.ready = false;
-        (self.factor_race, self.solve_race) = Default::default();
+        (self.factor_tuner, self.solve_tuner) = Default::default();
         pattern.check(true)?;
         // What an earlier pattern took goes first.
         (self.symbolic, self.numeric) = Default::default();
@@ -250,9 +250,9 @@ impl LinearSolver for Ldlt {
         scale_of(&self.col_ptr, &self.row_idx, values, &mut self.scale);
         let threads = self.threads;
         let Self {
-            col_ptr, row_idx, scale, values: scaled, symbolic, numeric, factor_race, ..
+            col_ptr, row_idx, scale, values: scaled, symbolic, numeric, factor_tuner, ..
         } = self;
-        let size = team(factor_race, threads, symbolic.work, SHARED_FACTOR, |threads| {
+        let size = team(factor_tuner, threads, symbolic.work, SHARED_FACTOR, |threads| {
             pool::run(threads, || {
                 let share = threads > 1;
                 let mut size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
@@ -301,7 +301,7 @@ impl LinearSolver for Ldlt {
 /// Does a job of some size with the threads it is worth: waking others costs more than a small
 /// one takes, and between the limits the faster way is found out.
 fn team<R>(
-    race: &mut Race,
+    tuner: &mut ThreadAutotuner,
     threads: usize,
     size: f64,
     [least, most]: [f64; 2],
@@ -313,7 +313,7 @@ fn team<R>(
     } else if size > most {
         job(threads)
     } else {
-        race.run(|shared| job(if shared { threads } else { 1 }))
+        tuner.run(|shared| job(if shared { threads } else { 1 }))
     }
 }
 

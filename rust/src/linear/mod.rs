@@ -35,7 +35,7 @@
 //! slenderness 1000; the line is drawn at 4e-16 of the norm, near 2e-15.
 
 pub mod backsolve;
-pub mod delayed;
+pub mod delayed_pivots;
 pub mod dense;
 pub mod error;
 pub mod etree;

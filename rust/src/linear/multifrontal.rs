@@ -9,7 +9,7 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-use super::delayed::{self, Held, Special};
+use super::delayed_pivots::{self, DelayedFront, Special};
 use super::dense::{self, Scratch};
 use super::symbolic::Symbolic;
 
@@ -40,7 +40,7 @@ pub enum Update {
     /// A square of its own.
     Owned(Vec<f64>),
     /// A square with columns that could not be eliminated in front.
-    Held(Box<Held>),
+    DelayedFront(Box<DelayedFront>),
 }
 
 /// Slices of the factor that belong to one subtree.
@@ -181,7 +181,7 @@ impl Shared<'_> {
                         top[own] += len;
                         Update::Stacked(place)
                     },
-                    Update::Held,
+                    Update::DelayedFront,
                 )
             };
             for (u, &c) in updates.into_iter().zip(sym.children(s)) {
@@ -208,7 +208,7 @@ impl Shared<'_> {
         match self.front_into(s, &mut own, updates, stack, scratch, &mut out[..len]) {
             Some(held) => {
                 self.give_back(Update::Owned(out));
-                Update::Held(held)
+                Update::DelayedFront(held)
             }
             None => Update::Owned(out),
         }
@@ -223,13 +223,13 @@ impl Shared<'_> {
         stack: &[f64],
         scratch: &mut Scratch,
         out: &mut [f64],
-    ) -> Option<Box<Held>> {
+    ) -> Option<Box<DelayedFront>> {
         let sym = self.symbolic;
         let f = &sym.fronts[s];
         let (panel, d) = (&mut *own.panels, &mut *own.d);
         own.special[0] = None;
         let share = f.top && self.threads > 1;
-        let squares: Vec<delayed::Child<'_>> = updates
+        let squares: Vec<delayed_pivots::Child<'_>> = updates
             .iter()
             .zip(sym.children(s))
             .map(|(u, &c)| {
@@ -239,9 +239,9 @@ impl Shared<'_> {
                     Update::Empty => (&[], &[]),
                     Update::Stacked(at) => (&stack[*at..at + below * below], &[]),
                     Update::Owned(v) => (&v[..below * below], &[]),
-                    Update::Held(h) => (&h.square, &h.equations),
+                    Update::DelayedFront(h) => (&h.square, &h.equations),
                 };
-                delayed::Child {
+                delayed_pivots::Child {
                     square,
                     held,
                     relative: sym.relative_of(c),
@@ -269,7 +269,7 @@ impl Shared<'_> {
                 return None;
             }
         }
-        let (kept, held) = delayed::factorize(sym, s, self.values, &squares);
+        let (kept, held) = delayed_pivots::factorize(sym, s, self.values, &squares);
         own.special[0] = Some(Box::new(kept));
         if held.equations.is_empty() {
             out.copy_from_slice(&held.square);
@@ -302,7 +302,7 @@ impl Shared<'_> {
 }
 
 /// Adds the columns of a child's square that fall into the parent's panel.
-fn add_columns(child: &delayed::Child<'_>, panel: &mut [f64], height: usize) {
+fn add_columns(child: &delayed_pivots::Child<'_>, panel: &mut [f64], height: usize) {
     let below = child.relative.len();
     for j in 0..child.into_columns {
         let column = &mut panel[child.relative[j] as usize * height..][..height];
@@ -311,7 +311,7 @@ fn add_columns(child: &delayed::Child<'_>, panel: &mut [f64], height: usize) {
 }
 
 /// Adds the columns of a child's square that fall into the parent's square.
-fn add_rest(child: &delayed::Child<'_>, out: &mut [f64], width: usize, side: usize) {
+fn add_rest(child: &delayed_pivots::Child<'_>, out: &mut [f64], width: usize, side: usize) {
     let below = child.relative.len();
     for j in child.into_columns..below {
         let column = &mut out[(child.relative[j] as usize - width) * side..][..side];

@@ -8,7 +8,7 @@
 //! model. Its energy over its squared length is compared with rounding.
 
 use super::backsolve::Backsolve;
-use super::delayed::Special;
+use super::delayed_pivots::Special;
 
 /// Fronts with a pivot below this (of a unit diagonal) are looked at.
 const SUSPECT_PIVOT: f64 = 1e-4;
@@ -50,14 +50,14 @@ pub fn motions(solve: &Backsolve<'_>, limit: f64) -> Vec<Motion> {
             let energy: f64 = x.iter().zip(d).map(|(v, d)| d * v * v).sum();
             let mut vector = vec![0.0; sym.n];
             vector[f.first..f.first + f.width].copy_from_slice(&x);
-            judge(solve, vector, energy, limit, &mut found);
+            assess(solve, vector, energy, limit, &mut found);
         }
     }
     found
 }
 
 /// Carries a motion of a front down to the model and keeps it if it costs nothing.
-fn judge(
+fn assess(
     solve: &Backsolve<'_>,
     mut vector: Vec<f64>,
     energy: f64,
@@ -81,7 +81,7 @@ fn from_special(solve: &Backsolve<'_>, special: &Special, limit: f64, found: &mu
         vector
     };
     for k in special.pivots..special.pivots + special.null {
-        judge(solve, start(&[(k, 1.0)]), 0.0, limit, found);
+        assess(solve, start(&[(k, 1.0)]), 0.0, limit, found);
     }
     // Soft directions of D: its small pivots, and the eigenvectors of small 2x2 pivots.
     let mut soft: Vec<(f64, Vec<(usize, f64)>)> = Vec::new();
@@ -104,7 +104,7 @@ fn from_special(solve: &Backsolve<'_>, special: &Special, limit: f64, found: &mu
     soft.retain(|(pivot, _)| pivot.abs() < SUSPECT_PIVOT);
     soft.sort_by(|p, q| p.0.abs().total_cmp(&q.0.abs()));
     for (pivot, parts) in soft.iter().take(MOST) {
-        judge(solve, start(parts), *pivot, limit, found);
+        assess(solve, start(parts), *pivot, limit, found);
     }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, TensorOutput};
-use super::{elastic::Elastic, given::Given, mises::Mises, orthotropic::Orthotropic};
+use super::{elastic::Elastic, mises::Mises, orthotropic::Orthotropic, tabulated::Tabulated};
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -67,4 +67,4 @@ macro_rules! laws {
     };
 }
 
-laws![Elastic, Orthotropic, Mises, Given];
+laws![Elastic, Orthotropic, Mises, Tabulated];

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 pub mod elastic;
-pub mod given;
 pub mod hardening;
 pub mod law;
 pub mod material;
 pub mod mises;
 pub mod orthotropic;
+pub mod tabulated;
 
 pub use law::Law;
 pub use material::{Material, Plane, PointState, Response, TensorOutput};

@@ -27,7 +27,7 @@ pub struct Context<'a> {
     pub u: &'a [f64],
     pub dofs: &'a Dofs,
     /// Whether frames turn (geometrically nonlinear).
-    pub turning: bool,
+    pub nlgeom: bool,
     pub tangent: bool,
     /// Instructions to use.
     pub lanes: Lanes,
@@ -46,8 +46,8 @@ pub struct Shared<const N: usize> {
 
 impl<const N: usize> Shared<N> {
     /// Section for frames that turn, or stay.
-    pub fn section(&self, turning: bool) -> &Section<N> {
-        if turning { &self.section } else { &self.linear }
+    pub fn section(&self, nlgeom: bool) -> &Section<N> {
+        if nlgeom { &self.section } else { &self.linear }
     }
 }
 
@@ -92,7 +92,7 @@ pub trait Chunk: Send + Sync {
     /// Set the initial strains from those of the block, `[n, p, 4]`.
     fn set_initial(&mut self, values: &[f64]);
     /// Let other nodes of the elements carry the mass of these, given by node; empty for none.
-    fn set_light(&mut self, light: &[bool]);
+    fn set_massless(&mut self, massless: &[bool]);
     /// Make the trial history of the last evaluation, if there was one, the committed one.
     fn commit(&mut self);
     /// Strains at the points with the committed or the trial internal modes, written to the
@@ -131,7 +131,7 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     /// Initial strain, `[p, 4]` strided; empty for none.
     pub(super) initial: Vec<f64>,
     /// Nodes of each element that carry no mass; empty for none.
-    pub(super) light: Vec<[bool; N]>,
+    pub(super) massless: Vec<[bool; N]>,
     element: PhantomData<E>,
 }
 
@@ -176,7 +176,7 @@ where
             rates_old: vec![0.0; rates],
             rates: vec![0.0; rates],
             initial: Vec::new(),
-            light: Vec::new(),
+            massless: Vec::new(),
             element: PhantomData,
         }
     }
@@ -238,7 +238,7 @@ where
         let members = usize::from(shared.section.law.n_state() > 0);
         for e in (0..n).step_by(T::LANES) {
             let (x, u) = self.gather::<T>(e, context);
-            let frame = Frame::new(&x, &u, context.turning && E::TURNS);
+            let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
             let mut history = History {
                 old: &self.old[e * members..],
                 new: &mut self.new[e * members..],
@@ -250,7 +250,7 @@ where
             E::law_into(
                 &x,
                 &frame.q,
-                shared.section(context.turning),
+                shared.section(context.nlgeom),
                 &mut history,
                 context.tangent,
                 &mut answer,
@@ -416,10 +416,10 @@ where
     ) {
         self.add_momenta(context, v, kind, carried, sums, each);
     }
-    fn set_light(&mut self, light: &[bool]) {
-        let of = |nodes: &[u32; N]| nodes.map(|n| light[n as usize]);
-        self.light =
-            if light.is_empty() { Vec::new() } else { self.nodes.iter().map(of).collect() };
+    fn set_massless(&mut self, massless: &[bool]) {
+        let of = |nodes: &[u32; N]| nodes.map(|n| massless[n as usize]);
+        self.massless =
+            if massless.is_empty() { Vec::new() } else { self.nodes.iter().map(of).collect() };
     }
 
     fn set_initial(&mut self, values: &[f64]) {

@@ -69,8 +69,8 @@ where
         if E::LINE && M == 3 && s.section.thickness > 0.0 {
             mass.turn_with(s.section.profile[1] / s.section.thickness);
         }
-        if let Some(light) = self.light.get(e) {
-            mass.carry(x, light, kind == MassKind::Lumped);
+        if let Some(massless) = self.massless.get(e) {
+            mass.carry(x, massless, kind == MassKind::Lumped);
         }
         mass
     }
@@ -171,7 +171,7 @@ where
                 v0: &v0,
                 u1: &u1,
                 dt: between.dt,
-                turning: context.turning && E::TURNS,
+                nlgeom: context.nlgeom && E::TURNS,
                 tangent: context.tangent,
             };
             let answer = conserving::element::<E, N, M, A>(

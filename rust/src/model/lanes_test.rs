@@ -24,7 +24,7 @@ fn given(points: usize) -> Vec<f64> {
     let mut values = Vec::new();
     for _ in 0..points {
         let factor = 1.0 + 0.2 * random.next();
-        let mut state = [0.0; crate::materials::given::MEMBERS];
+        let mut state = [0.0; crate::materials::tabulated::MEMBERS];
         let [a, b, c, _, d, e, _, _, f] = GIVEN;
         state[6..12].copy_from_slice(&[a, b, c, d, e, f].map(|m| m * factor));
         values.extend(state);
@@ -90,11 +90,11 @@ struct Case {
 
 /// Separate elements, each with a shape, a rotation and a deformation of its own; the rotation
 /// is small where the frames do not turn.
-fn case(facts: &Facts, law: &str, strain: &str, turning: bool) -> Case {
+fn case(facts: &Facts, law: &str, strain: &str, nlgeom: bool) -> Case {
     let mut random = Random(7);
     let (mut x, mut small, mut large) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..ELEMENTS {
-        let angle = if turning { 1.5 } else { 0.03 } * random.next();
+        let angle = if nlgeom { 1.5 } else { 0.03 } * random.next();
         let (c, s) = (angle.cos(), angle.sin());
         // A stretch much larger than rounding errors of the displacements, then a little noise.
         let g = [0.0; 4].map(|_: f64| 0.2 * random.next());
@@ -133,7 +133,7 @@ fn case(facts: &Facts, law: &str, strain: &str, turning: bool) -> Case {
 
 impl Case {
     /// Force, scale and stiffness after each increment, and the elements that failed in any.
-    fn run(&self, lanes: Lanes, turning: bool) -> (Vec<[Vec<f64>; 3]>, Vec<usize>) {
+    fn run(&self, lanes: Lanes, nlgeom: bool) -> (Vec<[Vec<f64>; 3]>, Vec<usize>) {
         let mut problem = Problem::new(self.x.clone(), from_ref(&self.input), &[]).unwrap();
         problem.set_lanes(lanes);
         if self.input.law == "given" {
@@ -149,7 +149,7 @@ impl Case {
         for u in &self.u {
             let mut out = [vec![0.0; n], vec![0.0; n], vec![0.0; nnz]];
             let [force, scale, values] = &mut out;
-            if let Err(which) = problem.assemble(u, turning, force, scale, values) {
+            if let Err(which) = problem.assemble(u, nlgeom, force, scale, values) {
                 failed.extend(which.0.iter().map(|f| f.1));
             }
             problem.commit();
@@ -176,19 +176,19 @@ fn packs_give_what_plain_numbers_give() {
     for facts in registry::facts() {
         for law in Law::NAMES {
             for strain in LocalStrain::NAMES {
-                for turning in [false, true] {
-                    let case = case(&facts, law, strain, turning);
+                for nlgeom in [false, true] {
+                    let case = case(&facts, law, strain, nlgeom);
                     let d = case.dofs_per_element;
                     // A history may be too much for an element; then it is for every lane.
-                    let (plain, failed) = case.run(Lanes::Scalar, turning);
+                    let (plain, failed) = case.run(Lanes::Scalar, nlgeom);
                     assert!(failed.len() <= ELEMENTS / 4, "{} {law} {strain}", facts.name);
                     for lanes in [Lanes::Best, Lanes::Four, Lanes::Eight] {
                         let what = format!(
-                            "{} {law} {strain} turning {turning} {} lanes",
+                            "{} {law} {strain} nlgeom {nlgeom} {} lanes",
                             facts.name,
                             lanes.width()
                         );
-                        let (packs, out) = case.run(lanes, turning);
+                        let (packs, out) = case.run(lanes, nlgeom);
                         assert_eq!(out, failed, "{what}");
                         for (pack, plain) in packs.iter().zip(&plain) {
                             agree(&pack[0], &plain[0], d, &failed, &what);

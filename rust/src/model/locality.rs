@@ -40,12 +40,12 @@ pub fn order(x: &[[f64; 2]], nodes: &[u32], width: usize, chunk: usize) -> Vec<u
         return given;
     }
     let candidates = [given, by_node(nodes, width), along_curve(x, nodes, width)];
-    let cost = |order: &Vec<u32>| touched(order, nodes, width, chunk, x.len());
+    let cost = |order: &Vec<u32>| cache_lines(order, nodes, width, chunk, x.len());
     candidates.into_iter().min_by_key(cost).unwrap_or_default()
 }
 
 /// Sum over the chunks of the places of memory that their nodes lie in.
-fn touched(order: &[u32], nodes: &[u32], width: usize, chunk: usize, n_nodes: usize) -> usize {
+fn cache_lines(order: &[u32], nodes: &[u32], width: usize, chunk: usize, n_nodes: usize) -> usize {
     let mut last = vec![u32::MAX; n_nodes.div_ceil(NEAR)];
     let mut sum = 0;
     for (c, elements) in order.chunks(chunk).enumerate() {
@@ -137,7 +137,7 @@ mod tests {
             let mut seen = order.clone();
             seen.sort_unstable();
             assert!(seen.iter().copied().eq(0..count as u32));
-            touched(&order, nodes, 4, 256, x.len())
+            cache_lines(&order, nodes, 4, 256, x.len())
         };
         let best = cost(&x, &nodes);
         // A step that shares no factor with the count visits all.
@@ -149,7 +149,7 @@ mod tests {
             moved[k * 1009 % x.len()] = *p;
         }
         let given: Vec<u32> = (0..count as u32).collect();
-        let before = touched(&given, &renumbered, 4, 256, x.len());
+        let before = cache_lines(&given, &renumbered, 4, 256, x.len());
         assert!(2 * cost(&moved, &renumbered) < before);
     }
 }

@@ -5,7 +5,7 @@ pub mod build;
 pub mod chunk;
 pub mod dofs;
 pub mod dynamics;
-pub mod held;
+pub mod fixed_dofs;
 pub mod locality;
 pub mod problem;
 pub mod recover;

@@ -5,11 +5,11 @@ use super::build::{Block, BlockInput, build, colour};
 use super::chunk::{Chunk, Context};
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
-use super::held::Held;
+use super::fixed_dofs::FixedDofs;
 use super::recover::Fields;
 use super::registry;
 use super::scatter::{Shared, Sink};
-use crate::base::race::Race;
+use crate::base::thread_autotuner::ThreadAutotuner;
 use crate::base::{Lanes, pool};
 use crate::kinematics::inertia::MassKind;
 use std::sync::Arc;
@@ -33,9 +33,9 @@ pub struct Problem {
     colours: Vec<Vec<Box<dyn Chunk>>>,
     threads: usize,
     lanes: Lanes,
-    held: Held,
-    assemble_race: Race,
-    recover_race: Race,
+    fixed: FixedDofs,
+    assemble_tuner: ThreadAutotuner,
+    recover_tuner: ThreadAutotuner,
     active: Vec<bool>,
 }
 
@@ -73,16 +73,16 @@ impl Problem {
             colours,
             threads: 1,
             lanes: Lanes::Best,
-            held: Held::default(),
-            assemble_race: Race::default(),
-            recover_race: Race::default(),
+            fixed: FixedDofs::default(),
+            assemble_tuner: ThreadAutotuner::default(),
+            recover_tuner: ThreadAutotuner::default(),
             active: Vec::new(),
         })
     }
 
     /// Use so many threads from now on; results do not depend on it.
     pub fn set_threads(&mut self, n: usize) {
-        (self.assemble_race, self.recover_race) = Default::default();
+        (self.assemble_tuner, self.recover_tuner) = Default::default();
         self.threads = n;
     }
 
@@ -106,14 +106,14 @@ impl Problem {
     pub fn assemble(
         &mut self,
         u: &[f64],
-        turning: bool,
+        nlgeom: bool,
         force: &mut [f64],
         scale: &mut [f64],
         values: &mut [f64],
     ) -> Result<(), Failed> {
         let tangent = !values.is_empty();
         let context =
-            Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
+            Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent, lanes: self.lanes };
         let apart = self.colours.iter().any(|c| c.len() > 1);
         let pool = self.pool();
         let (colours, active) = (&mut self.colours, &self.active);
@@ -147,7 +147,7 @@ impl Problem {
         };
         // A pool costs more than it brings where no two chunks can run side by side.
         let pool = pool.as_deref().filter(|_| apart);
-        let mut failed = share(&mut self.assemble_race, pool, &self.blocks, work);
+        let mut failed = share(&mut self.assemble_tuner, pool, &self.blocks, work);
         failed.sort_unstable();
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
     }
@@ -163,7 +163,7 @@ impl Problem {
     ) {
         let tangent = !values.is_empty();
         let context =
-            Context { x: &self.x, u, dofs: &self.dofs, turning: true, tangent, lanes: self.lanes };
+            Context { x: &self.x, u, dofs: &self.dofs, nlgeom: true, tangent, lanes: self.lanes };
         let sink = Sink {
             force: Shared::new(force),
             scale: Shared::new(scale),
@@ -191,7 +191,7 @@ impl Problem {
         &mut self,
         u: &[f64],
         between: &Between<'_>,
-        turning: bool,
+        nlgeom: bool,
         [force, internal, scale, values]: [&mut [f64]; 4],
     ) -> Result<(), Failed> {
         let mut unused = vec![0.0; scale.len()];
@@ -200,7 +200,7 @@ impl Problem {
         }
         let tangent = !values.is_empty();
         let context =
-            Context { x: &self.x, u, dofs: &self.dofs, turning, tangent, lanes: self.lanes };
+            Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent, lanes: self.lanes };
         let sink = Sink {
             force: Shared::new(force),
             scale: Shared::new(scale),
@@ -237,7 +237,7 @@ impl Problem {
             x: &self.x,
             u,
             dofs: &self.dofs,
-            turning: true,
+            nlgeom: true,
             tangent: false,
             lanes: self.lanes,
         };
@@ -266,14 +266,7 @@ impl Problem {
     }
 
     fn at_rest<'a>(&'a self, u: &'a [f64]) -> Context<'a> {
-        Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            turning: true,
-            tangent: false,
-            lanes: self.lanes,
-        }
+        Context { x: &self.x, u, dofs: &self.dofs, nlgeom: true, tangent: false, lanes: self.lanes }
     }
 
     /// Kinetic energy and momenta of a motion.
@@ -301,12 +294,12 @@ impl Problem {
     }
 
     /// Let other nodes of their elements carry the mass of these, given by node; empty for none.
-    pub fn set_light(&mut self, light: &[bool]) -> Result<(), String> {
-        if !light.is_empty() && light.len() != self.x.len() {
+    pub fn set_massless(&mut self, massless: &[bool]) -> Result<(), String> {
+        if !massless.is_empty() && massless.len() != self.x.len() {
             return Err("flags do not fit the nodes".into());
         }
         for chunk in self.colours.iter_mut().flatten() {
-            chunk.set_light(light);
+            chunk.set_massless(massless);
         }
         Ok(())
     }
@@ -349,11 +342,11 @@ impl Problem {
 
     /// Strains that the materials of a block meet, `[n, p, 3]`, with the committed internal
     /// modes or those of the last evaluation.
-    pub fn strains(&self, block: usize, u: &[f64], turning: bool, committed: bool) -> Vec<f64> {
+    pub fn strains(&self, block: usize, u: &[f64], nlgeom: bool, committed: bool) -> Vec<f64> {
         let b = &self.blocks[block];
         let mut out = vec![0.0; b.n_elements * b.facts.n_points * 3];
         let lanes = self.lanes;
-        let context = Context { x: &self.x, u, dofs: &self.dofs, turning, tangent: false, lanes };
+        let context = Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent: false, lanes };
         for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
             chunk.strains(&context, committed, &mut out);
         }
@@ -374,13 +367,13 @@ impl Problem {
     }
 
     /// Values at the points of every block.
-    pub fn recover(&mut self, u: &[f64], turning: bool) -> Vec<Fields> {
+    pub fn recover(&mut self, u: &[f64], nlgeom: bool) -> Vec<Fields> {
         let (blocks, lanes, pool) = (&self.blocks, self.lanes, self.pool());
         let empty = |block: usize, n: usize| {
             let b = &blocks[block];
             Fields::new(n, b.facts.n_points, &b.law, b.outputs().len())
         };
-        let context = Context { x: &self.x, u, dofs: &self.dofs, turning, tangent: false, lanes };
+        let context = Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent: false, lanes };
         let evaluate = |chunk: &&dyn Chunk| {
             let mut part = empty(chunk.block(), chunk.elements().len());
             chunk.recover(&context, &mut part);
@@ -404,36 +397,36 @@ impl Problem {
             fields
         };
         let pool = pool.as_deref().filter(|_| chunks.len() > 1);
-        share(&mut self.recover_race, pool, blocks, work)
+        share(&mut self.recover_tuner, pool, blocks, work)
     }
 
-    /// Replace the rows and columns of held dofs (see [`Held::mask`]).
-    pub fn mask(&mut self, values: &mut [f64], held: &[bool]) {
-        self.held.set(&self.dofs, held);
-        self.held.mask(values);
+    /// Replace the rows and columns of fixed dofs (see [`FixedDofs::mask`]).
+    pub fn mask(&mut self, values: &mut [f64], fixed: &[bool]) {
+        self.fixed.set(&self.dofs, fixed);
+        self.fixed.mask(values);
     }
 
     /// Make a linear system of a tangent and one or more right-hand sides for the free dofs: the
-    /// held ones move by `moved`, and what that takes is subtracted from `rhs`.
-    pub fn reduce(&mut self, values: &mut [f64], rhs: &mut [f64], moved: &[f64], held: &[bool]) {
-        self.held.set(&self.dofs, held);
+    /// fixed ones move by `moved`, and what that takes is subtracted from `rhs`.
+    pub fn reduce(&mut self, values: &mut [f64], rhs: &mut [f64], moved: &[f64], fixed: &[bool]) {
+        self.fixed.set(&self.dofs, fixed);
         let n = self.dofs.n_dofs().max(1);
         for (b, move_) in rhs.chunks_exact_mut(n).zip(moved.chunks_exact(n)) {
             if move_.iter().any(|&v| v != 0.0) {
                 let force = self.dofs.multiply(values, move_);
                 b.iter_mut().zip(force).for_each(|(b, f)| *b -= f);
             }
-            for &d in &self.held.dofs {
+            for &d in &self.fixed.dofs {
                 b[d as usize] = 0.0;
             }
         }
-        self.held.mask(values);
+        self.fixed.mask(values);
     }
 }
 
 /// Do work on the pool's threads, if there is one and they help; it is told whether they do.
 fn share<R: Send>(
-    race: &mut Race,
+    tuner: &mut ThreadAutotuner,
     pool: Option<&rayon::ThreadPool>,
     blocks: &[Block],
     work: impl FnOnce(bool) -> R + Send,
@@ -443,7 +436,7 @@ fn share<R: Send>(
     if elements > SHARED {
         return pool.install(|| work(true));
     }
-    race.run(|shared| if shared { pool.install(|| work(true)) } else { work(false) })
+    tuner.run(|shared| if shared { pool.install(|| work(true)) } else { work(false) })
 }
 
 /// Fill with zeros, by several threads if that is wanted.

@@ -127,7 +127,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     E: Element<N, M, A>,
 {
     use crate::elements::Operator;
-    let section = chunk.shared.section(context.turning);
+    let section = chunk.shared.section(context.nlgeom);
     let members = section.law.n_state();
     let n_points = section.points.len();
     let memory = members * n_points;
@@ -138,7 +138,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     }
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
-        let frame = Frame::new(&x, &u, context.turning && E::TURNS);
+        let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
         let stride = chunk.stride();
         let rows = 4 * n_points;
         let initial: Vec<f64> = match chunk.initial_from(e) {
@@ -304,12 +304,12 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
 ) where
     E: Element<N, M, A>,
 {
-    let section = chunk.shared.section(context.turning);
+    let section = chunk.shared.section(context.nlgeom);
     let n_points = section.points.len();
     let stride = chunk.stride();
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
-        let frame = Frame::new(&x, &u, context.turning && E::TURNS);
+        let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
         let mut modes = [[0.0; 2]; A];
         for m in 0..A {
             modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];

@@ -60,7 +60,7 @@ pub struct Facts {
     pub about_mean: bool,
     /// Whether it has one point and a stabilized hourglass.
     pub stabilized: bool,
-    /// Structural companion.
+    /// Line element.
     pub line: bool,
     /// Whether its frame turns with it.
     pub turns: bool,

@@ -104,7 +104,7 @@ impl PyProblem {
         &mut self,
         py: Python<'_>,
         u: PyReadonlyArray1<'_, f64>,
-        turning: bool,
+        nlgeom: bool,
         mut force: PyReadwriteArray1<'_, f64>,
         mut scale: PyReadwriteArray1<'_, f64>,
         mut values: PyReadwriteArray1<'_, f64>,
@@ -117,7 +117,7 @@ impl PyProblem {
             return Err(value_error("array lengths do not fit the problem"));
         }
         let inner = &mut self.inner;
-        py.detach(|| inner.assemble(u, turning, f, s, v)).map_err(failed)
+        py.detach(|| inner.assemble(u, nlgeom, f, s, v)).map_err(failed)
     }
 
     /// Add inertia forces and effective tangents (see ``Problem::inertia``).
@@ -157,7 +157,7 @@ impl PyProblem {
         v0: PyReadonlyArray1<'_, f64>,
         dt: f64,
         kind: &str,
-        turning: bool,
+        nlgeom: bool,
         mut force: PyReadwriteArray1<'_, f64>,
         mut internal: PyReadwriteArray1<'_, f64>,
         mut scale: PyReadwriteArray1<'_, f64>,
@@ -176,7 +176,7 @@ impl PyProblem {
         }
         let between = Between { u0, v0, dt, kind };
         let inner = &mut self.inner;
-        py.detach(|| inner.conserving(u, &between, turning, [f, i, s, k])).map_err(failed)
+        py.detach(|| inner.conserving(u, &between, nlgeom, [f, i, s, k])).map_err(failed)
     }
 
     /// Begin a motion of the conserving scheme.
@@ -233,8 +233,8 @@ impl PyProblem {
     }
 
     /// Let other nodes of their elements carry the mass of these, flags by node; empty for none.
-    fn set_light(&mut self, light: PyReadonlyArray1<'_, bool>) -> PyResult<()> {
-        self.inner.set_light(light.as_slice()?).map_err(value_error)
+    fn set_massless(&mut self, massless: PyReadonlyArray1<'_, bool>) -> PyResult<()> {
+        self.inner.set_massless(massless.as_slice()?).map_err(value_error)
     }
 
     /// Make the trial history the committed one.
@@ -250,13 +250,13 @@ impl PyProblem {
         py: Python<'py>,
         block: usize,
         u: PyReadonlyArray1<'py, f64>,
-        turning: bool,
+        nlgeom: bool,
         committed: bool,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         if block >= self.inner.blocks.len() || u.as_slice()?.len() != self.inner.dofs.n_dofs() {
             return Err(value_error("the block or the displacements do not fit the problem"));
         }
-        Ok(self.inner.strains(block, u.as_slice()?, turning, committed).into_pyarray(py))
+        Ok(self.inner.strains(block, u.as_slice()?, nlgeom, committed).into_pyarray(py))
     }
 
     /// Write the committed history of a block, flat (n, p, members).
@@ -419,11 +419,11 @@ impl PyProblem {
         &mut self,
         py: Python<'py>,
         u: PyReadonlyArray1<'py, f64>,
-        turning: bool,
+        nlgeom: bool,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let u = u.as_slice()?;
         let inner = &mut self.inner;
-        let fields = py.detach(|| inner.recover(u, turning));
+        let fields = py.detach(|| inner.recover(u, nlgeom));
         let mut all = Vec::new();
         for (f, block) in fields.into_iter().zip(&self.inner.blocks) {
             let (n, p) = (block.n_elements, f.n_points);

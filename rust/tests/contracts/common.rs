@@ -171,13 +171,13 @@ pub fn evaluate<E, T: Real, const N: usize, const M: usize, const A: usize>(
     x: &Nodal<f64, N, 2>,
     u: &Nodal<T, N, M>,
     section: &Section<N>,
-    turning: bool,
+    nlgeom: bool,
 ) -> Answer<T, N, M>
 where
     E: Element<N, M, A>,
 {
     let x = x.map(|p| p.map(T::real));
-    let frame = Frame::new(&x, u, turning);
+    let frame = Frame::new(&x, u, nlgeom);
     let state = section.points.len() * section.law.n_state() + E::MEMORY;
     let (old, mut new, mut alpha) = (vec![0.0; state], vec![0.0; state], vec![0.0; 2 * A]);
     let mut history =

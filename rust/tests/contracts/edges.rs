@@ -131,7 +131,7 @@ fn pressure_around_a_closed_curve_balances() {
                 [c + 0.1 * random.signed(), s + 0.1 * random.signed()]
             })
             .collect();
-        let (mut total, mut turning) = ([0.0; 2], 0.0);
+        let (mut total, mut rotation_sum) = ([0.0; 2], 0.0);
         for k in 0..5 {
             let (a, b) = (corners[k], corners[(k + 1) % 5]);
             let c = [0.5 * (a[0] + b[0]) + 0.05, 0.5 * (a[1] + b[1]) - 0.03];
@@ -139,9 +139,9 @@ fn pressure_around_a_closed_curve_balances() {
             let (f, _) = pressure(edge, &Place { x, ..moved(edge, &mut random) }, 1.3);
             let part = sum(&f);
             total = [total[0] + part[0], total[1] + part[1]];
-            turning += moment(&f, &x);
+            rotation_sum += moment(&f, &x);
         }
-        assert!(total[0].abs() + total[1].abs() + turning.abs() < ROUNDOFF, "{edge:?}");
+        assert!(total[0].abs() + total[1].abs() + rotation_sum.abs() < ROUNDOFF, "{edge:?}");
     }
 }
 

@@ -25,19 +25,19 @@ fn states<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(
     for strain in strains() {
         for plane in [Plane::Stress, Plane::Strain] {
             let section = section::<E, N, M, A>(plane, strain);
-            for turning in [true, false] {
+            for nlgeom in [true, false] {
                 for _ in 0..25 {
                     let x = cell::<N>(E::CELL, &mut random, 0.05);
                     // A fixed frame is for small rotations.
-                    let angle = if turning { 10.0 * random.signed() } else { 0.1 };
+                    let angle = if nlgeom { 10.0 * random.signed() } else { 0.1 };
                     let u = state::<N, M>(&x, &mut random, angle, 0.2);
-                    if evaluate::<E, f64, N, M, A>(&x, &u, &section, turning).failed {
+                    if evaluate::<E, f64, N, M, A>(&x, &u, &section, nlgeom).failed {
                         assert!(A > 0 && strain != LocalStrain::Linear, "{}", E::NAME);
                         refused += 1;
                         continue;
                     }
                     visited += 1;
-                    visit(&x, &u, &section, turning);
+                    visit(&x, &u, &section, nlgeom);
                 }
             }
         }
@@ -51,10 +51,10 @@ where
 {
     let name = E::NAME;
     let mut worst = 0.0_f64;
-    states::<E, N, M, A>(|x, u, section, turning| {
-        let plain = evaluate::<E, f64, N, M, A>(x, u, section, turning);
+    states::<E, N, M, A>(|x, u, section, nlgeom| {
+        let plain = evaluate::<E, f64, N, M, A>(x, u, section, nlgeom);
         let v = variables::<N, M, D>(u);
-        let dual = evaluate::<E, Dual<D>, N, M, A>(x, &v, section, turning);
+        let dual = evaluate::<E, Dual<D>, N, M, A>(x, &v, section, nlgeom);
         let k = dense(&plain.stiffness);
         let (size, stiff) = (largest(plain.force.as_flattened()), norm(&k));
         for r in 0..D {
@@ -115,10 +115,10 @@ where
     E: Element<N, M, A>,
 {
     let name = E::NAME;
-    states::<E, N, M, A>(|x, u, section, turning| {
-        let plain = evaluate::<E, f64, N, M, A>(x, u, section, turning);
+    states::<E, N, M, A>(|x, u, section, nlgeom| {
+        let plain = evaluate::<E, f64, N, M, A>(x, u, section, nlgeom);
         let v = variables::<N, M, D>(u);
-        let dual = evaluate::<E, Dual<D>, N, M, A>(x, &v, section, turning);
+        let dual = evaluate::<E, Dual<D>, N, M, A>(x, &v, section, nlgeom);
         let mut modes = [[Dual::<D>::real(0.0); 2]; A];
         for m in 0..A {
             modes[m] = [Dual::real(plain.alpha[2 * m]), Dual::real(plain.alpha[2 * m + 1])];

@@ -26,12 +26,12 @@ fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() 
     for strain in strains() {
         for plane in [Plane::Stress, Plane::Strain] {
             let section = section::<E, N, M, A>(plane, strain);
-            for turning in [false, true] {
+            for nlgeom in [false, true] {
                 for _ in 0..5 {
                     // With straight sides: a curved cell has other modes under a reduced rule.
                     let x = cell::<N>(E::CELL, &mut random, 0.0);
                     let rest = [[0.0; M]; N];
-                    let k = evaluate::<E, f64, N, M, A>(&x, &rest, &section, turning).stiffness;
+                    let k = evaluate::<E, f64, N, M, A>(&x, &rest, &section, nlgeom).stiffness;
                     assert_eq!(zeros(dense(&k), name), 3 + E::HOURGLASS, "{name}");
                 }
             }

@@ -123,7 +123,7 @@ class BodyLoad:
                 )
         drilling = [f.drilling and mask.any() for f, mask in zip(facts, self.masks, strict=True)]
         #: Elements whose force turns with them: sides of drilling elements have mass.
-        self.turning = [
+        self.nlgeom = [
             mask if turns else np.zeros_like(mask)
             for mask, turns in zip(self.masks, drilling, strict=True)
         ]
@@ -157,7 +157,7 @@ class BodyLoad:
             if len(to.values):
                 to.values -= (scale * to.share) * stiffness
         if self._couples:
-            self._evaluate(self.turning, scale, here, before, -to.share, force, to.values)
+            self._evaluate(self.nlgeom, scale, here, before, -to.share, force, to.values)
         to.force += system.at_nodes(force)
 
     @property
@@ -174,7 +174,7 @@ class BodyLoad:
         if self._linear is None:
             masks = self.masks
             if self._couples:
-                masks = [m & ~t for m, t in zip(masks, self.turning, strict=True)]
+                masks = [m & ~t for m, t in zip(masks, self.nlgeom, strict=True)]
             spins = self.item.kind == "centrifugal" and any(m.any() for m in masks)
             stiffness = np.zeros(len(self.system.indices)) if spins else EMPTY
             self._linear = self._at_rest(masks, stiffness), stiffness

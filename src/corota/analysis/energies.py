@@ -18,7 +18,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation, System
-    from corota.analysis.procedures.motion import ConservingMotion, Inertia, Moving, NewmarkMotion
+    from corota.analysis.procedures.motion import (
+        ConservingMotion,
+        Inertia,
+        MotionState,
+        NewmarkMotion,
+    )
     from corota.model.steps import Dynamic, Step
 
     Floats = NDArray[np.float64]
@@ -41,7 +46,7 @@ TERMS = {
 #: Share of the largest energy from which a balance error is worth a warning.
 LARGE_ERROR = 0.02
 #: Energies below this share of the product of force and length are rounding.
-NOTHING = 1e-12
+NEGLIGIBLE_ENERGY = 1e-12
 
 
 class Energies:
@@ -80,8 +85,10 @@ class Energies:
         in the first increment, as if a force had held it.
         """
         if self._driving is None or (step.procedure == "static" and self.scheme != "static"):
-            touching = self.system.touching
-            contact = 0.0 if touching is None or touching.at is None else touching.at.force
+            contact_term = self.system.contact_term
+            contact = (
+                0.0 if contact_term is None or contact_term.at is None else contact_term.at.force
+            )
             self._driving = internal - contact
         self.scheme = getattr(step, "scheme", "static")
         if step.procedure == "static":
@@ -98,7 +105,7 @@ class Energies:
         self._driving = self._sum(external, reaction)
 
     def _sum(self, external: Floats, reaction: Floats) -> Floats:
-        return external + np.where(self.system.conditions.held, reaction, 0.0)
+        return external + np.where(self.system.conditions.constrained, reaction, 0.0)
 
     def add_quasi_static(self, u: Floats, before: Floats, at: Evaluation) -> None:
         """Work of a static increment that ends at `u`."""
@@ -122,7 +129,7 @@ class Energies:
 
         `sums` are those of the elements; without them the work of their forces counts.
         """
-        touching = self.system.touching
+        contact_term = self.system.contact_term
         inside = (
             {"ALLIE": self.internal, "ALLTH": 0.0}
             if sums is None
@@ -138,17 +145,19 @@ class Energies:
             **inside,
             "ALLKE": self.kinetic,
             "ALLVD": self.viscous,
-            "ALLFD": 0.0, "ALLSD": 0.0, "ALLCL": 0.0,
-            **({} if touching is None else touching.energies()),
+            "ALLFD": 0.0,
+            "ALLSD": 0.0,
+            "ALLCL": 0.0,
+            **({} if contact_term is None else contact_term.energies()),
             "ALLWK": self.work,
-        }  # fmt: skip
+        }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
         own["ETOTAL"] = sum(own[k] for k in gained) - own["ALLWK"] - own["ALLTH"]
         if self._reference is None:
             self._reference = own["ETOTAL"]
         missing = own["ETOTAL"] - self._reference
         self._largest = max(self._largest, *(abs(v) for k, v in own.items() if k != "ETOTAL"))
-        nothing = NOTHING * self.system.scales.nothing * self.system.length
+        nothing = NEGLIGIBLE_ENERGY * self.system.scales.nothing * self.system.length
         error = missing / self._largest if self._largest > nothing else 0.0
         if abs(error) > abs(self.error):
             self.error, self.where = error, where
@@ -165,8 +174,8 @@ class Energies:
             f"energy balance: {abs(self.error):.1%} of the largest energy is {verb} by step "
             f"{self.where[0]}, increment {self.where[1]} (ETOTAL): "
         )
-        touching = self.system.touching is not None
-        if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not touching):
+        contact_term = self.system.contact_term is not None
+        if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not contact_term):
             return text + "use smaller increments"
         if self.scheme == "newmark":
             return text + (
@@ -195,7 +204,7 @@ class Balance:
     """
 
     def __init__(
-        self, system: System, step: Dynamic, now: Moving, inertia: Inertia, account: Energies
+        self, system: System, step: Dynamic, now: MotionState, inertia: Inertia, account: Energies
     ) -> None:
         self.system, self.step, self.now, self.inertia = system, step, now, inertia
         self.account = account
@@ -204,19 +213,19 @@ class Balance:
         account.set_kinetic(first[0])
         self.energy, self.mass = first[0], first[4]
         self._inside = self._outside = 0.0
-        touching = system.touching
+        contact_term = system.contact_term
         self._contact = None
-        if touching is not None:
-            at = touching.at
+        if contact_term is not None:
+            at = contact_term.at
             self._contact = np.zeros(system.n_dofs) if at is None else at.force
         account.drive(now.external, self._reaction(now, self._contact))
 
     @staticmethod
-    def _reaction(now: Moving, contact: Floats | None) -> Floats:
+    def _reaction(now: MotionState, contact: Floats | None) -> Floats:
         reaction = now.reaction()
         return reaction if contact is None else reaction - contact
 
-    def _kinetic(self, now: Moving) -> list[float]:
+    def _kinetic(self, now: MotionState) -> list[float]:
         return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
 
     @property
@@ -224,9 +233,9 @@ class Balance:
         """Work of external forces so far."""
         return self.account.work
 
-    def driven(self, now: Moving) -> float:
+    def driven(self, now: MotionState) -> float:
         """Energy of the body in the frame of what drives it: that of an impact from rest."""
-        moved = self.system.conditions.held & ~self.system.is_rotation
+        moved = self.system.conditions.constrained & ~self.system.is_rotation
         speed = np.abs(now.v[moved]).max(initial=0.0)
         return 0.5 * self.mass * float(speed) ** 2
 
@@ -261,7 +270,7 @@ class Balance:
     def add_to(self, scalars: dict[str, Any]) -> None:
         """Write momenta and the scheme's own sums into a frame's scalars."""
         account = self.account
-        if self.system.touching is not None:
+        if self.system.contact_term is not None:
             scalars["contact work"] = account.contact
         px, py, angular = self.momenta
         scalars.update(

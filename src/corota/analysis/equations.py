@@ -16,12 +16,12 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.blocks import blocks_of, check_shapes, core_input
-from corota.analysis.constraints.elimination import Link, Ties, extra_dofs
+from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints, extra_dofs
 from corota.analysis.constraints.setup import carry_curves
 from corota.analysis.free_motion import name_motion
 from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
 from corota.analysis.memory import require_model
-from corota.analysis.newton import ElementFailure, Judgement
+from corota.analysis.newton import ElementFailure, ResidualNorms
 from corota.analysis.recovery import recover
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
-    from corota.analysis.terms.contact.contact import Touching
+    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -81,7 +81,7 @@ class Evaluation:
     scale: Floats
     values: Floats
     load_stiffness: tuple[Ints, Ints, Floats] | None = None
-    link: Link | None = None
+    link: LinearizedConstraints | None = None
     added: Floats | None = None
     heft: float = 0.0
     momentum: float = 0.0
@@ -140,29 +140,29 @@ class System:
         self.component = np.arange(self.n_dofs) - self.start[self.node_of_dof]
         self.is_rotation = self.component == 2
         self.indptr, self.indices = self.core.indptr, self.core.indices
-        self.turning = True
+        self.nlgeom = True
         #: Largest local strain at the last recovery where it is linear, and the material there.
         self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
-        self.ties: Ties | None = None
+        self.constraints: Constraints | None = None
         if model.constraints or model.axes:
-            self.ties = Ties(model, self.start, carried, self.indptr, self.indices)
-        self.link: Link | None = None
+            self.constraints = Constraints(model, self.start, carried, self.indptr, self.indices)
+        self.link: LinearizedConstraints | None = None
         self.conditions = Conditions(self)
-        self.touching: Touching | None = None
+        self.contact_term: ContactTerm | None = None
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
         self._timers: defaultdict[str, Timer] = defaultdict(Timer)
         self._analyzed = False
         #: Whether the structure without its loads was seen to have no free motion in this step.
-        self.held_for_sure = False
+        self.free_motion_excluded = False
         self._last: LinearSolver | MaskedLu = solver
         self.scales = Scales(self)
         self._lu = MaskedLu()
         self._spare: list[Floats] = []
         if model.contacts or model.ties:
-            from corota.analysis.terms.contact.contact import Touching
+            from corota.analysis.terms.contact.contact import ContactTerm
 
-            self.touching = Touching(self)
+            self.contact_term = ContactTerm(self)
 
     # -- numbering ---------------------------------------------------------------------
 
@@ -178,11 +178,11 @@ class System:
 
     def in_space(self, vector: Floats) -> Floats:
         """A vector along the axes of its nodes in global axes, shape (n_dofs,)."""
-        return vector if self.ties is None else self.ties.to_global(vector)
+        return vector if self.constraints is None else self.constraints.to_global(vector)
 
     def at_nodes(self, vector: Floats) -> Floats:
         """A vector in global axes along the axes of its nodes, shape (n_dofs,)."""
-        return vector if self.ties is None else self.ties.to_axes(vector)
+        return vector if self.constraints is None else self.constraints.to_axes(vector)
 
     def from_nodes(self, values: Floats) -> Floats:
         """Inverse of `by_node`."""
@@ -198,21 +198,21 @@ class System:
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
         """Make a step's loads and supports the current ones."""
-        self.turning = step.nlgeom
-        if self.ties is not None:
-            self.ties.set_turning(step.nlgeom)
-            self.ties.complete(u)
+        self.nlgeom = step.nlgeom
+        if self.constraints is not None:
+            self.constraints.set_nlgeom(step.nlgeom)
+            self.constraints.complete(u)
         self.conditions.begin(step, time, u, reaction)
         self.scales.begin(getattr(step, "tolerance", 1e-9), u)
-        self.held_for_sure = False
-        if self.touching is not None:
-            self.touching.begin(step)
+        self.free_motion_excluded = False
+        if self.contact_term is not None:
+            self.contact_term.begin(step)
 
-    def room(self) -> Floats:
+    def borrow_tangent(self) -> Floats:
         """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
         return self._spare.pop() if self._spare else np.empty(len(self.indices))
 
-    def release(self, at: Evaluation) -> None:
+    def return_tangent(self, at: Evaluation) -> None:
         """Take the memory of a tangent back that nobody looks at any more."""
         if len(self._spare) < SPARE:
             self._spare.append(at.values)
@@ -226,21 +226,25 @@ class System:
         ElementFailure
             If an element turned inside out or its material did not converge.
         """
-        internal, scale, values = np.empty(self.n_dofs), np.empty(self.n_dofs), self.room()
-        if self.ties is not None:
-            self.ties.complete(u)
-        self.heat(step_time)
+        internal, scale, values = (
+            np.empty(self.n_dofs),
+            np.empty(self.n_dofs),
+            self.borrow_tangent(),
+        )
+        if self.constraints is not None:
+            self.constraints.complete(u)
+        self.set_temperatures(step_time)
         self._assemble(u, internal, scale, values)
         if not self.scales.stiffest:
             self.scales.measure(values)
         external, stiffness = self.conditions.external(step_time, u, values)
-        link = None if self.ties is None else self.ties.link(u)
+        link = None if self.constraints is None else self.constraints.link(u)
         return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
 
     def forces(self, u: Floats, step_time: float) -> Evaluation:
         """Forces at a state without the tangent."""
         internal, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
-        self.heat(step_time)
+        self.set_temperatures(step_time)
         self._assemble(u, internal, scale, NOWHERE)
         external = self.conditions.external(step_time, u)[0]
         return Evaluation(self.at_nodes(internal), external, scale, NOWHERE)
@@ -250,11 +254,11 @@ class System:
         here = self.in_space(u)
 
         def assemble() -> None:
-            self.core.assemble(here, self.turning, internal, scale, values)
+            self.core.assemble(here, self.nlgeom, internal, scale, values)
 
         try:
             with self.timed("assemble"):
-                self.user.assemble(here, self.turning, assemble)
+                self.user.assemble(here, self.nlgeom, assemble)
         except RuntimeError as error:
             raise failure(self._labels(error.args[1]), error.args[0]) from None
 
@@ -266,7 +270,7 @@ class System:
         """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
         return self.at_nodes(self.core.multiply(values, self.in_space(x)))
 
-    def heat(self, step_time: float) -> None:
+    def set_temperatures(self, step_time: float) -> None:
         """Give the elements the thermal strain of a time of the step."""
         if self.free.expands:
             self.free.apply(self.conditions.temperatures(step_time))
@@ -282,7 +286,7 @@ class System:
         for share in (0.5, -0.5):
             force, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
             self.free.apply(now + share * heating)
-            self.core.assemble(here, self.turning, force, scale, np.empty(0))
+            self.core.assemble(here, self.nlgeom, force, scale, np.empty(0))
             forces.append(force)
         self.free.apply(now)
         return self.at_nodes(forces[0] - forces[1])
@@ -306,9 +310,9 @@ class System:
         """Seconds by phase."""
         return {phase: timer.seconds for phase, timer in self._timers.items()}
 
-    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual against its scale; see :class:`corota.analysis.scales.Scales`."""
-        return self.scales.judge(at, u)
+        return self.scales.residual_norms(at, u)
 
     def plastic_increment(self) -> float:
         """Largest growth of the equivalent plastic strain since the last commit."""
@@ -326,7 +330,7 @@ class System:
 
     # -- linear algebra ----------------------------------------------------------------
 
-    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
         """Newton correction: free dofs solve the linearised equilibrium, held ones move.
 
         Parameters
@@ -347,13 +351,13 @@ class System:
         SingularError
             Naming the node and dof that nothing holds.
         """
-        return self._correct(at, at.external - at.internal, du_held)
+        return self._correct(at, at.external - at.internal, du_prescribed)
 
-    def again(self, at: Evaluation) -> Floats:
+    def correct_with_last_factor(self, at: Evaluation) -> Floats:
         """Newton correction with the last factorisation; held dofs stay."""
-        return self.solve_again(-at.residual)
+        return self.solve_with_last_factor(-at.residual)
 
-    def correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
+    def correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
         """Factorise the tangent at a state and solve for one or several right-hand sides.
 
         Parameters
@@ -376,25 +380,27 @@ class System:
         SingularError
             Naming the node and dof that nothing holds.
         """
-        return self._correct(at, np.array(rhs, order="F"), np.asfortranarray(du_held))
+        return self._correct(at, np.array(rhs, order="F"), np.asfortranarray(du_prescribed))
 
-    def _correct(self, at: Evaluation, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
+    def _correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
         """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
-        held = self.conditions.held
+        constrained = self.conditions.constrained
         unsymmetric = None
-        joined = at.link is not None and self.turning
-        if (at.load_stiffness is not None or joined) and not (self.held_for_sure or at.heft):
+        joined = at.link is not None and self.nlgeom
+        if (at.load_stiffness is not None or joined) and not (self.free_motion_excluded or at.heft):
             # Loads that follow, and those on rigid parts that turn, give a free motion stiffness
             # that is none.
             self._refuse_free(at)
         if at.load_stiffness is not None:
             _, unsymmetric = self._add_load_stiffness(at)
         if at.link is not None:
-            return self._correct_tied(at, at.link, rhs, du_held, unsymmetric)
+            return self._correct_tied(at, at.link, rhs, du_prescribed, unsymmetric)
         if unsymmetric is not None:
-            du = self._solve_unsymmetric(unsymmetric, rhs, du_held, held, self.node_of_dof)
+            du = self._solve_unsymmetric(
+                unsymmetric, rhs, du_prescribed, constrained, self.node_of_dof
+            )
             return du, -1
-        self.core.reduce(at.values, rhs, du_held, held)
+        self.core.reduce(at.values, rhs, du_prescribed, constrained)
         if not self._analyzed:
             with self.timed("order"):
                 self.solver.analyze(self.indptr, self.indices, self.node_of_dof)
@@ -408,22 +414,22 @@ class System:
         except SingularError as error:
             raise self.singular(error) from None
         fixed = self.conditions.fixed
-        du[fixed] = du_held[fixed]
+        du[fixed] = du_prescribed[fixed]
         return du, (inertia[1] if inertia is not None else -1)
 
     def _refuse_free(self, at: Evaluation) -> None:
         """Refuse a structure whose stiffness without that of its loads lets a motion free."""
-        held = self.conditions.held
+        constrained = self.conditions.constrained
         if at.link is None:
             indptr, indices, node = self.indptr, self.indices, self.node_of_dof
             values, none = at.values.copy(), np.zeros(self.n_dofs)
-            self.core.reduce(values, none, none.copy(), held)
+            self.core.reduce(values, none, none.copy(), constrained)
         else:
-            places = at.link.ties.places
+            places = at.link.constraints.places
             indptr, indices = places.indptr, places.indices
-            node = self.node_of_dof[at.link.ties.free]
+            node = self.node_of_dof[at.link.constraints.free]
             values = at.link.reduce(at.values, self.at_nodes(at.internal))
-            places.mask(values, held[at.link.ties.free])
+            places.mask(values, constrained[at.link.constraints.free])
             self.link = at.link
         if not self._analyzed:
             with self.timed("order"):
@@ -434,49 +440,54 @@ class System:
                 self.solver.factorize(values)
         except SingularError as error:
             raise self.singular(error) from None
-        self.held_for_sure = True
+        self.free_motion_excluded = True
 
-    def solve_again(self, rhs: Floats) -> Floats:
+    def solve_with_last_factor(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation, held dofs at rest; shape as in `correct`."""
-        held = self.conditions.held
-        if self.link is not None and self.ties is not None:
-            free = self.ties.free
+        constrained = self.conditions.constrained
+        if self.link is not None and self.constraints is not None:
+            free = self.constraints.free
             rhs = self.link.gather(rhs)[free]
-            held = held[free]
+            constrained = constrained[free]
         else:
             rhs = rhs.copy(order="K")
-        rhs[held] = 0.0
+        rhs[constrained] = 0.0
         with self.timed("solve"):
             x = self._last.solve(rhs)
-        x[held] = 0.0
+        x[constrained] = 0.0
         return x if self.link is None else self.expand(self.link, x)
 
-    def expand(self, link: Link, x: Floats) -> Floats:
+    def expand(self, link: LinearizedConstraints, x: Floats) -> Floats:
         """Changes of all dofs from those of the unknowns that constraints leave."""
         out = np.zeros((self.n_dofs, *x.shape[1:]), order="F")
-        out[link.ties.free] = x
+        out[link.constraints.free] = x
         return link.move(out)
 
     def _correct_tied(
-        self, at: Evaluation, link: Link, rhs: Floats, du_held: Floats, unsymmetric: Any
+        self,
+        at: Evaluation,
+        link: LinearizedConstraints,
+        rhs: Floats,
+        du_prescribed: Floats,
+        unsymmetric: Any,
     ) -> tuple[Floats, int]:
         """Solve for the unknowns that constraints leave; see :meth:`correct`."""
-        ties, places, self.link = link.ties, link.ties.places, link
-        free = ties.free
-        held = self.conditions.held[free]
-        force, moved = np.asfortranarray(link.gather(rhs)[free]), du_held[free]
+        constraints, places, self.link = link.constraints, link.constraints.places, link
+        free = constraints.free
+        constrained = self.conditions.constrained[free]
+        force, moved = np.asfortranarray(link.gather(rhs)[free]), du_prescribed[free]
         node = self.node_of_dof[free]
         if unsymmetric is not None:
             matrix = link.reduce_full(unsymmetric, at.residual)
-            x = self._solve_unsymmetric(matrix, force, moved, held, node)
+            x = self._solve_unsymmetric(matrix, force, moved, constrained, node)
             return self.expand(link, x), -1
         with self.timed("constraints"):
             values = link.reduce(at.values, at.residual)
             for column, move in zip(_columns(force), _columns(moved), strict=True):
                 if np.any(move):
                     column -= places.multiply(values, move)
-            places.mask(values, held)
-        force[held] = 0.0
+            places.mask(values, constrained)
+        force[constrained] = 0.0
         if not self._analyzed:
             with self.timed("order"):
                 self.solver.analyze(places.indptr, places.indices, node)
@@ -489,7 +500,7 @@ class System:
                 x = self.solver.solve(force)
         except SingularError as error:
             raise self.singular(error) from None
-        x[held] = moved[held]
+        x[constrained] = moved[constrained]
         return self.expand(link, x), (inertia[1] if inertia is not None else -1)
 
     def singular(self, error: SingularError) -> SingularError:
@@ -503,8 +514,8 @@ class System:
         rows, columns, values = at.load_stiffness
         n = self.n_dofs
         extra = sp.coo_array((-values, (rows, columns)), shape=(n, n)).tocsr()
-        held = self.conditions.held
-        inside = (~held).astype(float)
+        constrained = self.conditions.constrained
+        inside = (~constrained).astype(float)
         skew = (extra - extra.T).multiply(inside[:, None]).multiply(inside[None, :])
         size = abs(extra).max() if extra.nnz else 0.0
         if skew.nnz and abs(skew).max() > 1e-9 * size:
@@ -522,19 +533,24 @@ class System:
         return FullMatrix(self.indptr, self.indices)
 
     def _solve_unsymmetric(
-        self, matrix: Any, rhs: Floats, du_held: Floats, held: NDArray[np.bool_], node: Ints
+        self,
+        matrix: Any,
+        rhs: Floats,
+        du_prescribed: Floats,
+        constrained: NDArray[np.bool_],
+        node: Ints,
     ) -> Floats:
-        rhs = rhs - matrix @ du_held
-        rhs[held] = 0.0
+        rhs = rhs - matrix @ du_prescribed
+        rhs[constrained] = 0.0
         self._last = self._lu
         try:
             with self.timed("factor"):
-                self._lu.factorize(matrix, held, node)
+                self._lu.factorize(matrix, constrained, node)
             with self.timed("solve"):
                 du = self._lu.solve(rhs)
         except SingularError as error:
             raise self.singular(error) from None
-        du[held] = du_held[held]
+        du[constrained] = du_prescribed[constrained]
         return du
 
     # -- output ------------------------------------------------------------------------

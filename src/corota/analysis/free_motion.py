@@ -38,8 +38,8 @@ def name_motion(system: System, error: SingularError) -> SingularError:
     equation, modes = error.equation, error.modes
     if modes is None and error.mode is not None:
         modes = np.asarray(error.mode).reshape(1, -1)
-    if system.ties is not None and 0 <= equation < len(system.ties.free):
-        equation = int(system.ties.free[equation])
+    if system.constraints is not None and 0 <= equation < len(system.constraints.free):
+        equation = int(system.constraints.free[equation])
         if modes is not None and system.link is not None:
             modes = system.expand(system.link, np.asarray(modes).T).T
     mode = None if modes is None else modes[0]
@@ -48,7 +48,7 @@ def name_motion(system: System, error: SingularError) -> SingularError:
     moves = "" if modes is None else describe(system, modes)
     text = (
         f"the structure can move freely: {moves + '; ' if moves else ''}"
-        f"{system.describe(equation)} is held by nothing; add a support, or remove the "
+        f"{system.describe(equation)} is unconstrained; add a support, or remove the "
         "mechanism that contains it"
     )
     ratio = system.scales.ratio

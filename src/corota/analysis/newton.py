@@ -67,13 +67,13 @@ class SystemLike(Protocol[E]):
     """A system of equations: see :class:`corota.analysis.equations.System`."""
 
     def evaluate(self, u: Floats, step_time: float) -> E: ...
-    def predict(self, at: E, du_held: Floats) -> tuple[Floats, int]: ...
-    def judge(self, at: E, u: Floats) -> Judgement: ...
-    def release(self, at: E) -> None: ...
+    def predict(self, at: E, du_prescribed: Floats) -> tuple[Floats, int]: ...
+    def residual_norms(self, at: E, u: Floats) -> ResidualNorms: ...
+    def return_tangent(self, at: E) -> None: ...
 
 
 @dataclass
-class Judgement:
+class ResidualNorms:
     """Size of a residual against its scale, forces and moments apart."""
 
     force: float  # largest free residual force / force scale
@@ -148,7 +148,7 @@ def newton(
     step_time: float,
     settings: Settings,
     start: E | None = None,
-    report: Callable[[int, Judgement, float, str], None] | None = None,
+    report: Callable[[int, ResidualNorms, float, str], None] | None = None,
 ) -> Outcome[E]:
     """Find equilibrium at a time, starting from a displacement.
 
@@ -181,13 +181,13 @@ def newton(
     except ElementFailure as error:
         return Outcome(False, u, None, reason=str(error))
     outcome = Outcome(False, u, at)
-    du_held = prescribed - u
-    moved = bool(np.any(du_held))
-    judged = system.judge(at, u)
-    size = judged.size
+    du_prescribed = prescribed - u
+    moved = bool(np.any(du_prescribed))
+    norms = system.residual_norms(at, u)
+    size = norms.size
     outcome.sizes.append(size)
     # With moving supports the first residual says nothing about the one to be reached.
-    if not moved and size <= settings.tolerance and not judged.idle:
+    if not moved and size <= settings.tolerance and not norms.idle:
         outcome.converged = True
         return outcome
     best, least, waited = size, math.inf, 0
@@ -197,7 +197,7 @@ def newton(
             if again and not moved and _old_will_do(outcome.sizes, settings.tolerance):
                 du = again(at)
             else:
-                du, outcome.negative = system.predict(at, du_held)
+                du, outcome.negative = system.predict(at, du_prescribed)
         except SingularError as error:
             if iteration == 1:
                 raise
@@ -215,26 +215,26 @@ def newton(
         if isinstance(trial, str):
             outcome.reason = trial
             return outcome
-        system.release(at)
+        system.return_tangent(at)
         u, at, length = trial
         if moved:
-            du_held = (1.0 - length) * du_held
-            moved = bool(np.any(du_held))
-        judged = system.judge(at, u)
-        size = judged.size
+            du_prescribed = (1.0 - length) * du_prescribed
+            moved = bool(np.any(du_prescribed))
+        norms = system.residual_norms(at, u)
+        size = norms.size
         settled = not moved and size > settings.tolerance and size >= 0.1 * before
-        settled = settled and judged.rounding(settings.tolerance)
+        settled = settled and norms.rounding(settings.tolerance)
         if settled:
             # Against the smaller of forces and moments alone it could look large.
-            judged.force, judged.moment = judged.honest
-            size = judged.size
+            norms.force, norms.moment = norms.honest
+            size = norms.size
         outcome.u, outcome.at, outcome.iterations = u, at, iteration
         outcome.sizes.append(size)
         if report is not None:
             # Unknowns beyond the dofs are multipliers, of another unit.
             largest = float(np.abs(du[: len(at.internal)]).max())
-            note = "; ".join(filter(None, [f"step {length:.3g}" * (length != 1.0), judged.note]))
-            report(iteration, judged, length * largest, note)
+            note = "; ".join(filter(None, [f"step {length:.3g}" * (length != 1.0), norms.note]))
+            report(iteration, norms, length * largest, note)
         if not math.isfinite(size):
             outcome.reason = "the residual is not finite"
             return outcome
@@ -296,17 +296,17 @@ def _search(
             continue
         if iteration <= 4 or length < 1.0:
             return trial, at, length
-        after = system.judge(at, trial).size
+        after = system.residual_norms(at, trial).size
         if after <= 2.0 * before:
             return trial, at, length
         # Zero of the work of the residual along the step, by one regula falsi.
         first, last = float(du @ start.residual), float(du @ at.residual)
         if first < 0.0 < last:
             length = min(max(first / (first - last), 0.1), 0.9)
-            system.release(at)
+            system.return_tangent(at)
             continue
         return trial, at, length
     return problem
 
 
-__all__ = ["ElementFailure", "GiveUp", "Judgement", "Outcome", "Settings", "larger", "newton"]
+__all__ = ["ElementFailure", "GiveUp", "Outcome", "ResidualNorms", "Settings", "larger", "newton"]

@@ -24,7 +24,7 @@ def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, flo
     fields, energy = [], 0.0
     largest: tuple[float, Material | None] = (0.0, None)
     artificial = plastic = 0.0
-    raw = system.core.recover(system.in_space(u), system.turning)
+    raw = system.core.recover(system.in_space(u), system.nlgeom)
     for index, (block, own) in enumerate(zip(system.blocks, raw, strict=True)):
         for name, values in own["values"].items():
             if not np.isfinite(values).all():
@@ -44,7 +44,7 @@ def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, flo
         stored, lost = system.user.energies(index, own["values"]["ENER"], own["volume"])
         energy, plastic = energy + stored, plastic + lost
         section, strain = block.section, float(own["largest_strain"])
-        if system.turning and section.local_strain == "linear" and strain > largest[0]:
+        if system.nlgeom and section.local_strain == "linear" and strain > largest[0]:
             largest = strain, section.material
         fields.append(
             PointFields(

@@ -225,23 +225,23 @@ class Analysis:
             raise UnsupportedError(
                 f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
             )
-        if system.touching is not None and step.procedure not in WITH_CONTACT:
+        if system.contact_term is not None and step.procedure not in WITH_CONTACT:
             raise UnsupportedError(
                 f"a {step.procedure} step takes no contact pairs or ties; leave them out, or use "
                 f"{' or '.join(WITH_CONTACT)} steps",
                 step.where,
             )
         self.observers.step(number, step)
-        turning = system.turning
+        nlgeom = system.nlgeom
         system.mass = mass_of_step(self.steps, number)
         system.begin(step, state.time, state.u, reaction)
-        if state.at is None or turning != system.turning:
+        if state.at is None or nlgeom != system.nlgeom:
             state.at = system.evaluate(state.u, 0.0)
         assert state.energies is not None
         state.energies.begin(step, state.at.internal)
         if number == 1:
-            if system.touching is not None:
-                state.notes += system.touching.notes
+            if system.contact_term is not None:
+                state.notes += system.contact_term.notes
             self._save(number, state, 0, 0.0, {})
 
         def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
@@ -265,10 +265,16 @@ class Analysis:
             return
         moved, last = system.by_node(failed.u), self.results.frames[-1]
         self.results.last_iterate = Frame(
-            last.step, last.increment + 1, last.time, last.step_time, last.factor,
-            moved[:, :2].copy(), moved[:, 2].copy(),
-            system.by_node(system.reaction(failed.at)), system.by_node(failed.at.external),
-        )  # fmt: skip
+            last.step,
+            last.increment + 1,
+            last.time,
+            last.step_time,
+            last.factor,
+            moved[:, :2].copy(),
+            moved[:, 2].copy(),
+            system.by_node(system.reaction(failed.at)),
+            system.by_node(failed.at.external),
+        )
 
     def _warn(self, kind: str, note: str) -> None:
         """Say a thing once, and keep it."""
@@ -310,15 +316,17 @@ class Analysis:
             for block, own in zip(system.blocks, fields, strict=True):
                 if "flow" not in self.warned and (found := localised(block, own)):
                     label = self.model.mesh.cell_labels[found[0]]
-                    self._warn("flow", f"element {label}, step {number}, increment {increment}: "
-                               + found[1])  # fmt: skip
+                    self._warn(
+                        "flow",
+                        f"element {label}, step {number}, increment {increment}: " + found[1],
+                    )
         kind = self.steps[number - 1].procedure
         if kind == "dynamic" or (kind == "static" and elements is not None):
             assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
         contact = None
-        if system.touching is not None:
-            contact, sums = system.touching.output()
+        if system.contact_term is not None:
+            contact, sums = system.contact_term.output()
             scalars = {**scalars, **sums}
         frame = Frame(
             number,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.newton import FLOOR, Judgement, larger
+from corota.analysis.newton import FLOOR, ResidualNorms, larger
 from corota.model import elements
 
 if TYPE_CHECKING:
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 #: Forces below this many rounding errors of the coordinates are none.
-NOTHING = 1e3
+NEGLIGIBLE_FORCE = 1e3
 #: Rounding counts as such up to this share of all that acts, and where nothing is loaded up to
 #: forces of none this many times over.
 LARGEST_NOISE, FARTHEST = 1e-6, 10.0
 #: Share of the moments over the size of the model that forces are measured by at least, and
 #: of the forces times that size for moments: either may vanish altogether.
 LEAST = 1e-6
-#: A body that moves this many sizes of the model and supports is held by nothing.
+#: A body that moves this many sizes of the model and supports is unconstrained.
 FAR = 1e2
 EPS = float(np.finfo(float).eps)
 
@@ -87,14 +87,14 @@ class Scales:
     @property
     def nothing(self) -> float:
         """Force that rounding of the coordinates alone would give."""
-        return NOTHING * EPS * (self.stiffest + self._heft) * self.system.length
+        return NEGLIGIBLE_FORCE * EPS * (self.stiffest + self._heft) * self.system.length
 
     @property
     def force(self) -> float:
         """Largest force of the state judged last or of the committed one."""
         return max(self._sizes[0], self._committed[0])
 
-    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual against its scale, forces and moments apart.
 
         The committed state counts because a body that is unloaded altogether has no forces of
@@ -107,7 +107,7 @@ class Scales:
             internal = system.reaction(at)
             scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
         self._sizes, residual, worst, displacement = system.core.sizes(
-            internal, scale, external, u, system.conditions.held, at.link is None
+            internal, scale, external, u, system.conditions.constrained, at.link is None
         )
         self._heft = at.heft
         force = larger(self._sizes[0], self._committed[0])
@@ -120,20 +120,20 @@ class Scales:
         loaded = bool(at.external.any())
         if whole <= self.nothing and not loaded:
             # A slow motion may be as small as that: nothing is known before a correction.
-            return Judgement(0.0, 0.0, 0.0, 0, idle=at.heft > 0.0 and bool(max(residual)))
+            return ResidualNorms(0.0, 0.0, 0.0, 0, idle=at.heft > 0.0 and bool(max(residual)))
         relative = (_ratio(residual[0], force), _ratio(residual[1], moment))
-        judged = Judgement(*relative, 0.0, worst[0] if relative[0] >= relative[1] else worst[1])
-        judged.honest = (_ratio(residual[0], whole), _ratio(residual[1], whole * length))
+        norms = ResidualNorms(*relative, 0.0, worst[0] if relative[0] >= relative[1] else worst[1])
+        norms.honest = (_ratio(residual[0], whole), _ratio(residual[1], whole * length))
         most = LARGEST_NOISE * whole
         if not loaded:
             most = max(most, FARTHEST * self.nothing)
         self._most = most
-        if judged.size > self.tolerance and max(residual[0], residual[1] / length) <= most:
+        if norms.size > self.tolerance and max(residual[0], residual[1] / length) <= most:
             excess = self._beyond_noise(at, internal, moved, force, moment)
-            judged.floor, judged.moment_floor = (
+            norms.floor, norms.moment_floor = (
                 r / e if e > 0.0 else r for r, e in zip(relative, excess, strict=True)
             )
-        return judged
+        return norms
 
     def _beyond_noise(
         self, at: Evaluation, internal: Floats, moved: float, force: float, moment: float
@@ -143,7 +143,7 @@ class Scales:
         if not len(at.values):
             return np.inf, np.inf
         left = np.abs(internal if at.link is not None else internal - at.external)
-        left[system.conditions.held] = 0.0
+        left[system.conditions.constrained] = 0.0
         stiffness = self._diagonal(at.values)
         if at.added is not None:
             stiffness = stiffness - at.added
@@ -159,18 +159,18 @@ class Scales:
             out.append(float(over.max(initial=0.0)))
         return out[0], out[1]
 
-    def add_lack(self, judged: Judgement, lack: float) -> None:
+    def add_complementarity(self, norms: ResidualNorms, complementarity: float) -> None:
         """Judge what contact conditions lack, as a force, with the residual judged last."""
         # Where nothing is loaded yet, and where all surfaces part, forces of rounding size are
         # the measure.
         force = max(self.force, self.nothing)
-        judged.force = max(judged.force, min(_ratio(lack, force), 1.0))
-        least, moment = judged.honest
-        judged.honest = (max(least, _ratio(lack, max(self.whole, self.nothing))), moment)
-        if judged.force > self.tolerance:
+        norms.force = max(norms.force, min(_ratio(complementarity, force), 1.0))
+        least, moment = norms.honest
+        norms.honest = (max(least, _ratio(complementarity, max(self.whole, self.nothing))), moment)
+        if norms.force > self.tolerance:
             # The stiffness by which gaps become forces is that of the nodes.
             rounding = min(self._noise, self._most / FLOOR)
-            judged.floor = max(judged.floor, _ratio(rounding, force))
+            norms.floor = max(norms.floor, _ratio(rounding, force))
 
     def senseless(self, u: Floats) -> str:
         """Why a static displacement makes no sense, or nothing.
@@ -178,12 +178,12 @@ class Scales:
         What is held moves at most as its supports and its own deformation do.
         """
         system = self.system
-        if not self._bodies or not (system.turning or system.touching is not None):
+        if not self._bodies or not (system.nlgeom or system.contact_term is not None):
             return ""
         begun = np.zeros(system.n_dofs) if self._begun is None else self._begun
         moved = np.where(system.is_rotation, 0.0, np.abs(u[: system.n_dofs] - begun))
-        held = moved[system.conditions.held].max(initial=0.0)
-        far = FAR * (system.length + float(held))
+        constrained = moved[system.conditions.constrained].max(initial=0.0)
+        far = FAR * (system.length + float(constrained))
         worst = int(moved.argmax())
         if moved[worst] <= far:
             return ""

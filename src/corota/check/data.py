@@ -29,15 +29,21 @@ def check_data(model: Model) -> list[Diagnostic]:
         later = number > 1
         if not (moved or later or step.loads or model.loads):
             found.append(
-                Diagnostic("warning", f"step {number}: nothing loads or moves the model",
-                           step.where)
-            )  # fmt: skip
+                Diagnostic(
+                    "warning", f"step {number}: nothing loads or moves the model", step.where
+                )
+            )
         if step.procedure.startswith("dynamic"):
             found += [
-                Diagnostic("error", f"step {number}: material {s.material.name} has no density",
-                           s.where, hint="give *DENSITY (rho=)")
-                for s in model.sections if s.material.rho == 0.0
-            ]  # fmt: skip
+                Diagnostic(
+                    "error",
+                    f"step {number}: material {s.material.name} has no density",
+                    s.where,
+                    hint="give *DENSITY (rho=)",
+                )
+                for s in model.sections
+                if s.material.rho == 0.0
+            ]
     return found
 
 

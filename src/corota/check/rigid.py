@@ -165,8 +165,9 @@ def _describe(
         moving = np.abs(u).max(axis=1) > 1e-8
         if np.abs(motion[:, 2]).max() <= 1e-8:
             main = u[np.abs(u).max(axis=1).argmax()]
-            text = "move along " + ("x" if abs(main[1]) < 1e-8 else
-                                    "y" if abs(main[0]) < 1e-8 else "a slanted line")  # fmt: skip
+            text = "move along " + (
+                "x" if abs(main[1]) < 1e-8 else "y" if abs(main[0]) < 1e-8 else "a slanted line"
+            )
         else:
             turn = motion[np.abs(motion[:, 2]).argmax()]
             pivot = centre + size * np.array([-turn[1], turn[0]]) / turn[2]

@@ -7,7 +7,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 from corota.errors import ConvergenceError, CorotaError
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from corota.model.model import Model
@@ -20,7 +20,7 @@ class _Begun(Exception):
     """The run is under way."""
 
 
-class _Watch(Silent):
+class _Watch(BaseObserver):
     """Ends a run as soon as it is known to have started.
 
     Without contact one solution of the tangent is enough. With it bodies may part and be held by

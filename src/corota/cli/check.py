@@ -64,8 +64,12 @@ def _colored(diagnostic: Diagnostic, terminal: Terminal) -> str:
 def _record(diagnostic: Diagnostic) -> dict[str, Any]:
     where = diagnostic.where
     return {
-        "event": "diagnostic", "severity": diagnostic.severity, "message": diagnostic.message,
-        "file": where.file if where else None, "line": where.line if where else None,
-        "column": where.column if where else None, "keyword": diagnostic.keyword,
+        "event": "diagnostic",
+        "severity": diagnostic.severity,
+        "message": diagnostic.message,
+        "file": where.file if where else None,
+        "line": where.line if where else None,
+        "column": where.column if where else None,
+        "keyword": diagnostic.keyword,
         "hint": diagnostic.hint,
-    }  # fmt: skip
+    }

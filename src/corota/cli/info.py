@@ -9,7 +9,7 @@ from corota.cli.reading import is_result, read_input
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.io.result_reader import StoredResults
+    from corota.io.result_reader import FileResults
     from corota.model.model import Model
 
 
@@ -89,15 +89,19 @@ def model_record(model: Model) -> dict[str, Any]:
     """Give the same for machines."""
     mesh = model.mesh
     return {
-        "event": "model", "job": model.name, "nodes": mesh.n_nodes, "elements": mesh.n_cells,
+        "event": "model",
+        "job": model.name,
+        "nodes": mesh.n_nodes,
+        "elements": mesh.n_cells,
         "node sets": {k: len(v) for k, v in mesh.node_sets.items()},
         "element sets": {k: len(v) for k, v in mesh.cell_sets.items()},
         "edge sets": {k: len(v) for k, v in mesh.edge_sets.items()},
-        "steps": len(model.steps), "notes": model.notes,
-    }  # fmt: skip
+        "steps": len(model.steps),
+        "notes": model.notes,
+    }
 
 
-def result_lines(results: StoredResults) -> list[str]:
+def result_lines(results: FileResults) -> list[str]:
     """Frames, times, variables and ranges of results."""
     frames = results.frames
     if not frames:

@@ -92,17 +92,21 @@ def make_parser() -> Parser:
         help="a curve, such as 'U2@TIP,load factor'",
     )
     plot.add_argument(
-        "--contact", nargs="?", const="", metavar="PAIR",
+        "--contact",
+        nargs="?",
+        const="",
+        metavar="PAIR",
         help="pressure along the slave surface of a contact pair, the first by default",
-    )  # fmt: skip
+    )
     plot.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
     plot.add_argument("--response", action="store_true", help="steady-state response")
     plot.add_argument("--energies", action="store_true", help="energies of a motion over time")
     plot.add_argument("--animate", action="store_true", help="all frames as a GIF or MP4")
     plot.add_argument(
-        "--last-iterate", action="store_true",
+        "--last-iterate",
+        action="store_true",
         help="where the last attempt of a run that stopped ended; what is out of balance as RF",
-    )  # fmt: skip
+    )
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
 
     info = command("info", "Describe a deck, a mesh or a result file.")

@@ -7,7 +7,7 @@ import shutil
 import time
 from typing import TYPE_CHECKING
 
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 HEAD = " step    inc  att  iter          time   load factor   residual"
 
 
-class Progress(Silent):
+class Progress(BaseObserver):
     """Observer that prints.
 
     Parameters

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
 from corota.errors import CorotaError, ModelError
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from corota.io.job import JobFiles
 
 
-class Stop(Silent):
+class Stop(BaseObserver):
     """Observer that ends the analysis after the increment in which a signal came."""
 
     def __init__(self, terminal: Terminal) -> None:
@@ -119,10 +119,13 @@ def run(args: Any, terminal: Terminal) -> int:
             terminal.line(text)
     terminal.record(
         {
-            "event": "files", "files": [str(p) for p in files.paths], "wall": wall,
-            "increments": progress.increments, "iterations": progress.iterations,
+            "event": "files",
+            "files": [str(p) for p in files.paths],
+            "wall": wall,
+            "increments": progress.increments,
+            "iterations": progress.iterations,
         }
-    )  # fmt: skip
+    )
     return 0
 
 

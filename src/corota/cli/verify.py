@@ -79,10 +79,14 @@ def _list(wanted: list[Problem], terminal: Terminal) -> int:
             terminal.line(f"  {problem.name:{width}}  {problem.title}")
             terminal.record(
                 {
-                    "event": "problem", "name": problem.name, "title": problem.title,
-                    "group": group, "source": problem.source, "certainty": problem.certainty,
+                    "event": "problem",
+                    "name": problem.name,
+                    "title": problem.title,
+                    "group": group,
+                    "source": problem.source,
+                    "certainty": problem.certainty,
                 }
-            )  # fmt: skip
+            )
     return 0
 
 
@@ -153,9 +157,14 @@ def _records(outcome: Outcome) -> list[dict[str, Any]]:
     return [
         head
         | {
-            "quantity": v.quantity, "reference": v.reference, "measured": v.measured,
-            "error": v.error, "tolerance": v.tolerance, "kind": v.kind, "ok": v.ok,
+            "quantity": v.quantity,
+            "reference": v.reference,
+            "measured": v.measured,
+            "error": v.error,
+            "tolerance": v.tolerance,
+            "kind": v.kind,
+            "ok": v.ok,
             "seconds": outcome.seconds,
         }
         for v in outcome.values
-    ]  # fmt: skip
+    ]

@@ -18,7 +18,7 @@ def full(error: OSError, path: Path) -> FileError:
     return FileError(f"{path}: cannot write: {reason}")
 
 
-class TwinFile:
+class AtomicFile:
     """File-like object whose visible name always denotes a complete state.
 
     Writes are held in memory until :meth:`commit`. A commit brings the hidden copy up to date

@@ -28,7 +28,7 @@ def store_contacts(group: Any, model: Model) -> None:
             own["master"] = sets[pair.master] if isinstance(pair.master, str) else pair.master
 
 
-def stored_contacts(file: Any) -> list[ContactPair]:
+def contacts_of_results(file: Any) -> list[ContactPair]:
     """Contact pairs of a result file; none in those of versions without."""
     pairs = []
     group = file.get("contacts", {})
@@ -42,4 +42,4 @@ def stored_contacts(file: Any) -> list[ContactPair]:
     return pairs
 
 
-__all__ = ["store_contacts", "stored_contacts"]
+__all__ = ["contacts_of_results", "store_contacts"]

@@ -8,7 +8,7 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,7 +38,7 @@ def _plain(value: Any) -> Any:
     return number if math.isfinite(number) else None
 
 
-class Events(Silent):
+class Events(BaseObserver):
     """Turns what happens into records.
 
     Parameters
@@ -59,57 +59,83 @@ class Events(Silent):
         self._labels = model.mesh.node_labels
         self._emit(
             {
-                "event": "start", "version": __version__, "job": model.name,
-                "nodes": model.mesh.n_nodes, "cells": model.mesh.n_cells, "steps": len(steps),
+                "event": "start",
+                "version": __version__,
+                "job": model.name,
+                "nodes": model.mesh.n_nodes,
+                "cells": model.mesh.n_cells,
+                "steps": len(steps),
                 "notes": model.notes,
             }
-        )  # fmt: skip
+        )
 
     def step(self, number: int, step: Step) -> None:
         self._emit(
             {
-                "event": "step", "step": number, "name": step.name, "procedure": step.procedure,
-                "nlgeom": step.nlgeom, "period": step.period,
+                "event": "step",
+                "step": number,
+                "name": step.name,
+                "procedure": step.procedure,
+                "nlgeom": step.nlgeom,
+                "period": step.period,
             }
-        )  # fmt: skip
+        )
 
     def iteration(self, info: Iteration) -> None:
         node = int(self._labels[info.worst_node]) if info.worst_node >= 0 else None
         self._emit(
             {
-                "event": "iteration", "step": info.step, "increment": info.increment,
-                "attempt": info.attempt, "iteration": info.iteration, "residual": info.residual,
-                "moment residual": info.moment_residual, "correction": info.correction,
-                "worst node": node, "worst dof": info.worst_dof + 1, "note": info.note,
+                "event": "iteration",
+                "step": info.step,
+                "increment": info.increment,
+                "attempt": info.attempt,
+                "iteration": info.iteration,
+                "residual": info.residual,
+                "moment residual": info.moment_residual,
+                "correction": info.correction,
+                "worst node": node,
+                "worst dof": info.worst_dof + 1,
+                "note": info.note,
             }
-        )  # fmt: skip
+        )
 
     def increment(self, frame: Frame) -> None:
         attempts = self._cuts.get((frame.step, frame.increment), 0) + 1
         self._emit(
             {
-                "event": "increment", "step": frame.step, "increment": frame.increment,
-                "attempts": attempts if frame.increment else 0, "time": frame.time,
-                "step time": frame.step_time, "load factor": frame.factor,
-                "elapsed": time.perf_counter() - self._begin, **frame.scalars,
+                "event": "increment",
+                "step": frame.step,
+                "increment": frame.increment,
+                "attempts": attempts if frame.increment else 0,
+                "time": frame.time,
+                "step time": frame.step_time,
+                "load factor": frame.factor,
+                "elapsed": time.perf_counter() - self._begin,
+                **frame.scalars,
             }
-        )  # fmt: skip
+        )
 
     def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None:
         self._cuts[step, increment] = attempt
         self._emit(
             {
-                "event": "cut back", "step": step, "increment": increment, "attempt": attempt,
-                "reason": reason, "dt": dt,
+                "event": "cut back",
+                "step": step,
+                "increment": increment,
+                "attempt": attempt,
+                "reason": reason,
+                "dt": dt,
             }
-        )  # fmt: skip
+        )
 
     def end(self, results: Results, error: Exception | None) -> None:
         record: dict[str, Any] = {
-            "event": "end", "status": "failed" if error else "done",
+            "event": "end",
+            "status": "failed" if error else "done",
             "elapsed": time.perf_counter() - self._begin,
-            "profile": results.info.get("profile", {}), "notes": results.notes,
-        }  # fmt: skip
+            "profile": results.info.get("profile", {}),
+            "notes": results.notes,
+        }
         if error:
             record |= {"error": type(error).__name__, "message": str(error)}
         self._emit(record)

@@ -77,9 +77,12 @@ def read(
             f"known: {', '.join(MODEL_READERS)} (meshes: corota.mesh.read)"
         )
     return MODEL_READERS[suffix](
-        path, element_map=element_map, lenient=lenient, allow_include=allow_include,
+        path,
+        element_map=element_map,
+        lenient=lenient,
+        allow_include=allow_include,
         as_written=as_written,
-    )  # fmt: skip
+    )
 
 
 def write(model: Model, path: str | os.PathLike[str]) -> Path:

@@ -17,7 +17,7 @@ from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.dat import check_requests, dat_blocks
 from corota.io.tables.dat_modes import buckling_table, eigenvalue_tables
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -37,7 +37,7 @@ BEAT = 0.25
 MOST_WAITING = 256 << 20
 
 
-class JobFiles(Silent):
+class JobFiles(BaseObserver):
     """Observer that writes ``<job>.vtkhdf .dat .sta .cvg .csv .jsonl`` into a folder.
 
     Every accepted increment is on disk within :data:`BEAT` seconds, in files that are readable

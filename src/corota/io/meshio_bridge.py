@@ -19,8 +19,12 @@ if TYPE_CHECKING:
 
 #: Kinds by meshio's names; other cells are left out.
 KINDS = {
-    "triangle": "tri3", "triangle6": "tri6", "quad": "quad4", "quad8": "quad8", "quad9": "quad9",
-}  # fmt: skip
+    "triangle": "tri3",
+    "triangle6": "tri6",
+    "quad": "quad4",
+    "quad8": "quad8",
+    "quad9": "quad9",
+}
 
 
 def read_meshio(path: str | os.PathLike[str]) -> Mesh:

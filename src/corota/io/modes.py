@@ -46,11 +46,18 @@ def as_results(results: Results) -> Results:
             value = float(factor)
             out.add(
                 Frame(
-                    modes.step, number, float(number), float(number), value,
-                    shape[:, :2].copy(), shape[:, 2].copy(), none, none,
+                    modes.step,
+                    number,
+                    float(number),
+                    float(number),
+                    value,
+                    shape[:, :2].copy(),
+                    shape[:, 2].copy(),
+                    none,
+                    none,
                     scalars=_scalars(named, value, float(rate), number),
                 )
-            )  # fmt: skip
+            )
     return out
 
 

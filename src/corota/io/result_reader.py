@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from corota.errors import FileError, InputError
-from corota.io.contacts import stored_contacts
+from corota.io.contacts import contacts_of_results
 from corota.io.vtk.vtkhdf import VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
@@ -35,7 +35,7 @@ _KINDS = {number: kind for kind, number in VTK_TYPES.items()}
 _OWN = ("step", "increment", "time", "step time", "load factor")
 
 
-def read_results(path: str | PathLike[str]) -> StoredResults:
+def read_results(path: str | PathLike[str]) -> FileResults:
     """Open a result file that Corota wrote.
 
     Parameters
@@ -66,7 +66,7 @@ def read_results(path: str | PathLike[str]) -> StoredResults:
         with _damage(name):
             if "corota" not in file or "VTKHDF" not in file:
                 raise FileError(f"{name}: an HDF5 file, but not one of Corota's results")
-            return StoredResults(file)
+            return FileResults(file)
     except FileError:
         file.close()
         raise
@@ -88,7 +88,7 @@ def _whole(good: bool, what: str) -> None:
         raise ValueError(what)
 
 
-class StoredFrames(Sequence[Frame]):
+class FileFrames(Sequence[Frame]):
     """Frames of a file; each is read when it is asked for, the last one is remembered."""
 
     def __init__(self, file: Any) -> None:
@@ -192,7 +192,7 @@ class StoredFrames(Sequence[Frame]):
         )
 
 
-class StoredResults(Results):
+class FileResults(Results):
     """Results in a file, with the methods of :class:`~corota.results.Results`.
 
     Parameters
@@ -204,12 +204,12 @@ class StoredResults(Results):
     def __init__(self, file: Any) -> None:
         own = file["corota"]
         model = Model(_mesh(file), str(own.attrs["job"]))
-        model.contacts = stored_contacts(own)
+        model.contacts = contacts_of_results(own)
         info = json.loads(own.attrs["info"]) if "info" in own.attrs else {}
         super().__init__(model, info=info)
         self._file = file
         self._section = file["VTKHDF/CellData/section"][:]
-        self.frames = StoredFrames(file)  # type: ignore[assignment]
+        self.frames = FileFrames(file)  # type: ignore[assignment]
 
     def sections(self) -> Ints:
         return np.asarray(self._section)
@@ -240,7 +240,7 @@ class StoredResults(Results):
         name = vf.match_name(name, self.variables(index))
         if name in vf.NODAL:
             return vf.nodal_value(frame, name)
-        assert isinstance(self.frames, StoredFrames)
+        assert isinstance(self.frames, FileFrames)
         source, column = self._source(name)
         values = self.frames.at_points(source, index % len(self.frames))
         return values if column < 0 else values[:, column]
@@ -249,7 +249,7 @@ class StoredResults(Results):
         """One number for each frame; scalars are read without the frames."""
         from corota.results.history import History
 
-        assert isinstance(self.frames, StoredFrames)
+        assert isinstance(self.frames, FileFrames)
         if name == "factor":
             name = "load factor"
         if name in self._file["corota/frames"]:
@@ -258,14 +258,14 @@ class StoredResults(Results):
 
     @property
     def times(self) -> Floats:
-        assert isinstance(self.frames, StoredFrames)
+        assert isinstance(self.frames, FileFrames)
         return self.frames.scalars("time")
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
 
-    def __enter__(self) -> StoredResults:
+    def __enter__(self) -> FileResults:
         return self
 
     def __exit__(

@@ -31,9 +31,15 @@ EDGES: dict[str, tuple[tuple[int, ...], ...]] = {
 
 #: Number of nodes of each cell kind.
 N_NODES = {
-    "tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8, "quad9": 9,
-    "line2": 2, "line3": 3, "point1": 1,
-}  # fmt: skip
+    "tri3": 3,
+    "tri6": 6,
+    "quad4": 4,
+    "quad8": 8,
+    "quad9": 9,
+    "line2": 2,
+    "line3": 3,
+    "point1": 1,
+}
 
 
 @dataclass

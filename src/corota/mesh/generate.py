@@ -265,8 +265,9 @@ def _blend(sides: Sequence[Curve], nx: int, ny: int) -> Floats:
         + (1 - u) * v * top[0]
         + u * v * top[-1]
     )
-    return np.asarray((1 - v) * bottom + v * top + (1 - u) * left[:, None] + u * right[:, None]
-                      - corners)  # fmt: skip
+    return np.asarray(
+        (1 - v) * bottom + v * top + (1 - u) * left[:, None] + u * right[:, None] - corners
+    )
 
 
 def _build(lattice: Floats, nx: int, ny: int, cell: Kind, diagonal: Diagonal) -> Mesh:
@@ -274,8 +275,9 @@ def _build(lattice: Floats, nx: int, ny: int, cell: Kind, diagonal: Diagonal) ->
     width = 2 * nx + 1
     i, j = np.meshgrid(np.arange(nx), np.arange(ny))
     corner = (2 * j * width + 2 * i).ravel()
-    local = np.array([0, 1, 2, width, width + 1, width + 2, 2 * width, 2 * width + 1,
-                      2 * width + 2])  # fmt: skip
+    local = np.array(
+        [0, 1, 2, width, width + 1, width + 2, 2 * width, 2 * width + 1, 2 * width + 2]
+    )
     nodes9 = corner[:, None] + local
     sides = (
         np.arange(nx),

@@ -218,9 +218,11 @@ class PressureLaw:
         """Overclosure at which the pressure begins [length]; negative before contact."""
         if self.kind == "linear":
             return 0.0
-        return -float(self.overclosure[0]) if self.kind == "exponential" else float(
-            self.overclosure[0]
-        )  # fmt: skip
+        return (
+            -float(self.overclosure[0])
+            if self.kind == "exponential"
+            else float(self.overclosure[0])
+        )
 
     def __call__(self, w: Floats) -> tuple[Floats, Floats, Floats]:
         """Pressure, slope and energy per area at overclosures above the start.

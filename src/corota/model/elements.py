@@ -38,7 +38,7 @@ class Element:
     stabilized : bool
         Has one point, and a stiffness of its own for the hourglass.
     line : bool
-        Structural companion (truss, beam, spring) and no part of the plane.
+        Line element (truss, beam, spring) and no part of the plane.
     turns : bool
         Whether its frame turns with it.
     """
@@ -81,7 +81,7 @@ def names() -> tuple[str, ...]:
 
 
 def line_names() -> tuple[str, ...]:
-    """Names of all structural companions: trusses, beams, springs."""
+    """Names of all line elements: trusses, beams, springs."""
     return tuple(name for name, element in _all().items() if element.line)
 
 

@@ -80,12 +80,12 @@ class Amplitude:
         h, slack = window, 1e-6 * window
         if time - h < first - slack or time + h > last + slack:
             sign = 1.0 if time - h < first - slack else -1.0
-            near, far = (self._bend(time + sign * k * h, h) for k in (1.0, 2.0))
+            near, far = (self._geometric_stiffness(time + sign * k * h, h) for k in (1.0, 2.0))
             slope = (self(time + sign * h) - self(time)) / (sign * h)
             return slope - 0.5 * sign * h * near, 2.0 * near - far
-        return (self(time + h) - self(time - h)) / (2.0 * h), self._bend(time, h)
+        return (self(time + h) - self(time - h)) / (2.0 * h), self._geometric_stiffness(time, h)
 
-    def _bend(self, time: float, h: float) -> float:
+    def _geometric_stiffness(self, time: float, h: float) -> float:
         """Second difference over `h` about a time [1/time^2]."""
         low, high = np.searchsorted(self.time, (time - h, time + h))
         near = np.arange(low, high)

@@ -444,10 +444,19 @@ class Model(LineSections, InitialFields):
         other = master if isinstance(master, RigidCurve) else self._edges(master)
         self.contacts.append(
             ContactPair(
-                self._edges(slave), other, method, friction, law, clearance, start, stabilise,
-                reach, name, adjust=adjust,
+                self._edges(slave),
+                other,
+                method,
+                friction,
+                law,
+                clearance,
+                start,
+                stabilise,
+                reach,
+                name,
+                adjust=adjust,
             )
-        )  # fmt: skip
+        )
 
     def tie(
         self,

@@ -13,6 +13,13 @@ from corota.plots.model import model
 from corota.plots.motion import energies, modes, response
 
 __all__ = [
-    "animate", "contact_line", "contour", "curve", "energies", "model", "modes", "response",
+    "animate",
+    "contact_line",
+    "contour",
+    "curve",
+    "energies",
+    "model",
+    "modes",
+    "response",
     "status",
-]  # fmt: skip
+]

@@ -107,9 +107,13 @@ def animate(
 
         painted = show(int(chosen[0]))[0]
         bar = figure.colorbar(
-            painted, ax=ax, location="bottom" if below else "right",
-            shrink=0.75 if below else 0.8, aspect=38 if below else 28, pad=0.04,
-        )  # fmt: skip
+            painted,
+            ax=ax,
+            location="bottom" if below else "right",
+            shrink=0.75 if below else 0.8,
+            aspect=38 if below else 28,
+            pad=0.04,
+        )
         label_bar(bar, name, per_cell, limits)
         figure.canvas.draw()
         figure.set_layout_engine("none")  # else the axes would move with the titles

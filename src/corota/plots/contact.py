@@ -90,9 +90,13 @@ def contact_line(
                 at = status == value
                 if at.any() and value:
                     ax.plot(
-                        way[at], np.zeros(int(at.sum())), "|", color=color, markersize=7.0,
+                        way[at],
+                        np.zeros(int(at.sum())),
+                        "|",
+                        color=color,
+                        markersize=7.0,
                         label=name if first else "",
-                    )  # fmt: skip
+                    )
         if high >= low:
             pad = 0.1 * (high - low) or 0.1 * float(runs[0][1][-1])
             ax.set_xlim(low - pad, high + pad)
@@ -176,9 +180,16 @@ def status(
 
 def _curve(ax: Any, way: Floats, values: Floats, color: str, name: str) -> None:
     ax.plot(
-        way, values, color=color, linewidth=1.4, marker="o" if len(way) < 120 else "",
-        markersize=3.0, markerfacecolor="white", markeredgewidth=0.8, label=name,
-    )  # fmt: skip
+        way,
+        values,
+        color=color,
+        linewidth=1.4,
+        marker="o" if len(way) < 120 else "",
+        markersize=3.0,
+        markerfacecolor="white",
+        markeredgewidth=0.8,
+        label=name,
+    )
 
 
 def _pair(results: Results, name: str) -> ContactPair:

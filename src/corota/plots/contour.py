@@ -203,9 +203,13 @@ def contour(
         if name == "PEEQ":
             draw_boundary(ax, results, frame, scale)
         bar = figure.colorbar(
-            painted, ax=ax, location="bottom" if below else "right",
-            shrink=0.75 if below else 0.8, aspect=38 if below else 28, pad=0.04,
-        )  # fmt: skip
+            painted,
+            ax=ax,
+            location="bottom" if below else "right",
+            shrink=0.75 if below else 0.8,
+            aspect=38 if below else 28,
+            pad=0.04,
+        )
         label_bar(bar, name, per_cell, drawing.range(frame))
         pad = 0.04 * float((high - low).max())
         ax.set_xlim(low[0] - pad, high[0] + pad)
@@ -279,14 +283,26 @@ def paint(
         pixels = len(part.triangles) > PIXELS_FROM
         if drawing.per_cell:
             ax.tripcolor(
-                x, y, part.triangles, facecolors=values, cmap=colors, norm=norm,
-                rasterized=pixels, antialiased=False,
-            )  # fmt: skip
+                x,
+                y,
+                part.triangles,
+                facecolors=values,
+                cmap=colors,
+                norm=norm,
+                rasterized=pixels,
+                antialiased=False,
+            )
         else:
             drawn = ax.tricontourf(
-                x, y, part.triangles, np.clip(values, levels[0], levels[-1]), levels=levels,
-                cmap=colors, norm=norm, antialiased=False,
-            )  # fmt: skip
+                x,
+                y,
+                part.triangles,
+                np.clip(values, levels[0], levels[-1]),
+                levels=levels,
+                cmap=colors,
+                norm=norm,
+                antialiased=False,
+            )
             drawn.set_rasterized(pixels)
             drawn.set_edgecolor("face")
             drawn.set_linewidth(0.15)

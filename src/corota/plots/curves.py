@@ -64,10 +64,17 @@ def curve(
             draw_path(ax, across, np.asarray(many[0].values), x.results)
         for one in [] if as_path else many:
             ax.plot(
-                across, one.values, marker="o" if marked else "", markersize=3.2,
-                markerfacecolor="white", markeredgewidth=0.9, linewidth=1.4, label=one.name,
-                clip_on=False, zorder=3,
-            )  # fmt: skip
+                across,
+                one.values,
+                marker="o" if marked else "",
+                markersize=3.2,
+                markerfacecolor="white",
+                markeredgewidth=0.9,
+                linewidth=1.4,
+                label=one.name,
+                clip_on=False,
+                zorder=3,
+            )
         ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
         ax.axvline(0.0, color=PALE, linewidth=0.6, zorder=1)
         ax.grid(True, color="#e6e9ee", linewidth=0.6)

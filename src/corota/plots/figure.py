@@ -17,12 +17,22 @@ if TYPE_CHECKING:
 #: Endings of the picture formats.
 FORMATS = (".png", ".svg", ".pdf")
 STYLE = {
-    "font.size": 9.0, "axes.titlesize": 10.0, "axes.labelsize": 9.0, "axes.linewidth": 0.6,
-    "xtick.major.width": 0.6, "ytick.major.width": 0.6, "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0, "legend.fontsize": 8.0, "legend.frameon": False,
-    "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none",
-    "figure.dpi": 110.0, "axes.prop_cycle": None,
-}  # fmt: skip
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.labelsize": 9.0,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "svg.fonttype": "none",
+    "figure.dpi": 110.0,
+    "axes.prop_cycle": None,
+}
 #: Colors that stay apart in print and for the color-blind (Okabe and Ito).
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999")
 INK, PALE = "#20242b", "#9aa3b0"

@@ -67,8 +67,15 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
             elif len(ends) == 2 and np.ptp(ends, axis=0).any():
                 drawn["spring"].append(zigzag(ends[0], ends[1], HEIGHT * size))
             elif name.endswith("R"):
-                ax.plot(*ends[0], "o", markersize=11.0, markerfacecolor="none", color=SPRING,
-                        markeredgewidth=1.4, zorder=3)  # fmt: skip
+                ax.plot(
+                    *ends[0],
+                    "o",
+                    markersize=11.0,
+                    markerfacecolor="none",
+                    color=SPRING,
+                    markeredgewidth=1.4,
+                    zorder=3,
+                )
             else:
                 dof = int(section.profile[1])
                 away = ends[0] - 0.07 * size * np.eye(2)[dof % 2]
@@ -81,9 +88,11 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
             axes = [k for k in (0, 1) if damper.to_ground[k]]
             drawn["dashpot"] += [np.stack([at - 0.07 * size * np.eye(2)[k], at]) for k in axes]
     looks = {
-        "beam": (BEAM, 2.2, "-"), "truss": (BAR, 1.4, "-"), "spring": (SPRING, 1.1, "-"),
+        "beam": (BEAM, 2.2, "-"),
+        "truss": (BAR, 1.4, "-"),
+        "spring": (SPRING, 1.1, "-"),
         "dashpot": (SPRING, 1.6, (0, (3, 2))),
-    }  # fmt: skip
+    }
     for kind, paths in drawn.items():
         if paths:
             color, width, style = looks[kind]
@@ -92,8 +101,15 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
             )
     if drawn["truss"]:
         ends = np.concatenate(drawn["truss"])
-        ax.plot(*ends.T, "o", markersize=3.6, markerfacecolor="white", color=BAR, zorder=3,
-                markeredgewidth=0.9)  # fmt: skip
+        ax.plot(
+            *ends.T,
+            "o",
+            markersize=3.6,
+            markerfacecolor="white",
+            color=BAR,
+            zorder=3,
+            markeredgewidth=0.9,
+        )
     for mass in subject.point_masses:
         where = mass.nodes
         nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
@@ -105,7 +121,14 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
             nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
             hub = mesh.points[constraint.reference]
             links += [np.stack([mesh.points[n], hub]) for n in nodes]
-            ax.plot(*hub, "D", markersize=4.0, color=LINK, markeredgecolor=INK, zorder=3,
-                    markeredgewidth=0.6)  # fmt: skip
+            ax.plot(
+                *hub,
+                "D",
+                markersize=4.0,
+                color=LINK,
+                markeredgecolor=INK,
+                zorder=3,
+                markeredgewidth=0.6,
+            )
     if links:
         ax.add_collection(LineCollection(links, colors=LINK, linewidths=0.7, zorder=1.8))

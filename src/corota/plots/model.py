@@ -106,9 +106,13 @@ def model(
         handles, labels = ax.get_legend_handles_labels()
         if handles:
             figure.legend(
-                handles, labels, loc="outside lower center", ncols=min(4, len(handles)),
-                handletextpad=0.4, columnspacing=1.2,
-            )  # fmt: skip
+                handles,
+                labels,
+                loc="outside lower center",
+                ncols=min(4, len(handles)),
+                handletextpad=0.4,
+                columnspacing=1.2,
+            )
         if path is not None:
             save(figure, path, dpi)
     return figure
@@ -157,9 +161,15 @@ def _sets(ax: Any, subject: Model) -> None:
         color = COLORS[shown % len(COLORS)]
         at = mesh.points[members]
         ax.plot(
-            at[:, 0], at[:, 1], "o", markersize=3.0, color=color, markeredgewidth=0.0, label=name,
+            at[:, 0],
+            at[:, 1],
+            "o",
+            markersize=3.0,
+            color=color,
+            markeredgewidth=0.0,
+            label=name,
             zorder=2.6,
-        )  # fmt: skip
+        )
         shown += 1
 
 
@@ -196,10 +206,16 @@ def _supports(ax: Any, subject: Model, size: float) -> None:
                 color = SUPPORT
                 marker = CARETS[support.dof][int(beyond)]
             ax.plot(
-                x, y, marker=marker, markersize=6.0 if support.dof < 2 else 4.5, color=color,
-                markerfacecolor="none" if support.dof == 2 else color, markeredgewidth=0.9,
-                linestyle="", zorder=4,
-            )  # fmt: skip
+                x,
+                y,
+                marker=marker,
+                markersize=6.0 if support.dof < 2 else 4.5,
+                color=color,
+                markerfacecolor="none" if support.dof == 2 else color,
+                markeredgewidth=0.9,
+                linestyle="",
+                zorder=4,
+            )
 
 
 def _loads(ax: Any, subject: Model, size: float) -> None:
@@ -261,10 +277,18 @@ def _arrow(
     if not tail:  # loads pull or push: show the force where it can be seen, outside
         start, end = at, at + vector
     ax.annotate(
-        "", xy=end, xytext=start, zorder=5, annotation_clip=False,
+        "",
+        xy=end,
+        xytext=start,
+        zorder=5,
+        annotation_clip=False,
         arrowprops={
-            "arrowstyle": "-|>", "color": color, "linewidth": 1.8 if wide else 1.0,
-            "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11 if wide else 8,
+            "arrowstyle": "-|>",
+            "color": color,
+            "linewidth": 1.8 if wide else 1.0,
+            "shrinkA": 0,
+            "shrinkB": 0,
+            "mutation_scale": 11 if wide else 8,
         },
-    )  # fmt: skip
+    )
     ax.update_datalim([start, end])

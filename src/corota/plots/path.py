@@ -51,19 +51,32 @@ def draw_path(ax: Any, x: Floats, y: Floats, results: Results, *, legend: bool =
         part = slice(ends[0] - 1, ends[-1] + 1)
         name = "stable" if is_stable else "unstable"
         ax.plot(
-            x[part], y[part], linestyle="-" if is_stable else (0, (3.5, 2.0)),
-            color=COLORS[0], linewidth=1.5, zorder=3, clip_on=False,
+            x[part],
+            y[part],
+            linestyle="-" if is_stable else (0, (3.5, 2.0)),
+            color=COLORS[0],
+            linewidth=1.5,
+            zorder=3,
+            clip_on=False,
             label=name if is_stable not in named else "_nolegend_",
-        )  # fmt: skip
+        )
         named.add(is_stable)
     for scalar, symbol, name in MARKS:
         at = [i for i, f in enumerate(results.frames) if f.scalars.get(scalar) == 1.0]
         if at:
             ax.plot(
-                x[at], y[at], linestyle="", marker=symbol, markersize=6.0, markeredgecolor=INK,
-                markerfacecolor=COLORS[1], markeredgewidth=0.8, zorder=4, clip_on=False,
+                x[at],
+                y[at],
+                linestyle="",
+                marker=symbol,
+                markersize=6.0,
+                markeredgecolor=INK,
+                markerfacecolor=COLORS[1],
+                markeredgewidth=0.8,
+                zorder=4,
+                clip_on=False,
                 label=name,
-            )  # fmt: skip
+            )
     if legend:
         ax.legend()
 

@@ -1,7 +1,7 @@
 """Results of an analysis: frames, histories, variables, and the observers that see them."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-from corota.results.observer import Iteration, Observer, Silent
+from corota.results.observer import BaseObserver, Iteration, Observer
 from corota.results.results import Frame, PointFields, Results
 
-__all__ = ["Frame", "Iteration", "Observer", "PointFields", "Results", "Silent"]
+__all__ = ["BaseObserver", "Frame", "Iteration", "Observer", "PointFields", "Results"]

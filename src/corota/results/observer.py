@@ -44,7 +44,7 @@ class Observer(Protocol):
     def end(self, results: Results, error: Exception | None) -> None: ...
 
 
-class Silent:
+class BaseObserver:
     """An observer that does nothing."""
 
     def start(self, model: Model, steps: list[Step]) -> None:

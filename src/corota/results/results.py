@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 from corota.errors import InputError
-from corota.results.observer import Iteration, Observer, Silent
+from corota.results.observer import BaseObserver, Iteration, Observer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-__all__ = ["Frame", "Iteration", "Observer", "PointFields", "Results", "Silent"]
+__all__ = ["BaseObserver", "Frame", "Iteration", "Observer", "PointFields", "Results"]
 
 
 @dataclass
@@ -292,9 +292,13 @@ class Results:
         from corota.results.history import History
 
         simple = {
-            "time": "time", "step time": "step_time", "load factor": "factor",
-            "factor": "factor", "step": "step", "increment": "increment",
-        }  # fmt: skip
+            "time": "time",
+            "step time": "step_time",
+            "load factor": "factor",
+            "factor": "factor",
+            "step": "step",
+            "increment": "increment",
+        }
         if name in simple:
             values = [float(getattr(f, simple[name])) for f in self.frames]
             return History("load factor" if name == "factor" else name, np.array(values), self)

@@ -95,6 +95,7 @@ def von_mises_limits(rise: float = 1.0) -> tuple[float, float]:
         now = np.hypot(10.0, height)
         return float(-2.0 * 1000.0 * (now - before) / before * height / now)
 
-    found = minimize_scalar(lambda h: -load(h), bounds=(0.0, rise), method="bounded",
-                            options={"xatol": 1e-12})  # fmt: skip
+    found = minimize_scalar(
+        lambda h: -load(h), bounds=(0.0, rise), method="bounded", options={"xatol": 1e-12}
+    )
     return -float(found.fun), float(found.fun)

@@ -24,9 +24,14 @@ if TYPE_CHECKING:
 
 #: Groups of problems in the order in which they are listed.
 GROUPS = (
-    "linear statics", "large displacement", "paths and buckling", "plasticity", "dynamics",
-    "contact", "properties of the method",
-)  # fmt: skip
+    "linear statics",
+    "large displacement",
+    "paths and buckling",
+    "plasticity",
+    "dynamics",
+    "contact",
+    "properties of the method",
+)
 
 Certainty = Literal["analytic", "computed independently", "published", "converged here"]
 

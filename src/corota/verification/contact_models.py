@@ -43,11 +43,19 @@ def quarter(radius: float, n: int, element: str, growth: float = 1.5, upper: boo
 
     power = growth + 0.3
     if upper:
-        sides = [flat, arc(0.0, 65.0, 1.0), arc(90.0, 65.0, growth),
-                 lambda t: (0.0, radius * (1.0 - (1.0 - t) ** power))]  # fmt: skip
+        sides = [
+            flat,
+            arc(0.0, 65.0, 1.0),
+            arc(90.0, 65.0, growth),
+            lambda t: (0.0, radius * (1.0 - (1.0 - t) ** power)),
+        ]
     else:
-        sides = [arc(-90.0, -65.0, growth), arc(-65.0, 0.0, 1.0), flat,
-                 lambda t: (0.0, radius * (t**power - 1.0))]  # fmt: skip
+        sides = [
+            arc(-90.0, -65.0, growth),
+            arc(-65.0, 0.0, 1.0),
+            flat,
+            lambda t: (0.0, radius * (t**power - 1.0)),
+        ]
     return meshes.mapped(sides, n, n, cell(element))
 
 
@@ -99,11 +107,14 @@ def ironing(friction: float = 0.0, n: int = 12, element: str = "Q4I", unit: floa
     high = 4.5 * size
     die = meshes.mapped(
         [
-            arc, lambda t: (right, low + (high - low) * t),
-            lambda t: (left + (right - left) * t, high), lambda t: (left, low + (high - low) * t),
+            arc,
+            lambda t: (right, low + (high - low) * t),
+            lambda t: (left + (right - left) * t, high),
+            lambda t: (left, low + (high - low) * t),
         ],
-        n, n // 2,
-    )  # fmt: skip
+        n,
+        n // 2,
+    )
     block = meshes.rectangle(9.0 * size, 3.0 * size, nx=4 * n, ny=n)
     model = Model(meshes.assembly(block=block, die=die), name="ironing")
     soft, hard = (Elastic(E=E * unit**2, nu=0.3) for E in (1.0, 10.0))

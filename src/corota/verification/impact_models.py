@@ -129,7 +129,7 @@ class Flight:
     ----------
     rebound : float
         Velocity of the centre of mass at the end over that of the start.
-    kinetic, strain, plastic, lack : float
+    kinetic, strain, plastic, energy_error : float
         Energies at the end, and what the balance lacks at most at any time.
     sideways : float
         Largest momentum along the wall over that of the start.
@@ -147,7 +147,7 @@ class Flight:
     kinetic: float
     strain: float
     plastic: float
-    lack: float
+    energy_error: float
     sideways: float
     squash: float
     released: float
@@ -157,10 +157,19 @@ class Flight:
 
 
 def ring(
-    element: str = "Q4I", around: int = 64, through: int = 2, *, plastic: bool = False,
-    speed: float = 2.0, sideways: float = 0.0, spin: float = 0.0, unit: float = 1.0,
-    local_strain: Any = "green_lagrange", body: str = "ring", **contact: Any,
-) -> Model:  # fmt: skip
+    element: str = "Q4I",
+    around: int = 64,
+    through: int = 2,
+    *,
+    plastic: bool = False,
+    speed: float = 2.0,
+    sideways: float = 0.0,
+    spin: float = 0.0,
+    unit: float = 1.0,
+    local_strain: Any = "green_lagrange",
+    body: str = "ring",
+    **contact: Any,
+) -> Model:
     """Build the ring, or a bar upright, nearly touching the wall y = 0.
 
     `around` counts the elements along the ring or bar; `sideways` and `spin` are velocities along
@@ -175,17 +184,24 @@ def ring(
         mesh = meshes.move(mesh, (-0.1 * unit, 0.001 * RADIUS * unit))
     else:
         mesh = meshes.annulus(
-            (RADIUS - DEPTH) * unit, RADIUS * unit, n_radial=through, n_around=around,
-            cell=cell(element), centre=(0.0, 1.001 * RADIUS * unit),
-        )  # fmt: skip
+            (RADIUS - DEPTH) * unit,
+            RADIUS * unit,
+            n_radial=through,
+            n_around=around,
+            cell=cell(element),
+            centre=(0.0, 1.001 * RADIUS * unit),
+        )
     model = Model(mesh, name=body)
     stress, density = 1.0 / unit, DENSITY / unit**3
     material: Material = Elastic(E=RING_YOUNG * stress, nu=0.3, rho=density)
     if plastic:
         material = Mises(
-            E=RING_YOUNG * stress, nu=0.3, rho=density, yield_stress=YIELD * stress,
+            E=RING_YOUNG * stress,
+            nu=0.3,
+            rho=density,
+            yield_stress=YIELD * stress,
             isotropic=HARDENING * stress,
-        )  # fmt: skip
+        )
     model.section(
         "all", element=element, material=material, thickness=unit, local_strain=local_strain
     )
@@ -198,16 +214,28 @@ def ring(
 
 
 def run_ring(
-    element: str = "Q4I", around: int = 64, through: int = 2, *, plastic: bool = False,
-    scheme: str = "energy_momentum", period: float = 1.0, increments: int = 0,
-    mass_kind: Any = "consistent", redistribute: bool = True, tolerance: float = 5e-3,
+    element: str = "Q4I",
+    around: int = 64,
+    through: int = 2,
+    *,
+    plastic: bool = False,
+    scheme: str = "energy_momentum",
+    period: float = 1.0,
+    increments: int = 0,
+    mass_kind: Any = "consistent",
+    redistribute: bool = True,
+    tolerance: float = 5e-3,
     **options: Any,
-) -> Results:  # fmt: skip
+) -> Results:
     """Run the impact; 0 increments for automatic ones, other options as for :func:`ring`."""
     model = ring(
-        element, around, through, plastic=plastic,
-        local_strain="linear" if plastic else "green_lagrange", **options,
-    )  # fmt: skip
+        element,
+        around,
+        through,
+        plastic=plastic,
+        local_strain="linear" if plastic else "green_lagrange",
+        **options,
+    )
     step = Dynamic(
         period=period,
         increments=increments,
@@ -221,9 +249,13 @@ def run_ring(
 
 
 def fly(
-    element: str = "Q4I", *, speed: float = 2.0, unit: float = 1.0, increments: int = 200,
+    element: str = "Q4I",
+    *,
+    speed: float = 2.0,
+    unit: float = 1.0,
+    increments: int = 200,
     **options: Any,
-) -> Flight:  # fmt: skip
+) -> Flight:
     """Run the impact and measure it; options as for :func:`run_ring`."""
     results = run_ring(element, speed=speed, unit=unit, increments=increments, **options)
     frames = results.frames
@@ -253,16 +285,20 @@ def fly(
         kinetic=float(kinetic[-1]),
         strain=float(strain[-1]),
         plastic=float(worked[-1]),
-        lack=float(np.abs(kinetic + strain + worked - 1.0).max()),
+        energy_error=float(np.abs(kinetic + strain + worked - 1.0).max()),
         sideways=float(np.abs(value["momentum x"]).max() / momentum),
         squash=float(np.ptp(y) / np.ptp(rest) - 1.0),
         released=float(time[closed][-1]) if closed.any() else 0.0,
         iterations=float(value["iterations"].mean()),
         history={
-            "time": time, "force": force, "kinetic": kinetic, "strain": strain, "plastic": worked,
+            "time": time,
+            "force": force,
+            "kinetic": kinetic,
+            "strain": strain,
+            "plastic": worked,
         },
         results=results,
-    )  # fmt: skip
+    )
 
 
 def mass_of(results: Results) -> float:
@@ -284,7 +320,7 @@ class Budget:
         rest, kinetic and elastic.
     friction : float
         What friction took.
-    lack : float
+    energy_error : float
         What is missing in the end: taken by scheme and contact, or made up if negative.
     depth : float
         Deepest penetration of a slave node's weighted gap [length].
@@ -303,7 +339,7 @@ class Budget:
     spin: float
     vibration: float
     friction: float
-    lack: float
+    energy_error: float
     depth: float
     contacts: int
     ratio: float
@@ -337,7 +373,7 @@ def budget(results: Results) -> Budget:
     own = after[2] - (centre[0] * after[1] - centre[1] * after[0])
     energy = value["kinetic energy"] + value["strain energy"]
     travel = 0.5 * float(after[:2] @ after[:2]) / mass
-    turning = 0.5 * own**2 / spread
+    rotary = 0.5 * own**2 / spread
     friction = value["friction energy"]
     closed = force["force y"] > 1e-9 * force["force y"].max()
     ratio = np.abs(force["force x"][closed]) / force["force y"][closed]
@@ -347,10 +383,10 @@ def budget(results: Results) -> Budget:
         after=after,
         impulse=np.array([float(f @ value["dt"]) for f in force.values()]),
         travel=travel / first,
-        spin=turning / first,
-        vibration=(float(energy[-1]) - travel - turning) / first,
+        spin=rotary / first,
+        vibration=(float(energy[-1]) - travel - rotary) / first,
         friction=float(friction[-1]) / first,
-        lack=1.0 - float(energy[-1] + friction[-1]) / first,
+        energy_error=1.0 - float(energy[-1] + friction[-1]) / first,
         depth=max(0.0, -min(gaps)),
         contacts=int(closed[0]) + int((np.diff(closed.astype(int)) > 0).sum()),
         ratio=float(ratio.max(initial=0.0)),

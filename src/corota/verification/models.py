@@ -18,7 +18,7 @@ from corota.model.loads import Fixed, NodalForce
 from corota.model.materials import Elastic
 from corota.model.model import Model
 from corota.model.steps import Static
-from corota.results.observer import Silent
+from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -202,7 +202,7 @@ def cantilever(
     return model
 
 
-class Watch(Silent):
+class Watch(BaseObserver):
     """Keeps the size of the residual and of the correction after each Newton iteration."""
 
     def __init__(self) -> None:

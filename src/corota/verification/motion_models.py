@@ -35,8 +35,9 @@ def column(results: Results, name: str) -> np.ndarray:
 def flyer(element: str, strain: Any = "linear", E: float = 1e4) -> Model:
     """A flexible block 4 x 1 that spins and flies freely."""
     model = Model(meshes.rectangle(4.0, 1.0, nx=4, ny=1, cell=cell(element)))
-    model.section("all", element=element, material=Elastic(E=E, nu=0.3, rho=1.0),
-                  local_strain=strain)  # fmt: skip
+    model.section(
+        "all", element=element, material=Elastic(E=E, nu=0.3, rho=1.0), local_strain=strain
+    )
     model.velocity(spin=1.0, x=0.3, about=(1.0, 0.0))
     return model
 

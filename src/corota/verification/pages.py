@@ -105,16 +105,25 @@ def _worst(outcome: Outcome) -> str:
 def _text(problem: Problem, outcome: Outcome, figures: Sequence[tuple[str, Path]]) -> str:
     head, _, rest = problem.description.partition("\n\n")
     lines = [
-        f"# {problem.title}", "", head, "", *([rest, ""] if rest else []),
-        f"*Source:* {problem.source}.", "",
-        f"*Reference:* {problem.certainty}. *Tolerance:* {problem.why}.", "",
+        f"# {problem.title}",
+        "",
+        head,
+        "",
+        *([rest, ""] if rest else []),
+        f"*Source:* {problem.source}.",
+        "",
+        f"*Reference:* {problem.certainty}. *Tolerance:* {problem.why}.",
+        "",
         f"Run it with `corota verify {problem.name}`; the model is in "
-        f"`corota.verification.problems.{problem.name}`.", "",
-    ]  # fmt: skip
+        f"`corota.verification.problems.{problem.name}`.",
+        "",
+    ]
     for name, path in figures:
         lines += [f"![{problem.title}: {name}](figures/{path.name})", ""]
-    lines += ["| quantity | reference | measured | error | tolerance |",
-              "| --- | --- | --- | --- | --- |"]  # fmt: skip
+    lines += [
+        "| quantity | reference | measured | error | tolerance |",
+        "| --- | --- | --- | --- | --- |",
+    ]
     lines += [_row(v) for v in outcome.values]
     if outcome.study is not None:
         lines += ["", *_study_table(outcome.study)]
@@ -176,8 +185,16 @@ def _curve(curve: Curve, target: Path, name: str) -> Path:
         for label, (x, y) in curve.series.items():
             ax.plot(x, y, label=label, linewidth=1.3)
         for k, (label, (x, y)) in enumerate(curve.points.items()):
-            ax.plot(x, y, linestyle="", marker=MARKERS[k % len(MARKERS)], markersize=5.0,
-                    markerfacecolor="none", color="#20242b", label=label)  # fmt: skip
+            ax.plot(
+                x,
+                y,
+                linestyle="",
+                marker=MARKERS[k % len(MARKERS)],
+                markersize=5.0,
+                markerfacecolor="none",
+                color="#20242b",
+                label=label,
+            )
         _finish(ax, curve.x, curve.y)
         # Beside the lines and marks, not over them.
         ax.legend(fontsize=7.0, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
@@ -194,9 +211,14 @@ def _study(study: Study, target: Path, name: str) -> Path:
         ax = figure.add_subplot()
         for k, (label, (x, y)) in enumerate(study.series.items()):
             ax.loglog(
-                x, y, marker=MARKERS[k % len(MARKERS)], markersize=3.8, linewidth=1.1, label=label,
+                x,
+                y,
+                marker=MARKERS[k % len(MARKERS)],
+                markersize=3.8,
+                linewidth=1.1,
+                label=label,
                 linestyle="-" if k < 7 else "--",
-            )  # fmt: skip
+            )
         _finish(ax, study.across, study.label)
         sizes = sorted({s for at, _ in study.series.values() for s in at})
         if len(sizes) <= 8:

@@ -55,12 +55,16 @@ def strip_mesh(n: int, cell: Any, width: float = 10.0, height: float = 18.0) -> 
     middle = (r / np.sqrt(2.0), r / np.sqrt(2.0))
     lower = meshes.mapped(
         [_line((r, 0), (w, 0)), _line((w, 0), (w, w)), _line(middle, (w, w)), _arc(0, 45, r)],
-        n, n, cell,
-    )  # fmt: skip
+        n,
+        n,
+        cell,
+    )
     upper = meshes.mapped(
         [_line(middle, (w, w)), _line((w, w), (0, w)), _line((0, r), (0, w)), _arc(45, 90, r)],
-        n, n, cell,
-    )  # fmt: skip
+        n,
+        n,
+        cell,
+    )
     rest = meshes.rectangle(
         w, height - w, n, max(1, round(n * (height - w) / w)), cell, origin=(0.0, w)
     )
@@ -108,9 +112,13 @@ def notched_strip(
     model = Model(strip_mesh(n, CELL[element]))
     material = material or Mises(E=200e3, nu=0.3, yield_stress=250.0, isotropic=150.0)
     model.section(
-        "all", element=element, material=material, plane="strain", local_strain=local_strain,
+        "all",
+        element=element,
+        material=material,
+        plane="strain",
+        local_strain=local_strain,
         mean_dilatation=mean_dilatation,
-    )  # fmt: skip
+    )
     turn = 0.0 if element in DRILLING else None
     bottom, right, top = (find(model.mesh, a, v) for a, v in ((1, 0.0), (0, 10.0), (1, 18.0)))
     model.fix(bottom, x=None, y=0.0, rotation=turn)

@@ -82,9 +82,12 @@ def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
 def _plain(value: Value) -> Value:
     """Value with Python's own numbers, which travel and print alike everywhere."""
     return Value(
-        value.quantity, float(value.reference), float(value.measured), float(value.tolerance),
+        value.quantity,
+        float(value.reference),
+        float(value.measured),
+        float(value.tolerance),
         value.kind,
-    )  # fmt: skip
+    )
 
 
 def run(

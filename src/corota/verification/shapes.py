@@ -31,12 +31,14 @@ def shape(n: int, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     def monomials(x: np.ndarray, di: int, dj: int) -> np.ndarray:
         return np.stack(
             [
-                (i if di else 1) * (j if dj else 1)
-                * power(x[:, 0], i - di) * power(x[:, 1], j - dj)
+                (i if di else 1)
+                * (j if dj else 1)
+                * power(x[:, 0], i - di)
+                * power(x[:, 1], j - dj)
                 for i, j in POWERS[n]
             ],
             axis=1,
-        )  # fmt: skip
+        )
 
     coefficients = np.linalg.inv(monomials(nodes, 0, 0))
     values = monomials(xi, 0, 0) @ coefficients

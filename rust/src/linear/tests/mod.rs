@@ -32,12 +32,12 @@ impl Random {
     }
 }
 
-/// Dense symmetric matrix with the pattern of what was ever touched.
+/// Dense symmetric matrix with the pattern of what was ever visited.
 #[derive(Clone)]
 pub struct Symmetric {
     pub n: usize,
     pub dense: Vec<f64>,
-    touched: Vec<bool>,
+    visited: Vec<bool>,
 }
 
 /// Upper triangle in compressed columns.
@@ -62,15 +62,15 @@ impl Upper {
 
 impl Symmetric {
     pub fn zero(n: usize) -> Self {
-        Self { n, dense: vec![0.0; n * n], touched: vec![false; n * n] }
+        Self { n, dense: vec![0.0; n * n], visited: vec![false; n * n] }
     }
 
     pub fn add(&mut self, i: usize, j: usize, v: f64) {
         let n = self.n;
         self.dense[i + j * n] += v;
         self.dense[j + i * n] = self.dense[i + j * n];
-        self.touched[i + j * n] = true;
-        self.touched[j + i * n] = true;
+        self.visited[i + j * n] = true;
+        self.visited[j + i * n] = true;
     }
 
     /// Random pattern of about `density` and values in (-1, 1), plus `shift` on the diagonal.
@@ -93,7 +93,7 @@ impl Symmetric {
         let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
         for c in 0..n {
             for r in 0..=c {
-                if self.touched[r + c * n] {
+                if self.visited[r + c * n] {
                     row_idx.push(r as u32);
                     values.push(self.dense[r + c * n]);
                 }

@@ -56,12 +56,12 @@ def local_axes(model: Model) -> dict[int, Floats]:
 
 
 @dataclass
-class Link:
+class LinearizedConstraints:
     """The constraints linearised at a state.
 
     Parameters
     ----------
-    ties : Ties
+    constraints : Constraints
     u : ndarray, shape (n_dofs,)
     g : sparse array, shape (n_dependent, n_dofs)
         Dependent dofs by independent ones.
@@ -71,7 +71,7 @@ class Link:
         Weight of the second derivatives in the reduced matrix: 0 where it is no tangent.
     """
 
-    ties: Ties
+    constraints: Constraints
     u: Floats
     g: Any
     direct: Any
@@ -80,52 +80,54 @@ class Link:
     def gather(self, force: Floats) -> Floats:
         """``G^T`` of forces, in all dofs; zero at dependent ones. Shape as `force`."""
         out: Floats = force.copy()
-        out[self.ties.gone] = 0.0
-        out += self.g.T @ force[self.ties.dependent]
+        out[self.constraints.eliminated] = 0.0
+        out += self.g.T @ force[self.constraints.dependent]
         return out
 
     def gather_sizes(self, size: Floats) -> Floats:
         """``|G|^T`` of sizes of forces, zero at dependent dofs."""
         out: Floats = size.copy()
-        out[self.ties.gone] = 0.0
-        out += abs(self.g).T @ size[self.ties.dependent]
+        out[self.constraints.eliminated] = 0.0
+        out += abs(self.g).T @ size[self.constraints.dependent]
         return out
 
     def move(self, dv: Floats) -> Floats:
         """``G`` of changes of the independent dofs, given in all dofs."""
         out: Floats = dv.copy()
-        out[self.ties.gone] = 0.0
-        out[self.ties.dependent] = self.g @ out
+        out[self.constraints.eliminated] = 0.0
+        out[self.constraints.dependent] = self.g @ out
         return out
 
-    def bend(self, residual: Floats) -> Floats:
+    def geometric_stiffness(self, residual: Floats) -> Floats:
         """Entries of ``sum_s r_s d2 g_s`` where the relations bend, in the map's order."""
-        ties = self.ties
-        force = self.curvature * residual[ties.dependent]
+        constraints = self.constraints
+        force = self.curvature * residual[constraints.dependent]
         own = force
-        for _ in range(ties.depth):
-            own = force + self.direct[:, ties.dependent].T @ own
-        total = np.zeros(ties.n)
-        total[ties.dependent] = own
+        for _ in range(constraints.depth):
+            own = force + self.direct[:, constraints.dependent].T @ own
+        total = np.zeros(constraints.n)
+        total[constraints.dependent] = own
         parts = [
-            r.bend(self.u, total[r.dependent])[np.triu_indices(len(r.masters))]
-            for r in ties.bending
+            r.geometric_stiffness(self.u, total[r.dependent])[np.triu_indices(len(r.masters))]
+            for r in constraints.bending
         ]
         return np.concatenate(parts) if parts else np.zeros(0)
 
     def reduce(self, values: Floats, residual: Floats) -> Floats:
         """Values of the reduced matrix, upper triangle."""
-        ties = self.ties
-        return ties.places.reduce(values, ties.rows_of(self.g), self.g, self.bend(residual))
+        constraints = self.constraints
+        return constraints.places.reduce(
+            values, constraints.rows_of(self.g), self.g, self.geometric_stiffness(residual)
+        )
 
     def reduce_full(self, matrix: Any, residual: Floats) -> Any:
         """The reduced matrix of an unsymmetric one, scipy CSC."""
-        return self.ties.places.reduce_full(
-            matrix, self.ties.rows_of(self.g), self.g, self.bend(residual)
+        return self.constraints.places.reduce_full(
+            matrix, self.constraints.rows_of(self.g), self.g, self.geometric_stiffness(residual)
         )
 
 
-class Ties:
+class Constraints:
     """All constraints and local axes of a model.
 
     Parameters
@@ -173,10 +175,10 @@ class Ties:
         node = np.repeat(np.arange(len(start) - 1), np.diff(start))
         used |= np.arange(self.n) - start[node] < carried[node]
         self.inert = ~used
-        gone = self.inert.copy()
-        gone[self.dependent] = True
-        self.gone = np.flatnonzero(gone)
-        self.free = np.flatnonzero(~gone)
+        eliminated = self.inert.copy()
+        eliminated[self.dependent] = True
+        self.eliminated = np.flatnonzero(eliminated)
+        self.free = np.flatnonzero(~eliminated)
         self.bending = [r for r in self.relations if not r.linear]
         self.depth = self._depth()
         self._turns()
@@ -187,9 +189,14 @@ class Ties:
             for i, j in [np.triu_indices(len(r.masters))]
         ]
         self.places = Places(
-            self.n, self.free, indptr, indices,
-            self.rows_of(pattern), Rows(self.dependent, pattern), pairs,
-        )  # fmt: skip
+            self.n,
+            self.free,
+            indptr,
+            indices,
+            self.rows_of(pattern),
+            Rows(self.dependent, pattern),
+            pairs,
+        )
 
     def _depth(self) -> int:
         """Longest chain of relations that depend on each other."""
@@ -248,10 +255,10 @@ class Ties:
 
     # -- state -------------------------------------------------------------------------
 
-    def set_turning(self, turning: bool) -> None:
+    def set_nlgeom(self, nlgeom: bool) -> None:
         """Let rotations be finite, or infinitesimal."""
         for relation in self.relations:
-            relation.turning = turning
+            relation.nlgeom = nlgeom
 
     def complete(self, u: Floats) -> None:
         """Set the dependent dofs of `u` to what the others make them, in place."""
@@ -267,16 +274,16 @@ class Ties:
             if a is not None:
                 a[relation.dependent] = j @ a[relation.masters] + relation.curve(u, v)
 
-    def link(self, u: Floats) -> Link:
+    def link(self, u: Floats) -> LinearizedConstraints:
         """Linearise at `u`."""
         g, direct = self._substituted(lambda r: r.jacobian(u))
-        return Link(self, u, g, direct)
+        return LinearizedConstraints(self, u, g, direct)
 
-    def secant(self, begin: Floats, end: Floats) -> Link:
+    def secant(self, begin: Floats, end: Floats) -> LinearizedConstraints:
         """The exact discrete derivatives between two states, for the energy-momentum scheme."""
         g, direct = self._substituted(lambda r: r.secant(begin, end))
         # Forces at the middle: half of what a change at the end bends.
-        return Link(self, end, g, direct, 0.5)
+        return LinearizedConstraints(self, end, g, direct, 0.5)
 
     def _substituted(self, jacobian: Any) -> tuple[Any, Any]:
         import scipy.sparse as sp
@@ -316,7 +323,7 @@ class Ties:
 
     # -- questions ---------------------------------------------------------------------
 
-    def refuse_held(self, dofs: Ints, where: Location | None) -> None:
+    def refuse_constrained(self, dofs: Ints, where: Location | None) -> None:
         """Refuse supports at dependent dofs.
 
         Raises
@@ -343,4 +350,4 @@ class Ties:
             )
 
 
-__all__ = ["Link", "Ties", "extra_dofs", "local_axes"]
+__all__ = ["Constraints", "LinearizedConstraints", "extra_dofs", "local_axes"]

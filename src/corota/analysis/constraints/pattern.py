@@ -139,14 +139,14 @@ class Places:
         begin: Ints = indptr.astype(np.int64)
         column = np.repeat(np.arange(n, dtype=np.int64), begin[1:] - begin[:-1])
         row = indices.astype(np.int64)
-        touched = special[row] | special[column]
-        self.plain = np.flatnonzero(~touched)
+        contact_evaluation = special[row] | special[column]
+        self.plain = np.flatnonzero(~contact_evaluation)
         keys = [renumber[column[self.plain]] * m + renumber[row[self.plain]]]
-        some = np.flatnonzero(touched)
+        some = np.flatnonzero(contact_evaluation)
         raw = [self._products(self.turned, row[some], column[some], m)]
         i = np.concatenate([np.zeros(0, np.int64), *(p[0] for p in pairs)])
         j = np.concatenate([np.zeros(0, np.int64), *(p[1] for p in pairs)])
-        self.bend_pairs = (i, j)
+        self.geometric_pairs = (i, j)
         raw.append(self._products(self.tied, i, j, m))
         keys += [r[0] for r in raw]
         # Every unknown keeps its diagonal.
@@ -159,7 +159,7 @@ class Places:
         self.nnz = len(unique)
         self.plain_target = np.searchsorted(unique, keys[0])
         self.terms = self._terms(raw[0], unique, some)
-        self.bend_terms = self._terms(raw[1], unique, None)
+        self.geometric_terms = self._terms(raw[1], unique, None)
         self._held: NDArray[np.bool_] | None = None
         self._masked = np.zeros(0, np.int64)
 
@@ -180,12 +180,12 @@ class Places:
         target = np.searchsorted(unique, key[first])
         return Terms(entry, one[order], two[order], factor[order], target, first)
 
-    def reduce(self, values: Floats, turned: Rows, g: Any, bend: Floats) -> Floats:
+    def reduce(self, values: Floats, turned: Rows, g: Any, geometric_stiffness: Floats) -> Floats:
         """Values of the reduced upper triangle."""
         out = np.zeros(self.nnz)
         out[self.plain_target] = values[self.plain]
         self.terms.add(out, values, self.turned.numbers(turned.matrix))
-        self.bend_terms.add(out, bend, self.tied.numbers(g))
+        self.geometric_terms.add(out, geometric_stiffness, self.tied.numbers(g))
         return out
 
     def whole(self, rows: Rows) -> Any:
@@ -200,30 +200,32 @@ class Places:
         )
         return (sp.diags_array(one) + put @ rows.matrix).tocsc()[:, self.free]
 
-    def reduce_full(self, matrix: Any, turned: Rows, g: Any, bend: Floats) -> Any:
+    def reduce_full(self, matrix: Any, turned: Rows, g: Any, geometric_stiffness: Floats) -> Any:
         """The same for a full matrix, scipy CSC."""
         import scipy.sparse as sp
 
         t = self.whole(turned)
         out = t.T @ matrix @ t
-        if len(bend):
-            i, j = self.bend_pairs
-            half = sp.coo_array((bend, (i, j)), shape=(self.n, self.n)).tocsr()
+        if len(geometric_stiffness):
+            i, j = self.geometric_pairs
+            half = sp.coo_array((geometric_stiffness, (i, j)), shape=(self.n, self.n)).tocsr()
             side = sp.coo_array(
-                (np.where(i == j, 0.0, bend), (j, i)), shape=(self.n, self.n)
+                (np.where(i == j, 0.0, geometric_stiffness), (j, i)), shape=(self.n, self.n)
             ).tocsr()
             tied = self.whole(Rows(self.tied_dofs, g))
             out = out + tied.T @ (half + side) @ tied
         return out.tocsc()
 
-    def mask(self, values: Floats, held: NDArray[np.bool_]) -> None:
+    def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:
         """Replace rows and columns of held unknowns by a positive diagonal, in place."""
-        if self._held is None or not np.array_equal(held, self._held):
-            self._held = held.copy()
-            off = (self.indices != self.column) & (held[self.indices] | held[self.column])
+        if self._held is None or not np.array_equal(constrained, self._held):
+            self._held = constrained.copy()
+            off = (self.indices != self.column) & (
+                constrained[self.indices] | constrained[self.column]
+            )
             self._masked = np.flatnonzero(off)
         values[self._masked] = 0.0
-        diagonal = (self.indptr[1:].astype(np.int64) - 1)[held]
+        diagonal = (self.indptr[1:].astype(np.int64) - 1)[constrained]
         size = np.abs(values[diagonal])
         values[diagonal] = np.where(size > 0.0, size, 1.0)
 

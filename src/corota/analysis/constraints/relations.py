@@ -43,7 +43,7 @@ class Relation(ABC):
     #: Whether the dependents are linear in the masters.
     linear = True
     #: Whether rotations are finite.
-    turning = True
+    nlgeom = True
 
     @abstractmethod
     def values(self, u: Floats) -> Floats:
@@ -53,7 +53,7 @@ class Relation(ABC):
     def jacobian(self, u: Floats) -> Floats:
         """Derivative of the dependents by the masters at `u`, shape (d, m)."""
 
-    def bend(self, u: Floats, force: Floats) -> Floats:
+    def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
         """Second derivative of ``force . dependents`` by the masters, shape (m, m)."""
         return np.zeros((len(self.masters), len(self.masters)))
 
@@ -101,7 +101,7 @@ class LinearRelation(Relation):
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not (self.turning and self.rotates.any()):
+        if not (self.nlgeom and self.rotates.any()):
             return self.row[None, :]
         dofs = np.concatenate([self.dependent, self.masters])
         scale = np.where(self.rotates, _tangents((end - begin)[dofs]), 1.0)
@@ -148,25 +148,25 @@ class Follow(Relation):
     arm: Floats
     axis: Floats
     axes: Floats
-    turning: bool = True
+    nlgeom: bool = True
 
     linear = False
 
     def values(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
         x, y, phi = u[self.masters]
-        arm = _turned_less(self.arm, phi) if self.turning else phi * _skew(self.arm)
+        arm = _turned_less(self.arm, phi) if self.nlgeom else phi * _skew(self.arm)
         move = arm + self.axes @ np.array([x, y])
         out: Floats = (self.axis[:, :2] * move).sum(axis=1) + self.axis[:, 2] * phi
         return out
 
     def jacobian(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
-        return self._by(_turned(self.arm, u[self.masters[2]] if self.turning else 0.0))
+        return self._by(_turned(self.arm, u[self.masters[2]] if self.nlgeom else 0.0))
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
         """See :class:`Relation`; ``R1 - R0 = 2 tan(dphi / 2) S (R0 + R1) / 2``."""
-        if not self.turning:
+        if not self.nlgeom:
             return self.jacobian(end)
         phi = self.masters[2]
         return self._by(0.5 * (_turned(self.arm, begin[phi]) + _turned(self.arm, end[phi])))
@@ -178,17 +178,17 @@ class Follow(Relation):
         out[:, 2] = (self.axis[:, :2] * lever).sum(axis=1) + self.axis[:, 2]
         return out
 
-    def bend(self, u: Floats, force: Floats) -> Floats:
+    def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
         """See :class:`Relation`."""
         out = np.zeros((3, 3))
-        if self.turning:
+        if self.nlgeom:
             arm = _turned(self.arm, u[self.masters[2]])
             out[2, 2] = -float(force @ (self.axis[:, :2] * arm).sum(axis=1))
         return out
 
     def curve(self, u: Floats, v: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not self.turning:
+        if not self.nlgeom:
             return np.zeros(len(self.dependent))
         phi = self.masters[2]
         out: Floats = -(v[phi] ** 2) * (self.axis[:, :2] * _turned(self.arm, u[phi])).sum(axis=1)
@@ -225,7 +225,7 @@ class Mean(Relation):
     offset: Floats
     axis: Floats
     axes: Floats
-    turning: bool = True
+    nlgeom: bool = True
 
     linear = False
 
@@ -233,7 +233,7 @@ class Mean(Relation):
         """Displacements in global axes, rotation and D."""
         local = u[self.masters].reshape(-1, 2)
         move: Floats = np.einsum("nij,nj->ni", self.axes, local)
-        if not self.turning:
+        if not self.nlgeom:
             inertia = float(self.weight @ (self.arm**2).sum(axis=1))
             turn = float(self.weight @ (_skew(self.arm) * move).sum(axis=1)) / inertia
             return move, turn, inertia
@@ -246,18 +246,18 @@ class Mean(Relation):
         """See :class:`Relation`; the rotation is the one nearest to that in `u`."""
         move, turn, _ = self._fit(u)
         offset = self.offset[None]
-        swing = _turned_less(offset, turn) if self.turning else turn * _skew(offset)
+        swing = _turned_less(offset, turn) if self.nlgeom else turn * _skew(offset)
         mean = self.weight @ move + swing[0]
         out: Floats = self.axis[:, :2] @ mean
         rotation = self.axis[:, 2] != 0.0
         turns = np.round((u[self.dependent[rotation]] - turn) / (2.0 * np.pi))
-        out[rotation] = turn + 2.0 * np.pi * (turns if self.turning else 0.0)
+        out[rotation] = turn + 2.0 * np.pi * (turns if self.nlgeom else 0.0)
         return out
 
     def _gradients(self, u: Floats) -> tuple[Floats, Floats, Floats]:
         """``gamma`` and ``eps`` in the nodes' axes, flat, and ``R offset``."""
         _, turn, size = self._fit(u)
-        if not self.turning:
+        if not self.nlgeom:
             turn = 0.0
         eta = _turned(self.arm, turn) * (self.weight / size)[:, None]
         gamma = np.einsum("nji,nj->ni", self.axes, _skew(eta)).ravel()
@@ -271,7 +271,7 @@ class Mean(Relation):
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
         """See :class:`Relation`; the rotation by the mean of both rotation matrices."""
-        if not self.turning:
+        if not self.nlgeom:
             return self.jacobian(end)
         (move0, turn0, _), (move1, turn1, _) = self._fit(begin), self._fit(end)
 
@@ -290,9 +290,9 @@ class Mean(Relation):
         out: Floats = self.axis[:, :2] @ mean + np.outer(swing, gamma)
         return out
 
-    def bend(self, u: Floats, force: Floats) -> Floats:
+    def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not self.turning:
+        if not self.nlgeom:
             return np.zeros((len(self.masters), len(self.masters)))
         gamma, eps, offset = self._gradients(u)
         push = force @ self.axis
@@ -304,7 +304,7 @@ class Mean(Relation):
 
     def curve(self, u: Floats, v: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not self.turning:
+        if not self.nlgeom:
             return np.zeros(len(self.dependent))
         gamma, eps, offset = self._gradients(u)
         rate = gamma @ v[self.masters]

@@ -185,10 +185,14 @@ class Builder:
         pivot = total[dependent]
         row = np.array([-total[m] / pivot for m in masters])
         return LinearRelation(
-            np.array([dependent]), np.array(masters, np.int64),
-            f"the equation for {self.name(dependent)}", item.where, row, item.rhs / pivot,
+            np.array([dependent]),
+            np.array(masters, np.int64),
+            f"the equation for {self.name(dependent)}",
+            item.where,
+            row,
+            item.rhs / pivot,
             np.array([self._component(d) == 2 for d in total]),
-        )  # fmt: skip
+        )
 
     def _axes_of(self, node: int) -> Floats:
         return self.axes.get(int(node), np.eye(2))
@@ -253,11 +257,16 @@ class Builder:
             masters = [first + 1 - bound, *(int(self.start[e]) + k for e in ends for k in (0, 1))]
             out.append(
                 OnLine(
-                    np.array([first + bound]), np.array(masters, np.int64), what, item.where,
-                    points[[node, *ends]], axes[:, 1 - bound], axes[:, bound],
+                    np.array([first + bound]),
+                    np.array(masters, np.int64),
+                    what,
+                    item.where,
+                    points[[node, *ends]],
+                    axes[:, 1 - bound],
+                    axes[:, bound],
                     np.array([self._axes_of(int(e)) for e in ends]),
                 )
-            )  # fmt: skip
+            )
         return out
 
     def _follow(self, item: Coupling) -> Follow:
@@ -265,9 +274,14 @@ class Builder:
         dependent, owners, axis = self._measured(nodes, item.dofs)
         base = int(self.start[item.reference])
         return Follow(
-            dependent, base + np.arange(3), self._described(item), item.where,
-            points[owners] - points[item.reference], axis, self._axes_of(item.reference),
-        )  # fmt: skip
+            dependent,
+            base + np.arange(3),
+            self._described(item),
+            item.where,
+            points[owners] - points[item.reference],
+            axis,
+            self._axes_of(item.reference),
+        )
 
     def _mean(self, item: Coupling) -> Mean:
         given, points = _nodes(self.model, item.nodes), self.model.mesh.points
@@ -292,10 +306,16 @@ class Builder:
             )
         masters = (self.start[nodes][:, None] + np.arange(2)).ravel()
         return Mean(
-            dependent, masters, self._described(item), item.where, arm, weight,
-            points[item.reference] - mean, axis,
+            dependent,
+            masters,
+            self._described(item),
+            item.where,
+            arm,
+            weight,
+            points[item.reference] - mean,
+            axis,
             np.array([self._axes_of(int(n)) for n in nodes]),
-        )  # fmt: skip
+        )
 
 
 def _said(relation: Relation) -> str:

@@ -44,7 +44,7 @@ class OnLine(Relation):
     free: Floats
     bound: Floats
     axes: Floats
-    turning: bool = True
+    nlgeom: bool = True
 
     linear = False
 
@@ -78,7 +78,7 @@ class OnLine(Relation):
 
     def values(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not self.turning:
+        if not self.nlgeom:
             return self.jacobian(u) @ u[self.masters]
         w, t = self._places(u)
         _, _, size = self._forms(w, t)
@@ -86,7 +86,7 @@ class OnLine(Relation):
 
     def jacobian(self, u: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not self.turning:
+        if not self.nlgeom:
             n, _, size = self._forms(*self._start())
             return -n[None, :] / size
         w, t = self._places(u)
@@ -108,20 +108,20 @@ class OnLine(Relation):
         out: Floats = -(second - np.outer(slope, d) - np.outer(d, slope)) / size
         return out
 
-    def bend(self, u: Floats, force: Floats) -> Floats:
+    def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
         """See :class:`Relation`."""
-        return force[0] * self._hessian(u) if self.turning else np.zeros((5, 5))
+        return force[0] * self._hessian(u) if self.nlgeom else np.zeros((5, 5))
 
     def curve(self, u: Floats, v: Floats) -> Floats:
         """See :class:`Relation`."""
-        if not self.turning:
+        if not self.nlgeom:
             return np.zeros(1)
         rate = v[self.masters]
         return np.array([rate @ self._hessian(u) @ rate])
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
         """See :class:`Relation`; N is quadratic and D linear, so that mid-points are exact."""
-        if not self.turning:
+        if not self.nlgeom:
             return self.jacobian(end)
         before, after = self._places(begin), self._places(end)
         n, d, size = self._forms(0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]))

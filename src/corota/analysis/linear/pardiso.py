@@ -141,10 +141,10 @@ class Pardiso:
         b = np.array(rhs, dtype=float, order="F")
         x = np.zeros_like(b, order="F")
         self._call(_SOLVE, b, x)
-        self._judge(x, b)
+        self._check_growth(x, b)
         return x
 
-    def _judge(self, x: Floats, b: Floats) -> None:
+    def _check_growth(self, x: Floats, b: Floats) -> None:
         import scipy.sparse as sp
 
         matrix = sp.csr_array((self._values, self._indices, self._indptr), shape=(self._n,) * 2)

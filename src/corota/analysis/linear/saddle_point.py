@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.constraints.elimination import Link
+    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import Evaluation, System
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 #: GMRES: relative residual that is enough, and steps after which LU takes over.
-ENOUGH, STEPS = 1e-9, 60
+GMRES_TOLERANCE, GMRES_STEPS = 1e-9, 60
 #: Share of a constraint that does not follow from others, below which it is dropped, and most
 #: constraints among which that is looked for.
 DEPENDENT, MOST_DENSE = 1e-9, 2000
@@ -83,7 +83,7 @@ class Coupling:
         Dofs and multipliers (-1 none) of pairs that may soon couple, for the pattern.
     """
 
-    bend: Triplets
+    geometric_stiffness: Triplets
     rows: Triplets
     follow: Triplets
     diagonal: Floats
@@ -91,7 +91,7 @@ class Coupling:
     near: tuple[Ints, Ints]
 
 
-class Bordered:
+class SaddlePointSystem:
     """Solves the bordered systems of a model.
 
     Parameters
@@ -103,12 +103,13 @@ class Bordered:
 
     def __init__(self, system: System, n: int) -> None:
         self.system, self.n = system, n
-        ties = system.ties
-        self.free = np.arange(system.n_dofs) if ties is None else ties.free
+        constraints = system.constraints
+        self.free = np.arange(system.n_dofs) if constraints is None else constraints.free
         base = (
-            (system.indptr, system.indices) if ties is None
-            else (ties.places.indptr, ties.places.indices)
-        )  # fmt: skip
+            (system.indptr, system.indices)
+            if constraints is None
+            else (constraints.places.indptr, constraints.places.indices)
+        )
         self.nf = len(self.free)
         self.size = self.nf + n
         start = base[0].astype(np.int64)
@@ -123,7 +124,7 @@ class Bordered:
         self._analyzed = False
         #: The last system solved: its held unknowns, constraints, and what solves it again.
         self._at_rest = np.zeros(self.size, bool)
-        self._link: Link | None = None
+        self._link: LinearizedConstraints | None = None
         self._resolve: Callable[[Floats], Floats] = system.solver.solve
         #: Steps of GMRES so far and fall-backs to LU, for reports.
         self.steps = self.whole = 0
@@ -157,18 +158,18 @@ class Bordered:
         self.diagonal = self.indptr[1:] - 1
         self._held, self._analyzed = None, False
 
-    def _mask(self, held: NDArray[np.bool_]) -> Ints:
+    def _mask(self, constrained: NDArray[np.bool_]) -> Ints:
         """Places of the entries of held unknowns beside the diagonal."""
-        if self._held is None or not np.array_equal(held, self._held):
-            self._held = held.copy()
-            off = (held[self.rows] | held[self.columns]) & (self.rows != self.columns)
+        if self._held is None or not np.array_equal(constrained, self._held):
+            self._held = constrained.copy()
+            off = (constrained[self.rows] | constrained[self.columns]) & (self.rows != self.columns)
             self._masked = np.flatnonzero(off)
         return self._masked
 
     # -- solution ----------------------------------------------------------------------
 
     def solve(
-        self, at: Evaluation, coupling: Coupling, force: Floats, rhs: Floats, du_held: Floats
+        self, at: Evaluation, coupling: Coupling, force: Floats, rhs: Floats, du_prescribed: Floats
     ) -> tuple[Floats, Floats, int]:
         """Corrections of displacements and multipliers.
 
@@ -191,14 +192,16 @@ class Bordered:
             Negative pivots, -1 if unknown.
         """
         system, link = self.system, at.link
-        if at.load_stiffness is not None and not (system.held_for_sure or at.heft):
+        if at.load_stiffness is not None and not (system.free_motion_excluded or at.heft):
             # Loads that follow give a free motion stiffness that is none.
             bare = replace(at, load_stiffness=None)
-            self.solve(bare, coupling, np.zeros_like(force), np.zeros_like(rhs), 0.0 * du_held)
-            system.held_for_sure = True
+            self.solve(
+                bare, coupling, np.zeros_like(force), np.zeros_like(rhs), 0.0 * du_prescribed
+            )
+            system.free_motion_excluded = True
         system.link = link
-        held = np.zeros(self.size, bool)
-        held[: self.nf] = system.conditions.held[self.free]
+        constrained = np.zeros(self.size, bool)
+        constrained[: self.nf] = system.conditions.constrained[self.free]
         with system.timed("border"):
             load = self._load(at)
             if link is None:
@@ -216,16 +219,16 @@ class Bordered:
             data[self._target] = values
             np.add.at(data, places, upper.values)
             moved = np.zeros_like(b)
-            moved[: self.nf] = du_held[self.free]
+            moved[: self.nf] = du_prescribed[self.free]
             for column, move in zip(b.T, moved.T, strict=True):
                 if move.any():
                     column -= self._multiply(data, move)
                     np.subtract.at(column, rest.rows, rest.values * move[rest.columns])
-            data[self._mask(held)] = 0.0
-            on = self.diagonal[held]
+            data[self._mask(constrained)] = 0.0
+            on = self.diagonal[constrained]
             data[on] = np.where(data[on] == 0.0, 1.0, np.abs(data[on]))
-            b[held] = 0.0
-            rest = rest.keep(~held[rest.rows] & ~held[rest.columns])
+            b[constrained] = 0.0
+            rest = rest.keep(~constrained[rest.rows] & ~constrained[rest.columns])
         try:
             x, negative = self._solve(data, rest, b)
         except SingularError as error:
@@ -239,11 +242,11 @@ class Bordered:
             self.dropped.update(dropped)
             if negative >= 0:
                 negative += len(dropped)  # each would have given one
-        x[held] = moved[held]
-        self._at_rest, self._link = held, link
+        x[constrained] = moved[constrained]
+        self._at_rest, self._link = constrained, link
         return self._spread(x), x[self.nf :], negative
 
-    def again(self, force: Floats) -> tuple[Floats, Floats]:
+    def correct_with_last_factor(self, force: Floats) -> tuple[Floats, Floats]:
         """The same for one more force, shape (n_dofs,), with the last factorisation.
 
         Held dofs are at rest and so are the constraints.
@@ -281,13 +284,13 @@ class Bordered:
         _, r, order = scipy.linalg.qr(table, mode="economic", pivoting=True)
         size = np.zeros(len(chosen))
         size[: min(r.shape)] = np.abs(np.diag(r))
-        gone = chosen[order[size <= DEPENDENT]]
-        if len(gone):
-            mine = np.isin(self.columns, gone + self.nf)
+        eliminated = chosen[order[size <= DEPENDENT]]
+        if len(eliminated):
+            mine = np.isin(self.columns, eliminated + self.nf)
             data[mine] = 0.0
-            data[self.diagonal[gone + self.nf]] = 1.0
-            b[gone + self.nf] = 0.0
-        return [int(k) for k in gone]
+            data[self.diagonal[eliminated + self.nf]] = 1.0
+            b[eliminated + self.nf] = 0.0
+        return [int(k) for k in eliminated]
 
     def _named(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
@@ -310,7 +313,9 @@ class Bordered:
         return Triplets(np.asarray(rows, np.int64), np.asarray(columns, np.int64), -values)
 
     def _direct(self, c: Coupling, load: Triplets) -> tuple[Triplets, Triplets]:
-        upper = [c.bend.keep(c.bend.rows <= c.bend.columns)]
+        upper = [
+            c.geometric_stiffness.keep(c.geometric_stiffness.rows <= c.geometric_stiffness.columns)
+        ]
         rest = []
         if len(load.values):
             import scipy.sparse as sp
@@ -338,7 +343,7 @@ class Bordered:
         import scipy.sparse as sp
 
         n = self.system.n_dofs
-        t = link.ties.places.whole(link.ties.rows_of(link.g))
+        t = link.constraints.places.whole(link.constraints.rows_of(link.g))
 
         def square(x: Triplets) -> Any:
             full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, n)).tocsr()
@@ -350,11 +355,11 @@ class Bordered:
             return Triplets(found.row.astype(np.int64), found.col.astype(np.int64), found.data)
 
         upper, odd = _halves(square(load) if len(load.values) else None)
-        bend = square(c.bend)
-        bend, _ = _halves(0.5 * (bend + bend.T))
+        geometric_stiffness = square(c.geometric_stiffness)
+        geometric_stiffness, _ = _halves(0.5 * (geometric_stiffness + geometric_stiffness.T))
         rows = self._borders(c, side(c.rows))
         rest = [odd, self._loose(side(c.follow))]
-        return Triplets.join([upper, bend, *rows]), Triplets.join(rest)
+        return Triplets.join([upper, geometric_stiffness, *rows]), Triplets.join(rest)
 
     def _spare(self, c: Coupling, direct: bool) -> Ints:
         """Keys of couplings that may soon be wanted, some of them more than once."""
@@ -452,8 +457,8 @@ class Bordered:
         beta = _length(r)
         if beta == 0.0:
             return r
-        basis, h = [r / beta], np.zeros((STEPS + 1, STEPS))
-        for k in range(STEPS):
+        basis, h = [r / beta], np.zeros((GMRES_STEPS + 1, GMRES_STEPS))
+        for k in range(GMRES_STEPS):
             w = apply(basis[k] * scale) / scale
             for _ in range(2):
                 for i, v in enumerate(basis):
@@ -466,7 +471,7 @@ class Bordered:
             y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
             left = _length(small - (h[: k + 2, : k + 1] * y).sum(axis=1))
             self.steps += 1
-            if left <= ENOUGH * beta or h[k + 1, k] <= 1e-15 * beta:
+            if left <= GMRES_TOLERANCE * beta or h[k + 1, k] <= 1e-15 * beta:
                 return np.asarray(
                     scale * np.sum([c * v for c, v in zip(y, basis, strict=False)], axis=0)
                 )
@@ -536,4 +541,4 @@ def _halves(matrix: Any) -> tuple[Triplets, Triplets]:
     return parts[0], parts[1].keep(np.abs(parts[1].values) > 1e-9 * size)
 
 
-__all__ = ["Bordered", "Coupling", "Triplets"]
+__all__ = ["Coupling", "SaddlePointSystem", "Triplets"]

@@ -86,7 +86,7 @@ class MaskedLu:
         self._indptr = self._indices = np.zeros(0, np.int64)
         self._held = np.zeros(0, bool)
 
-    def factorize(self, matrix: Any, held: NDArray[np.bool_], node: Ints) -> None:
+    def factorize(self, matrix: Any, constrained: NDArray[np.bool_], node: Ints) -> None:
         """Factorise a scipy CSC matrix with the rows and columns of held dofs made diagonal.
 
         Raises
@@ -97,19 +97,19 @@ class MaskedLu:
         import scipy.sparse as sp
 
         matrix.sort_indices()
-        if not (diagonal_of(matrix) | ~held).all():
-            matrix = (matrix + sp.diags_array(held.astype(float))).tocsc()
+        if not (diagonal_of(matrix) | ~constrained).all():
+            matrix = (matrix + sp.diags_array(constrained.astype(float))).tocsc()
             matrix.sort_indices()
         rows, columns = entries_of(matrix)
-        data = np.where(held[rows] | held[columns], 0.0, matrix.data)
-        own = np.flatnonzero((rows == columns) & held[columns])
+        data = np.where(constrained[rows] | constrained[columns], 0.0, matrix.data)
+        own = np.flatnonzero((rows == columns) & constrained[columns])
         size = np.abs(matrix.data[own])
         data[own] = np.where(size > 0.0, size, 1.0)
-        if not self._same(matrix) or not np.array_equal(held, self._held):
+        if not self._same(matrix) or not np.array_equal(constrained, self._held):
             # What is held anew, or no more, is looked at for free motions with the pattern.
             self._solver.analyze(matrix.indptr, matrix.indices, node)
             self._indptr, self._indices = matrix.indptr, matrix.indices
-            self._held = held.copy()
+            self._held = constrained.copy()
         self._solver.factorize(data)
 
     def _same(self, matrix: Any) -> bool:

@@ -63,8 +63,8 @@ def buckle_step(
     UnsupportedError
         If loads without a potential or a tangent that jumps leave no eigenvalue problem.
     """
-    turning = system.turning
-    system.turning = True
+    nlgeom = system.nlgeom
+    system.nlgeom = True
     base = state.u
     if not step.preload:
         _check_unloaded(system, step)
@@ -74,7 +74,7 @@ def buckle_step(
     finally:
         # A perturbation leaves nothing behind.
         system.conditions.end_time = 0.0
-        system.turning = turning
+        system.nlgeom = nlgeom
         state.at = system.evaluate(state.u, 0.0)
     by_node = np.array([system.by_node(shape) for shape in shapes.T])
     state.modes.append(Modes("buckling", number, factors, by_node.reshape(len(factors), -1, 3)))
@@ -98,7 +98,7 @@ def _check_unloaded(system: System, step: Buckle) -> None:
 
 def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats, Floats]:
     force, move, loads = _perturbation(system, step, number, u)
-    if system.touching is not None:
+    if system.contact_term is not None:
         factors, shapes = factors_with_contact(system, u, force, move, loads, step.modes)
         return factors, _largest_one(system, shapes)
     base = _symmetric(system, system.evaluate(u, 0.0))
@@ -112,31 +112,35 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
         )
     change = _derivative(system, u, values, response, loads)
     largest_move = _moved(system, response, loads)
-    held, free = system.conditions.held, _free(system)
-    product = system.core.multiply if system.ties is None else system.ties.places.multiply
+    constrained, free = system.conditions.constrained, _free(system)
+    product = (
+        system.core.multiply if system.constraints is None else system.constraints.places.multiply
+    )
 
     def apply(x: Floats) -> Floats:
         out = np.zeros(x.shape, order="F")
         for k in range(x.shape[1]):
             out[free, k] = -product(change, np.ascontiguousarray(x[free, k]))
-        out[held] = 0.0
+        out[constrained] = 0.0
         return out
 
     def count(bound: float) -> int:
         """Negative pivots of the tangent at a factor: the modes in front of it."""
         at = values + bound * change
-        if system.ties is None:
-            system.core.mask(at, held)
+        if system.constraints is None:
+            system.core.mask(at, constrained)
         else:
-            system.ties.places.mask(at, held[free])
+            system.constraints.places.mask(at, constrained[free])
         inertia = system.solver.factorize(at)
         return -1 if inertia is None else inertia[1]
 
     start = np.random.default_rng(11).standard_normal((system.n_dofs, BLOCK))
-    start[held] = 0.0
+    start[constrained] = 0.0
     wanted = step.modes
     for _ in range(3):
-        theta, shapes = largest(apply, system.solve_again, apply(start), wanted, RESIDUAL)
+        theta, shapes = largest(
+            apply, system.solve_with_last_factor, apply(start), wanted, RESIDUAL
+        )
         # A load that would stretch the structure by its own size is no buckling load.
         theta = theta[theta * system.length > largest_move]
         if not len(theta):
@@ -169,7 +173,7 @@ def _largest_one(system: System, shapes: Floats) -> Floats:
 
 def _free(system: System) -> slice | NDArray[np.int64]:
     """Unknowns among the dofs: all, or those that constraints leave."""
-    return slice(None) if system.ties is None else system.ties.free
+    return slice(None) if system.constraints is None else system.constraints.free
 
 
 def _unknowns(system: System, at: Evaluation, residual: Floats) -> Floats:
@@ -194,9 +198,9 @@ def _perturbation(
     )
     loads.check_proportional()
     force, move = loads.rate(u)
-    held = system.conditions.held
-    move = np.where(held, move, 0.0)
-    if not (np.any(force[~held]) or np.any(move) or system.free.largest(loads.heating)):
+    constrained = system.conditions.constrained
+    move = np.where(constrained, move, 0.0)
+    if not (np.any(force[~constrained]) or np.any(move) or system.free.largest(loads.heating)):
         raise ModelError(
             f"buckling step {number} has no load: give the step or the model one", step.where
         )
@@ -254,7 +258,7 @@ def _derivative(
     _, stiffness = loads.external(loads.period, u, own)
     if stiffness is not None or own.any():
         at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
-        link = None if system.ties is None else system.ties.link(u)
+        link = None if system.constraints is None else system.constraints.link(u)
         change += _unknowns(system, replace(at, link=link), zero)
     return change
 

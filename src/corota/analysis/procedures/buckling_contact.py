@@ -114,8 +114,8 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
 
     ahead, behind = neighbor(size).stiffness, neighbor(-size).stiffness
     change = ahead - behind
-    bend = ahead + behind - 2.0 * base.stiffness
-    if abs(bend).max() > CORNER * abs(change).max():
+    geometric_stiffness = ahead + behind - 2.0 * base.stiffness
+    if abs(geometric_stiffness).max() > CORNER * abs(change).max():
         raise UnsupportedError(
             "the tangent jumps about this state (plastic flow, contact): linear buckling has no "
             "meaning there; follow the path instead (path=ArcLength(...))"

@@ -19,7 +19,7 @@ from corota.analysis.procedures.motion import (
     Damping,
     Driven,
     Inertia,
-    Moving,
+    MotionState,
     NewmarkMotion,
 )
 from corota.analysis.procedures.motion_output import EndForces
@@ -27,7 +27,7 @@ from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import newton_with_contact
 from corota.analysis.terms.damping import mass_damping
-from corota.analysis.terms.moving_mass import light_nodes
+from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
 from corota.errors import ConvergenceError, Interrupted, ModelError
 from corota.model import elements
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from corota.analysis.equations import Evaluation, System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.analysis.terms.contact.equations import TouchingSystem
+    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.model.loads import Amplitude
     from corota.model.steps import Dynamic
 
@@ -86,7 +86,7 @@ def dynamic_step(
         explicit_step(system, step, number, state, observers, save, stops)
         return
     warn_of_long_increments(system, step, state)
-    inertia = Inertia(system, step.mass, light_nodes(system, step.redistribute))
+    inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
     viscous = ViscousElements(system, step.rayleigh[1])
     now = start_motion(system, step, state, inertia, viscous)
     assert state.energies is not None
@@ -95,7 +95,7 @@ def dynamic_step(
     control = Increments(step, stops)
     if not step.fixed_increments and step.first_increment >= step.period:
         control.size = step.period / 100.0
-    again = system.again if system.touching is None else None
+    again = system.correct_with_last_factor if system.contact_term is None else None
     settings = Settings(step.tolerance, step.max_iterations, again)
     count = state.counters
     turned: Floats | float = 0.0
@@ -113,21 +113,27 @@ def dynamic_step(
         driven = _driven(system, prescribed, target, target - control.time)
         motion = _motion(system, step, inertia, now, target - control.time, driven, viscous)
         outcome: Outcome[Evaluation]
-        if system.touching is None:
+        if system.contact_term is None:
             outcome = newton(motion, now.u, prescribed, target, settings, None, report)
         else:
-            outcome, touching = newton_with_contact(
-                motion, system, now.u, prescribed, target, settings, report,
+            outcome, contact_term = newton_with_contact(
+                motion,
+                system,
+                now.u,
+                prescribed,
+                target,
+                settings,
+                report,
                 last_chance=step.fixed_increments,
-            )  # fmt: skip
+            )
         count["iterations"] = count.get("iterations", 0) + outcome.iterations
         reason = outcome.reason if not outcome.converged else ""
         error = 0.0
         if outcome.converged and not step.fixed_increments:
-            error = _local_error(system, motion, step, inertia.light)
-            if system.touching is not None:
+            error = _local_error(system, motion, step, inertia.massless)
+            if system.contact_term is not None:
                 energy = max(book.energy, book.driven(motion.end))
-                missed = _contact_error(touching, motion, step, energy)
+                missed = _contact_error(contact_term, motion, step, energy)
                 # An impact that no increment is short enough for is taken as it is.
                 if CUT * (target - control.time) >= step.smallest_increment:
                     error = max(error, missed)
@@ -150,10 +156,10 @@ def dynamic_step(
         system.commit()
         inertia.settle(now, motion.end, target - control.time)
         contact = None
-        if system.touching is not None:
-            touching.accept(outcome.u, target)
-            assert touching.touch is not None
-            contact = touching.touch.force
+        if system.contact_term is not None:
+            contact_term.accept(outcome.u, target)
+            assert contact_term.contact_state is not None
+            contact = contact_term.contact_state.force
         book.accept(motion, contact)
         now = motion.end
         ends.find(motion, contact, target)
@@ -196,12 +202,12 @@ def _whole_turns(system: System, u: Floats) -> Floats | None:
     supports and constraints may know the number of turns.
     """
     mask = system.is_rotation
-    known = system.ties is not None or system.touching is not None
-    if known or not (mask.any() and system.turning):
+    known = system.constraints is not None or system.contact_term is not None
+    if known or not (mask.any() and system.nlgeom):
         return None
     turns = np.round(float(u[mask].mean()) / (2.0 * np.pi))
     lines = any(elements.find(b.section.element).line for b in system.blocks)
-    if turns == 0.0 or lines or system.conditions.held[mask].any():
+    if turns == 0.0 or lines or system.conditions.constrained[mask].any():
         return None
     return np.where(mask, 2.0 * np.pi * turns, 0.0)
 
@@ -271,7 +277,7 @@ def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) 
 
 def start_motion(
     system: System, step: Dynamic, state: State, inertia: Inertia, viscous: ViscousElements
-) -> Moving:
+) -> MotionState:
     """Velocities and accelerations at the start of a step."""
     zero = np.zeros(system.n_dofs)
     if state.v is None:
@@ -282,17 +288,17 @@ def start_motion(
     last = state.carried
     goes_on = last is not None and last[0] is u and last[1] is v
     goes_on = goes_on and step.scheme == "energy_momentum"
-    if system.ties is not None:
+    if system.constraints is not None:
         # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
         # they keep their own velocities, which are those of its mid-point relations.
-        system.ties.complete_rates(u, v.copy() if goes_on else v, zero)
+        system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
     rayleigh = _damping(system, step, u, viscous)
     resting = np.zeros_like(zero)
-    if system.touching is not None:
+    if system.contact_term is not None:
         # Bodies may rest on each other from a step before.
-        touching = system.touching
-        resting = touching.evaluate(u, touching.committed, 0.0, at.values).force
+        contact_term = system.contact_term
+        resting = contact_term.evaluate(u, contact_term.committed, 0.0, at.values).force
     damping = inertia.damping(at, u, v, 0.0, rayleigh)
     internal, external = at.internal, at.external
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
@@ -300,7 +306,7 @@ def start_motion(
     # follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness
     # decides it.
     mass = inertia.tangent(u)
-    if system.is_rotation.any() or inertia.light.any():
+    if system.is_rotation.any() or inertia.massless.any():
         trace = step.period if not step.fixed_increments else step.first_increment
         mass += (TRACE * trace) ** 2 * at.values
     at.values[:] = mass
@@ -312,12 +318,12 @@ def start_motion(
     a = zero + system.predict(at, support_a)[0]
     # What nodes without mass need for their balance is no acceleration; drilling rotations near
     # them follow it.
-    if inertia.light.any():
-        a[(inertia.light | system.is_rotation) & ~system.conditions.held] = 0.0
+    if inertia.massless.any():
+        a[(inertia.massless | system.is_rotation) & ~system.conditions.constrained] = 0.0
     state.a = a
     if not goes_on:
         system.core.start_motion(system.in_space(u), system.in_space(v))
-    return Moving(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+    return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
 
 
 def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
@@ -326,11 +332,11 @@ def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
     Both are looked at over the first increment.
     """
     assert state.v is not None
-    held = system.conditions.held
+    constrained = system.conditions.constrained
     whole = not step.fixed_increments and step.first_increment >= step.period
     window = step.period / 100.0 if whole else step.first_increment
     v, a = system.conditions.support_rates(0.0, window)
-    state.v[held] = v[held]
+    state.v[constrained] = v[constrained]
     for name, time in system.conditions.support_kinks():
         state.notes.append(
             f"the amplitude {name!r} of a support changes its velocity at once at step time "
@@ -345,7 +351,7 @@ def initial_velocity(system: System, u: Floats | None = None) -> Floats:
     out = np.zeros((len(system.per_node), 3))
     points = system.model.mesh.points
     u = np.zeros(system.n_dofs) if u is None else u
-    if system.turning:
+    if system.nlgeom:
         points = points + system.by_node(u)[:, :2]
     for item in system.model.velocities:
         if isinstance(item.nodes, str):
@@ -361,7 +367,7 @@ def initial_velocity(system: System, u: Floats | None = None) -> Floats:
         out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
         out[nodes, 2] = spin
     v = system.from_nodes(out)
-    if system.ties is not None:
+    if system.constraints is not None:
         _follow_constraints(system, u, v)
     return v
 
@@ -374,9 +380,9 @@ def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
     ModelError
         If another one was given.
     """
-    assert system.ties is not None
+    assert system.constraints is not None
     given = v.copy()
-    system.ties.complete_rates(u, v)
+    system.constraints.complete_rates(u, v)
     off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
     if off.any():
         dof = int(np.flatnonzero(off)[0])
@@ -392,7 +398,7 @@ def _motion(
     system: System,
     step: Dynamic,
     inertia: Inertia,
-    now: Moving,
+    now: MotionState,
     dt: float,
     driven: Driven,
     viscous: ViscousElements,
@@ -406,18 +412,18 @@ def _motion(
 
 def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Driven:
     """Motion that the step prescribes at a time, of dependents of held dofs alone too."""
-    conditions, ties = system.conditions, system.ties
-    held = conditions.held
+    conditions, constraints = system.conditions, system.constraints
+    constrained = conditions.constrained
     v, a = conditions.support_rates(time, dt)
-    if ties is None or not held.any():
-        return Driven(held, prescribed, v, a)
+    if constraints is None or not constrained.any():
+        return Driven(constrained, prescribed, v, a)
     u = prescribed.copy()
-    ties.complete(u)
-    ties.complete_rates(u, v, a)
-    free = abs(ties.link(u).g) @ (~held).astype(float)
-    held = held.copy()
-    held[ties.dependent[free == 0.0]] = True
-    return Driven(held, u, v, a)
+    constraints.complete(u)
+    constraints.complete_rates(u, v, a)
+    free = abs(constraints.link(u).g) @ (~constrained).astype(float)
+    constrained = constrained.copy()
+    constrained[constraints.dependent[free == 0.0]] = True
+    return Driven(constrained, u, v, a)
 
 
 def _damping(system: System, step: Dynamic, u: Floats, elements: ViscousElements) -> Damping:
@@ -429,7 +435,7 @@ def _local_error(
     system: System,
     motion: NewmarkMotion | ConservingMotion,
     step: Dynamic,
-    light: NDArray[np.bool_],
+    massless: NDArray[np.bool_],
 ) -> float:
     """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991).
 
@@ -440,11 +446,11 @@ def _local_error(
     begin, end, dt = motion.start, motion.end, motion.dt
     beta = motion.scheme.beta if isinstance(motion, NewmarkMotion) else 0.25
     before, after = (m.a if m.carried is None else m.carried for m in (begin, end))
-    known = light | system.conditions.held
+    known = massless | system.conditions.constrained
     change = system.by_node(np.where(known, 0.0, after - before))[:, :2]
     there = system.per_node > 0
     moves = there & system.by_node((~known & ~system.is_rotation).astype(float))[:, :2].any(axis=1)
-    counts = there & ~system.by_node(light.astype(float))[:, :2].any(axis=1)
+    counts = there & ~system.by_node(massless.astype(float))[:, :2].any(axis=1)
     if not moves.any():
         return 0.0
     reference = system.model.mesh.points
@@ -455,7 +461,7 @@ def _local_error(
     travel = x[counts] - reference[counts]
     travel -= travel.mean(axis=0)
     speed = v[counts] - v[counts].mean(axis=0)
-    strain = deformation(reference[counts], x[counts], system.turning)
+    strain = deformation(reference[counts], x[counts], system.nlgeom)
     rate = v[counts] - rigid_rates(x[counts], v[counts])
     worst = 0.0
     pairs = ((rigid, travel, speed), (other, strain, rate))
@@ -467,7 +473,10 @@ def _local_error(
 
 
 def _contact_error(
-    contact: TouchingSystem, motion: NewmarkMotion | ConservingMotion, step: Dynamic, energy: float
+    contact: ContactEquations,
+    motion: NewmarkMotion | ConservingMotion,
+    step: Dynamic,
+    energy: float,
 ) -> float:
     """What an increment misses of the moment of impact, over the allowed share.
 
@@ -475,26 +484,26 @@ def _contact_error(
     of the energy for a tolerance of one percent; where a rate condition keeps that at zero, the
     depth they are left with, against a tenth of an edge.
     """
-    touch, touching = contact.touch, contact.touching
-    assert touch is not None
-    if touching.persistent:
+    contact_state, contact_term = contact.contact_state, contact.contact_term
+    assert contact_state is not None
+    if contact_term.persistent:
         depth = 0.0
-        for pair, terms in zip(touching.pairs, touch.terms, strict=True):
+        for pair, terms in zip(contact_term.pairs, contact_state.terms, strict=True):
             if pair.start is not None and pair.n:
                 deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
                 edge = float(pair.slave.length.mean())
                 depth = max(depth, float((deeper / pair.full).max()) / edge)
         return 0.1 * depth / step.error_tolerance
-    work = float(touch.force @ (motion.end.u - motion.start.u))
-    parts = touching.parts(touch.multipliers)
-    for pair, terms, (_, q) in zip(touching.pairs, touch.terms, parts, strict=True):
+    work = float(contact_state.force @ (motion.end.u - motion.start.u))
+    parts = contact_term.parts(contact_state.multipliers)
+    for pair, terms, (_, q) in zip(contact_term.pairs, contact_state.terms, parts, strict=True):
         if pair.friction:
             work -= float(q @ terms.slip)
         if pair.law is not None:
             before = (
                 0.0
-                if touching.at is None
-                else pair.law_energy(touching.at.terms[touching.pairs.index(pair)])
+                if contact_term.at is None
+                else pair.law_energy(contact_term.at.terms[contact_term.pairs.index(pair)])
             )
             work += pair.law_energy(terms) - before
     return 10.0 * abs(work) / (step.error_tolerance * energy) if energy > 0.0 else 0.0

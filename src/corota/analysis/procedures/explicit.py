@@ -57,7 +57,7 @@ def stable_increment(system: System, u: Floats, mass: Floats) -> float:
     ModelError
         If a free dof has stiffness but no mass, or if the frequency is not finite.
     """
-    free = ~system.conditions.held
+    free = ~system.conditions.constrained
     moving = free & (mass > 0.0)
     values = system.evaluate(u, 0.0).values
     idle = free & ~moving
@@ -129,20 +129,20 @@ def explicit_step(
             "rayleigh",
             step.where,
         )
-    if system.ties is not None:
+    if system.constraints is not None:
         raise UnsupportedError(
             "central differences take no constraints and no local axes: eliminated dofs couple "
             "the masses of others, and the mass is no diagonal any more; use an implicit scheme",
             step.where,
         )
-    if system.touching is not None:
+    if system.contact_term is not None:
         raise UnsupportedError(
             "central differences take no contact pairs and no ties; use an implicit scheme "
             "(hht, generalized_alpha, energy_momentum; *DYNAMIC without EXPLICIT)",
             step.where,
         )
     mass = diagonal(system)
-    held = system.conditions.held
+    constrained = system.conditions.constrained
     stable = stable_increment(system, state.u, mass)
     if step.fixed_increments:
         dt = step.first_increment
@@ -169,8 +169,8 @@ def explicit_step(
         state.v = initial_velocity(system, state.u)
     u = state.u.copy()
     at = system.evaluate(u, 0.0)
-    moving = ~held & (mass > 0.0)
-    idle = ~held & ~moving
+    moving = ~constrained & (mass > 0.0)
+    idle = ~constrained & ~moving
     inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
     _refuse_pushed(system, idle, at)
     a = -inverse * at.residual
@@ -183,10 +183,10 @@ def explicit_step(
     first = 0.5 * float(state.v @ (mass * state.v))
     known = Known(system, mass, first, dt)
     account.set_kinetic(first)
-    driven = 0.5 * float((mass * state.v**2)[held].sum())
+    driven = 0.5 * float((mass * state.v**2)[constrained].sum())
     for i in range(1, n + 1):
         time = i * dt
-        du = np.where(held, system.conditions.prescribed(time, u) - u, dt * v)
+        du = np.where(constrained, system.conditions.prescribed(time, u) - u, dt * v)
         u = u + du
         new = system.evaluate(u, time)
         system.commit()
@@ -194,19 +194,19 @@ def explicit_step(
         a = -inverse * new.residual
         account.add_work(du, new.external, new.residual)
         internal += float(0.5 * (at.internal + new.internal) @ du)
-        whole = np.where(held, du / dt, v + 0.5 * dt * a)
+        whole = np.where(constrained, du / dt, v + 0.5 * dt * a)
         # Supports accelerate the mass that moves with them.
-        moved = 0.5 * float((mass * whole**2)[held].sum())
+        moved = 0.5 * float((mass * whole**2)[constrained].sum())
         account.work += moved - driven
         worked = account.work - begin - work
         driven, work = moved, account.work - begin
         before = v
-        v = np.where(held, du / dt, v + dt * a)
+        v = np.where(constrained, du / dt, v + dt * a)
         stiff = float(np.where(moving, new.internal - at.internal, 0.0) @ du)
         inert = float(np.where(moving, mass * du, 0.0) @ du)
         at = new
         kinetic = 0.5 * float(whole @ (mass * whole))
-        pending = float((new.external + np.where(held, new.residual, 0.0)) @ whole) * dt
+        pending = float((new.external + np.where(constrained, new.residual, 0.0)) @ whole) * dt
         allowed = BLOW_UP * known.energy(worked, internal, pending)
         # The frequency of the increment itself is above the stable one, and energy comes of it.
         unstable = stiff * dt**2 > 4.0 * inert and kinetic + internal > allowed
@@ -221,7 +221,7 @@ def explicit_step(
         state.step_time, account.kinetic = time, kinetic
         account.internal += internal - told
         told = internal
-        state.reaction = np.where(held, new.residual + mass * (du / dt - before) / dt, 0.0)
+        state.reaction = np.where(constrained, new.residual + mass * (du / dt - before) / dt, 0.0)
         save(
             state,
             i,

@@ -169,7 +169,7 @@ def _participation(lin: LinearMotion, shapes: Floats) -> dict[str, float]:
     scalars: dict[str, float] = {}
     for name, field in fields.items():
         rigid = system.from_nodes(field.ravel())
-        rigid[system.conditions.held] = 0.0
+        rigid[system.conditions.constrained] = 0.0
         force = system.product(lin.mass_values, rigid)
         for k, value in enumerate(shapes.T @ force, start=1):
             scalars[f"participation {name} {k}"] = float(value)

@@ -114,7 +114,7 @@ def _amplitudes(
     behind = Conditions(system)
     behind.ramp = False
     behind.add(step.imaginary_loads, step.imaginary_supports)
-    loose = behind.held & ~conditions.held
+    loose = behind.constrained & ~conditions.constrained
     if loose.any():
         raise ModelError(
             f"{system.describe(int(np.flatnonzero(loose)[0]))} is moved out of phase in step "
@@ -123,15 +123,15 @@ def _amplitudes(
         )
     shape = (len(frequencies), system.n_dofs)
     loads, moves = np.zeros(shape, complex), np.zeros(shape, complex)
-    held = conditions.held
+    constrained = conditions.constrained
     none = np.zeros(system.n_dofs)
     for k, f in enumerate(frequencies):
         loads[k] = conditions.external(f, lin.u)[0] - lin.at.internal
         loads[k] += 1j * behind.external(f, lin.u)[0]
-        moves[k] = np.where(held, conditions.prescribed(f, lin.u) - lin.u, 0.0)
+        moves[k] = np.where(constrained, conditions.prescribed(f, lin.u) - lin.u, 0.0)
         moves[k] += 1j * behind.prescribed(f, none)
     # What the supports carry of the state is no load.
-    loads[:, held] += lin.at.residual[held]
+    loads[:, constrained] += lin.at.residual[constrained]
     return loads, moves
 
 
@@ -144,14 +144,14 @@ def _by_modes(
         for vector in vectors:
             found.add(vector.real.copy())
             found.add(vector.imag.copy())
-    forces, held = (found.matrix for found in patterns)
-    model = Reduced(system, state, step, number, forces, held)
+    forces, constrained = (found.matrix for found in patterns)
+    model = Reduced(system, state, step, number, forces, constrained)
     one = np.eye(len(model.stiffness))
 
     def answer(w: float, load: Complex, move: Complex) -> Complex:
         matrix = model.stiffness - w**2 * one + 1j * w * model.damping
         scale = np.maximum(np.abs(np.diag(model.stiffness)), w**2)
-        c, s = forces.T @ load, held.T @ move
+        c, s = forces.T @ load, constrained.T @ move
         rhs = model.load @ c + (w**2 * model.carried - 1j * w * model.dragged) @ s
         if (np.abs(np.diag(matrix)) <= RESONANCE * scale).any():
             raise _resonance(step, number, w)

@@ -54,8 +54,8 @@ class LinearFields:
         return fields, sums
 
     def _recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
-        if self.system.ties is not None:
-            self.system.ties.complete(u)
+        if self.system.constraints is not None:
+            self.system.constraints.complete(u)
         return self.system.recover(u)
 
 

@@ -60,8 +60,8 @@ def modal_step(
     slope_s = np.diff(s, axis=0) / dt
     rates, bends = rates_of_moves(s, dt)
     start = initial_velocity(system, state.u) if state.v is None else state.v.copy()
-    held = system.conditions.held
-    start[held] = (moves.matrix @ rates[0])[held]
+    constrained = system.conditions.constrained
+    start[constrained] = (moves.matrix @ rates[0])[constrained]
     p, v = model.project(state.u - lin.u), model.project(start)
     q = p - model.carried @ s[0]
     _tell_lost(system, state, number, state.u - lin.u, model.displacement(q, s[0]))
@@ -73,13 +73,13 @@ def modal_step(
         inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, slope_s[i - 1]])
         x = advance @ np.concatenate([x, inputs])
         p, v = x[:m], x[m:]
-        rate, bend = rates[i], bends[i]
+        rate, geometric_stiffness = rates[i], bends[i]
         q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
         a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
         change = model.displacement(q, s[i])
         state.u = lin.u + change
         state.v = model.displacement(q_rate, rate)
-        state.a = model.displacement(a - model.carried @ bend, bend)
+        state.a = model.displacement(a - model.carried @ geometric_stiffness, geometric_stiffness)
         external = system.conditions.external(i * dt, lin.u)[0]
         state.at = linear_evaluation(model, change, state.v, state.a, external)
         state.step_time = i * dt
@@ -112,7 +112,9 @@ def _courses(system: System, lin: LinearMotion, n: int, dt: float) -> tuple[Patt
     conditions = system.conditions
     for i in range(n + 1):
         loads.add(conditions.external(i * dt, lin.u)[0] - lin.at.internal)
-        moves.add(np.where(conditions.held, conditions.prescribed(i * dt, lin.u) - lin.u, 0.0))
+        moves.add(
+            np.where(conditions.constrained, conditions.prescribed(i * dt, lin.u) - lin.u, 0.0)
+        )
     return loads, moves
 
 
@@ -195,7 +197,7 @@ def supported(lin: LinearMotion, forces: Floats, external: Floats) -> Evaluation
     base = lin.at.internal - external
     reaction = base.copy() if lin.link is None else lin.link.gather(base)
     reaction[lin.free] += forces[: lin.nf]
-    internal = external + np.where(system.conditions.held, reaction, 0.0)
+    internal = external + np.where(system.conditions.constrained, reaction, 0.0)
     return Evaluation(internal, external, np.abs(internal), np.zeros(len(system.indices)))
 
 

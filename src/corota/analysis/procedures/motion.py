@@ -18,9 +18,9 @@ from corota.analysis.terms.attachments import Attachments
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.constraints.elimination import Link
+    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
-    from corota.analysis.newton import Judgement
+    from corota.analysis.newton import ResidualNorms
     from corota.analysis.terms.viscous import ViscousElements
     from corota.model.schemes import Scheme
     from corota.model.steps import Step
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Moving:
+class MotionState:
     """State of motion at the end of an increment.
 
     Parameters
@@ -51,7 +51,7 @@ class Moving:
     external: Floats
     inertia: Floats
     damping: Floats
-    link: Link | None = None
+    link: LinearizedConstraints | None = None
     carried: Floats | None = None
 
     def gathered(self, force: Floats) -> Floats:
@@ -98,16 +98,18 @@ class Inertia:
         Displacements without mass.
     """
 
-    def __init__(self, system: System, kind: str, light: NDArray[np.bool_] | None = None) -> None:
+    def __init__(
+        self, system: System, kind: str, massless: NDArray[np.bool_] | None = None
+    ) -> None:
         self.system, self.kind = system, kind
         self.attached = Attachments(system)
-        flags = np.zeros(0, bool) if light is None else np.ascontiguousarray(light)
-        system.core.set_light(flags)
+        flags = np.zeros(0, bool) if massless is None else np.ascontiguousarray(massless)
+        system.core.set_massless(flags)
         system.conditions.set_mass(kind)
-        self.light = np.zeros(system.n_dofs, bool)
-        if light is not None:
-            self.light = light[system.node_of_dof] & ~system.is_rotation
-            self.light &= self.attached.mass == 0.0
+        self.massless = np.zeros(system.n_dofs, bool)
+        if massless is not None:
+            self.massless = massless[system.node_of_dof] & ~system.is_rotation
+            self.massless &= self.attached.mass == 0.0
         coupled = kind == "consistent" and bool(system.is_rotation.any())
         zero = np.zeros(system.n_dofs)
         values = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
@@ -125,16 +127,16 @@ class Inertia:
         if turn.any():
             at.momentum = max(at.momentum, float(terms[turn].max()) / self.system.length)
 
-    def settle(self, begin: Moving, end: Moving, dt: float) -> None:
+    def settle(self, begin: MotionState, end: MotionState, dt: float) -> None:
         """Give displacements without mass the mean velocity of the increment, in place.
 
         They follow quasi-statically; what the scheme carries on for them is noise.
         """
-        if self.light.any():
-            end.v[self.light] = (end.u - begin.u)[self.light] / dt
-            end.a[self.light] = 0.0
+        if self.massless.any():
+            end.v[self.massless] = (end.u - begin.u)[self.massless] / dt
+            end.a[self.massless] = 0.0
             if end.carried is not None:
-                end.carried[self.light] = 0.0
+                end.carried[self.massless] = 0.0
 
     def force(self, u: Floats, v: Floats, a: Floats) -> Floats:
         """Inertia force [force]."""
@@ -185,9 +187,14 @@ class Inertia:
         return core + self.attached.momenta(u, v) if self.attached.mass.any() else core
 
     def damping(
-        self, at: Evaluation, u: Floats, v: Floats, weight: float,
-        damping: Damping, between: tuple[Floats, Floats, float] | None = None,
-    ) -> Floats:  # fmt: skip
+        self,
+        at: Evaluation,
+        u: Floats,
+        v: Floats,
+        weight: float,
+        damping: Damping,
+        between: tuple[Floats, Floats, float] | None = None,
+    ) -> Floats:
         """Rayleigh damping and dashpots; `weight` times the derivative by velocity goes to `at`.
 
         `between` gives the two states and the time over which `v` is the mean rate.
@@ -231,7 +238,7 @@ class Driven:
         Displacement, velocity and acceleration, which mean nothing elsewhere.
     """
 
-    held: NDArray[np.bool_]
+    constrained: NDArray[np.bool_]
     u: Floats
     v: Floats
     a: Floats
@@ -266,7 +273,7 @@ class NewmarkMotion:
         system: System,
         inertia: Inertia,
         scheme: Scheme,
-        start: Moving,
+        start: MotionState,
         dt: float,
         driven: Driven,
         damping: Damping,
@@ -292,19 +299,19 @@ class NewmarkMotion:
         if s.alpha_m or s.alpha_f:
             a = (1.0 - s.alpha_m) * carried + s.alpha_m * before - s.alpha_f * b.a
             a /= 1.0 - s.alpha_f
-        elif driven.held.any() or self.system.ties is not None:
+        elif driven.constrained.any() or self.system.constraints is not None:
             a = carried.copy()
-        held = driven.held
-        if held.any():
+        constrained = driven.constrained
+        if constrained.any():
             # Newton's method moves held dofs in its first correction: until then the rates differ
             # by what the tangent takes them for.
-            rest = (u - driven.u)[held]
-            v[held] = driven.v[held] + self.c_v * rest
-            a[held] = driven.a[held] + self.c_a * rest
-        if self.system.ties is not None:
-            self.system.ties.complete_rates(u, v, a)
-            carried[self.system.ties.gone] = a[self.system.ties.gone]
-        carried[held] = a[held]
+            rest = (u - driven.u)[constrained]
+            v[constrained] = driven.v[constrained] + self.c_v * rest
+            a[constrained] = driven.a[constrained] + self.c_a * rest
+        if self.system.constraints is not None:
+            self.system.constraints.complete_rates(u, v, a)
+            carried[self.system.constraints.eliminated] = a[self.system.constraints.eliminated]
+        carried[constrained] = a[constrained]
         return v, a, carried
 
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
@@ -321,24 +328,24 @@ class NewmarkMotion:
         force = self.inertia.add(at, u, v, a, weights)
         self.inertia.weigh(at, u - self.start.u, weights[2])
         damping = self.inertia.damping(at, u, v, share * self.c_v, self.damping)
-        self.end = Moving(u, v, a, internal, external, force, damping, at.link, carried)
+        self.end = MotionState(u, v, a, internal, external, force, damping, at.link, carried)
         at.internal = share * (internal + damping + force)
         at.external = share * external
         if self.begun is not None:
             at.internal += self.begun
         return at
 
-    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
         """Newton correction."""
-        return self.system.predict(at, du_held)
+        return self.system.predict(at, du_prescribed)
 
-    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual."""
-        return self.system.judge(at, u)
+        return self.system.residual_norms(at, u)
 
-    def release(self, at: Evaluation) -> None:
+    def return_tangent(self, at: Evaluation) -> None:
         """Take the memory of a tangent back."""
-        self.system.release(at)
+        self.system.return_tangent(at)
 
 
 class ConservingMotion:
@@ -352,7 +359,7 @@ class ConservingMotion:
         self,
         system: System,
         inertia: Inertia,
-        start: Moving,
+        start: MotionState,
         dt: float,
         driven: Driven,
         damping: Damping,
@@ -366,7 +373,7 @@ class ConservingMotion:
         """Increment that the forces do work on, shape (n_dofs,)."""
         d = u - self.start.u
         turn = self.system.is_rotation
-        if self.system.turning:
+        if self.system.nlgeom:
             d[turn] = 2.0 * np.tan(0.5 * d[turn])
         return d
 
@@ -375,22 +382,22 @@ class ConservingMotion:
         system, b, dt = self.system, self.start, self.dt
         n = system.n_dofs
         force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
-        values = system.room()
-        if system.ties is not None:
-            system.ties.complete(u)
+        values = system.borrow_tangent()
+        if system.constraints is not None:
+            system.constraints.complete(u)
         d = self.increment(u)
         begun = self._begun()
         x1, x0, v0 = (system.in_space(x) for x in (u, b.u, begun))
-        system.heat(step_time - 0.5 * dt)
+        system.set_temperatures(step_time - 0.5 * dt)
 
         def assemble() -> None:
             system.core.conserving(
-                x1, x0, v0, dt, self.inertia.kind, system.turning, force, internal, scale, values
+                x1, x0, v0, dt, self.inertia.kind, system.nlgeom, force, internal, scale, values
             )
 
         try:
             with system.timed("assemble"):
-                system.user.assemble(x1, system.turning, assemble, between=True)
+                system.user.assemble(x1, system.nlgeom, assemble, between=True)
                 if system.user.blocks:
                     system.user.linearize(assemble, values)
         except RuntimeError as error:
@@ -407,14 +414,14 @@ class ConservingMotion:
         force += hung
         scale += np.abs(hung)
         values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
-        link = None if system.ties is None else system.ties.secant(b.u, u)
+        link = None if system.constraints is None else system.constraints.secant(b.u, u)
         at = Evaluation(force, external, scale, values, stiffness, link)
         self.inertia.weigh(at, d, 2.0 / (dt * dt))
         damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.damping, (b.u, u, dt))
         at.internal = force + damping
-        held = self.driven.held
-        v[held], a[held] = self.driven.v[held], self.driven.a[held]
-        self.end = Moving(u, v, a, internal, external, force - internal, damping, link)
+        constrained = self.driven.constrained
+        v[constrained], a[constrained] = self.driven.v[constrained], self.driven.a[constrained]
+        self.end = MotionState(u, v, a, internal, external, force - internal, damping, link)
         return at
 
     def _begun(self) -> Floats:
@@ -423,25 +430,25 @@ class ConservingMotion:
         Those of the start; at prescribed dofs what makes the change of velocity over the increment
         the prescribed one, since the rule would swing about it for ever.
         """
-        held = self.driven.held
-        if not held.any():
+        constrained = self.driven.constrained
+        if not constrained.any():
             return self.start.v
         out: Floats = self.start.v.copy()
-        mean = self.increment(self.driven.u)[held] / self.dt
-        out[held] = mean - 0.5 * (self.driven.v - self.start.v)[held]
+        mean = self.increment(self.driven.u)[constrained] / self.dt
+        out[constrained] = mean - 0.5 * (self.driven.v - self.start.v)[constrained]
         return out
 
-    def predict(self, at: Evaluation, du_held: Floats) -> tuple[Floats, int]:
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
         """Newton correction."""
-        return self.system.predict(at, du_held)
+        return self.system.predict(at, du_prescribed)
 
-    def judge(self, at: Evaluation, u: Floats) -> Judgement:
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual."""
-        return self.system.judge(at, u)
+        return self.system.residual_norms(at, u)
 
-    def release(self, at: Evaluation) -> None:
+    def return_tangent(self, at: Evaluation) -> None:
         """Take the memory of a tangent back."""
-        self.system.release(at)
+        self.system.return_tangent(at)
 
 
 def add_kinetic(

@@ -63,7 +63,7 @@ class EndForces:
             internal = internal - contact
         self.at = Evaluation(internal, external, internal, np.empty(0), None, end.link)
         whole = end.gathered(internal + inertia - external)
-        self.reaction = np.where(system.conditions.held, whole, 0.0)
+        self.reaction = np.where(system.conditions.constrained, whole, 0.0)
 
 
 __all__ = ["EndForces"]

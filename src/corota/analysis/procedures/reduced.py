@@ -133,11 +133,11 @@ class Reduced:
             basis = self._orthonormal(np.hstack([basis, lin.restrict(other)[lin.active]]))
         c = lin.damping(step.rayleigh)
         self._factor, self._shift = shifted_factor(lin)
-        held = lin.restrict(moves)
-        self.static = held.copy()
-        if held.shape[1]:
+        constrained = lin.restrict(moves)
+        self.static = constrained.copy()
+        if constrained.shape[1]:
             self.static[lin.active] = -self._factor.solve(
-                np.asfortranarray(lin.coupled(lin.stiffness, held))
+                np.asfortranarray(lin.coupled(lin.stiffness, constrained))
             )
         f = lin.gather(forces)
         inertia, drag = (lin.coupled(m, self.static) for m in (lin.mass, c))
@@ -195,10 +195,12 @@ class Reduced:
     def _tell_missed(self, f: Floats, number: int) -> None:
         """Note where the modes miss much of the static response to a load."""
         x = self._factor.solve(np.asfortranarray(f))
-        held = np.linalg.solve(
-            self.stiffness + self._shift * np.eye(len(self.stiffness)), self.load
-        ) if self._regular() else np.zeros_like(self.load)  # fmt: skip
-        whole, own = (f * x).sum(axis=0), (self.load * held).sum(axis=0)
+        constrained = (
+            np.linalg.solve(self.stiffness + self._shift * np.eye(len(self.stiffness)), self.load)
+            if self._regular()
+            else np.zeros_like(self.load)
+        )
+        whole, own = (f * x).sum(axis=0), (self.load * constrained).sum(axis=0)
         missed = float((1.0 - own / np.where(whole > 0.0, whole, np.inf)).max(initial=0.0))
         if self._regular() and missed > MISSED:
             self.state.notes.append(
@@ -237,9 +239,9 @@ def last_modes(system: System, state: State, step: Any, number: int) -> tuple[An
             f"step {number} superposes modes, but no frequency step (*FREQUENCY) came before it",
             step.where,
         )
-    held = system.conditions.held[lin.free]
-    if not np.array_equal(held, lin.held[: lin.nf]):
-        dof = int(lin.free[np.flatnonzero(held != lin.held[: lin.nf])[0]])
+    constrained = system.conditions.constrained[lin.free]
+    if not np.array_equal(constrained, lin.constrained[: lin.nf]):
+        dof = int(lin.free[np.flatnonzero(constrained != lin.constrained[: lin.nf])[0]])
         raise ModelError(
             f"the supports of step {number} are not those of the modes ({system.describe(dof)}): "
             "hold the same dofs in the frequency step, with the value 0 where they move later",

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.newton import Judgement
+    from corota.analysis.newton import ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.analysis.terms.contact.equations import TouchingSystem
+    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.model.steps import Static
 
     Floats = NDArray[np.float64]
@@ -84,22 +84,29 @@ def static_step(
         heated = system.free.expands and not system.free.follows(
             system.conditions.temperatures(target)
         )
-        if state.at is not None and not heated and system.touching is None:
+        if state.at is not None and not heated and system.contact_term is None:
             begin = _with_loads(system, state.at, state.u, target)
             # Newton's method overwrites the tangent; a further attempt needs it again.
-            begin.values = system.room()
+            begin.values = system.borrow_tangent()
             begin.values[:] = state.at.values
         report = iteration_reporter(observers, system, number, control)
         prescribed = system.conditions.prescribed(target, state.u)
         try:
-            if system.touching is None:
+            if system.contact_term is None:
                 outcome = newton(system, state.u, prescribed, target, settings, begin, report)
             else:
                 known = None if state.at is None or heated else state.at.values
-                outcome, touching = newton_with_contact(
-                    system, system, state.u, prescribed, target, settings, report,
-                    tangent=known, last_chance=step.fixed_increments,
-                )  # fmt: skip
+                outcome, contact_term = newton_with_contact(
+                    system,
+                    system,
+                    state.u,
+                    prescribed,
+                    target,
+                    settings,
+                    report,
+                    tangent=known,
+                    last_chance=step.fixed_increments,
+                )
         except SingularError as error:
             if number == 1 and control.number == 0:
                 raise
@@ -126,7 +133,7 @@ def static_step(
             if (end or early) and (
                 rested := _relaxed(system, control, state, settings, report, early)
             ) is not None:
-                outcome, touching, target = rested
+                outcome, contact_term, target = rested
                 count["iterations"] += outcome.iterations
         if not outcome.converged:
             if (end or (softer and control.attempt > STALLED)) and _go_along_path(
@@ -141,8 +148,8 @@ def static_step(
                 number, control.number + 1, control.attempt - 1, outcome.reason, control.size
             )
             continue
-        if system.touching is not None:
-            state.notes += touching.accept(outcome.u, target)
+        if system.contact_term is not None:
+            state.notes += contact_term.accept(outcome.u, target)
         dt = target - control.time
         rate = float(np.abs(outcome.u - state.u).max(initial=0.0)) / dt
         first = first or rate
@@ -173,15 +180,15 @@ def _relaxed(
     control: Increments,
     state: State,
     settings: Settings,
-    report: Callable[[int, Judgement, float, str], None] | None,
+    report: Callable[[int, ResidualNorms, float, str], None] | None,
     early: bool,
-) -> tuple[Outcome[Evaluation], TouchingSystem, float] | None:
+) -> tuple[Outcome[Evaluation], ContactEquations, float] | None:
     """The increment by relaxation, where contact is driven by supports; None where it fails.
 
     Where loads drive, an equilibrium that ends is a limit point, which is for the user to judge.
     While increments may still be cut (`early`), what is far away is not taken.
     """
-    if system.touching is None or not control.number:
+    if system.contact_term is None or not control.number:
         return None
     period = control.step.period
     force, _ = system.load_rate(state.u)
@@ -192,22 +199,22 @@ def _relaxed(
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
         prescribed = system.conditions.prescribed(target, state.u)
         try:
-            outcome, touching = relax(system, state.u, prescribed, target, settings, report)
+            outcome, contact_term = relax(system, state.u, prescribed, target, settings, report)
         except SingularError:
             continue
-        if outcome.converged and early and not touching.near(outcome.u):
-            system.touching.restore()
+        if outcome.converged and early and not contact_term.near(outcome.u):
+            system.contact_term.restore()
             return None
         if outcome.converged:
             jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
-            if not touching.near(outcome.u):
+            if not contact_term.near(outcome.u):
                 state.notes.append(
                     f"step time {target:.6g}: the equilibrium before ended and the bodies moved "
                     f"on to another, by up to {jump:.3g} ({outcome.note}); statics has no path "
                     "between, and there may be others: Dynamic follows the motion"
                 )
             control.size = max(target - control.time, control.step.smallest_increment)
-            return outcome, touching, target
+            return outcome, contact_term, target
     return None
 
 
@@ -228,7 +235,7 @@ def _go_along_path(
     ConvergenceError
         At the limit point, unless the step is to follow the path beyond it.
     """
-    if system.touching is not None and system.touching.damped.any():
+    if system.contact_term is not None and system.contact_term.damped.any():
         return False  # damping needs a time
     try:
         system.conditions.check_proportional()
@@ -252,9 +259,16 @@ def _go_along_path(
 
     try:
         limit = path_step(
-            system, along, number, state, observers, keep, path,
-            factor=control.time / step.period, increment=before,
-        )  # fmt: skip
+            system,
+            along,
+            number,
+            state,
+            observers,
+            keep,
+            path,
+            factor=control.time / step.period,
+            increment=before,
+        )
     except (ConvergenceError, SingularError, ModelError) as error:
         if state.u is not here:
             # The states that the path found are kept: there the step stops.
@@ -286,8 +300,8 @@ def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: 
     assert new is not None
     assert state.energies is not None
     state.energies.add_quasi_static(outcome.u, state.u, new)
-    if state.at is not None and system.touching is None:
-        system.release(state.at)
+    if state.at is not None and system.contact_term is None:
+        system.return_tangent(state.at)
     system.commit()
     state.u, state.at, state.failed = outcome.u, new, None
     state.step_time = target
@@ -296,23 +310,23 @@ def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: 
 
 def iteration_reporter(
     observers: Observers, system: System, number: int, control: Increments
-) -> Callable[[int, Judgement, float, str], None] | None:
+) -> Callable[[int, ResidualNorms, float, str], None] | None:
     """Pass Newton's iterations on to the observers, if there are any."""
     if not observers.each:
         return None
 
-    def report(iteration: int, judged: Judgement, correction: float, note: str) -> None:
+    def report(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
         observers.iteration(
             Iteration(
                 number,
                 control.number + 1,
                 control.attempt,
                 iteration,
-                judged.force,
-                judged.moment,
+                norms.force,
+                norms.moment,
                 correction,
-                int(system.node_of_dof[judged.worst]),
-                int(system.component[judged.worst]),
+                int(system.node_of_dof[norms.worst]),
+                int(system.component[norms.worst]),
                 note,
             )
         )

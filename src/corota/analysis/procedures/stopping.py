@@ -24,8 +24,8 @@ FREE = "can move freely"
 
 def driven(system: System, step: Step, state: State) -> bool:
     """Whether supports move in the step."""
-    held = system.conditions.held
-    ends = [system.conditions.prescribed(t, state.u)[held] for t in (0.0, step.period)]
+    constrained = system.conditions.constrained
+    ends = [system.conditions.prescribed(t, state.u)[constrained] for t in (0.0, step.period)]
     return bool(np.any(ends[0] != ends[1]))
 
 
@@ -58,7 +58,7 @@ def collapse(
     why : str
         Why the last attempt failed: where all yields at once, by a mechanism.
     """
-    if system.touching is not None and system.touching.damped.any():
+    if system.contact_term is not None and system.contact_term.damped.any():
         return ""  # a body flies away as its damping ends: that is no collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     yields = any(isinstance(b.section.material, Mises) for b in system.blocks)
@@ -100,8 +100,8 @@ def reason(
     if collapses:
         where = f"{collapses}: {end}; last attempt: {outcome.reason}"
     if outcome.at is not None:
-        judged = system.judge(outcome.at, outcome.u)
-        where += f"; largest residual at {system.describe(judged.worst)}"
+        norms = system.residual_norms(outcome.at, outcome.u)
+        where += f"; largest residual at {system.describe(norms.worst)}"
     if outcome.negative > 0:
         where += (
             f". The tangent has {outcome.negative} negative pivot"

@@ -43,9 +43,11 @@ class Attachments:
         self.diagonal: Ints = system.indptr[1:].astype(np.int64) - 1
         self.mass = np.zeros(system.n_dofs)
         for item in system.model.point_masses:
-            nodes = system.model.mesh.nodes_of(item.nodes) if isinstance(item.nodes, str) else (
-                np.asarray(item.nodes, np.int64)
-            )  # fmt: skip
+            nodes = (
+                system.model.mesh.nodes_of(item.nodes)
+                if isinstance(item.nodes, str)
+                else (np.asarray(item.nodes, np.int64))
+            )
             for dof, value in enumerate((item.mass, item.mass, item.inertia)):
                 if value:
                     np.add.at(self.mass, self._dofs(nodes, dof, "point mass"), value)
@@ -78,8 +80,9 @@ class Attachments:
         ends = np.array([[d.first, d.second] for d in pairs], np.int64).reshape(-1, 2)
         self.c = np.array([d.c for d in pairs])
         self.nodes = ends
-        flat = np.column_stack([self._dofs(ends[:, e], i, "dashpot") for e in (0, 1)
-                                for i in (0, 1)]).reshape(-1, 4)  # fmt: skip
+        flat = np.column_stack(
+            [self._dofs(ends[:, e], i, "dashpot") for e in (0, 1) for i in (0, 1)]
+        ).reshape(-1, 4)
         self.dofs = flat
         rows, columns = np.indices((4, 4)).reshape(2, -1)
         self.pair = (rows, columns)
@@ -123,7 +126,7 @@ class Attachments:
     def _axes(self, u: Floats) -> Floats:
         """Directions of the dashpots, minus at the first end; shape (n, 4)."""
         points = self.system.model.mesh.points
-        moved = u[self.dofs] if self.system.turning else np.zeros_like(u[self.dofs])
+        moved = u[self.dofs] if self.system.nlgeom else np.zeros_like(u[self.dofs])
         line = points[self.nodes[:, 1]] + moved[:, 2:] - points[self.nodes[:, 0]] - moved[:, :2]
         line /= np.linalg.norm(line, axis=1)[:, None]
         return np.hstack([-line, line])

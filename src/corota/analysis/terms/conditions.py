@@ -19,7 +19,7 @@ import numpy as np
 from corota.analysis.distributed import DistributedLoads
 from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.load_history import LoadHistory
-from corota.analysis.terms.moving_mass import light_nodes
+from corota.analysis.terms.moving_mass import massless_nodes
 from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
 
@@ -66,7 +66,7 @@ class Conditions:
     def __init__(self, system: System) -> None:
         n = system.n_dofs
         self.system = system
-        self.held = np.zeros(n, bool)
+        self.constrained = np.zeros(n, bool)
         self.fixed: Ints = np.zeros(0, np.int64)
         #: External forces that do not follow the displacement, by the times asked for last and
         #: whether others do.
@@ -108,10 +108,10 @@ class Conditions:
         self.fading = np.zeros(self.system.n_dofs)
         if not first:
             self._carry()
-        held_before = self.held.copy()
+        constrained_before = self.constrained.copy()
         self.support.carry(u, self._runs_on)
         if step.new_supports:
-            self.held[:] = False
+            self.constrained[:] = False
             self.support.amplitude[:] = 0
         self.period, self.time, self.end_time = step.period, time, step.period
         self.ramp = getattr(step, "ramp", True)
@@ -125,7 +125,7 @@ class Conditions:
         else:
             self._change_loads(step)
         if reaction is not None:
-            released = held_before & ~self.held
+            released = constrained_before & ~self.constrained
             self.fading[released] = reaction[released]
         self._known = {}
         if step.procedure in LINEAR and self._heats():
@@ -170,7 +170,7 @@ class Conditions:
 
     def prescribed(self, step_time: float, u: Floats) -> Floats:
         """Values at held dofs, and `u` elsewhere; shape (n_dofs,)."""
-        out: Floats = np.where(self.held, self._values(self.support, step_time), u)
+        out: Floats = np.where(self.constrained, self._values(self.support, step_time), u)
         return out
 
     def support_rates(self, step_time: float, window: float) -> tuple[Floats, Floats]:
@@ -179,26 +179,26 @@ class Conditions:
         Amplitudes are seen over a window (half its width), which is the increment: what
         changes faster than that is a pulse of the right impulse.
         """
-        held, course = self.held, self.support
-        v, a = np.zeros(len(held)), np.zeros(len(held))
+        constrained, course = self.constrained, self.support
+        v, a = np.zeros(len(constrained)), np.zeros(len(constrained))
         if self.ramp:
-            v = np.where(held, (course.end - course.begin) / self.period, 0.0)
+            v = np.where(constrained, (course.end - course.begin) / self.period, 0.0)
         window = min(window, self.period / 3.0)
-        for index in np.unique(course.amplitude[held]).tolist():
+        for index in np.unique(course.amplitude[constrained]).tolist():
             if index:
                 table = self.system.model.amplitudes[self.names[index]]
                 start = self.time if table.total_time else 0.0
                 rate, growth = table.derivatives(
                     start + step_time, window, start, start + self.period
                 )
-                named = held & (course.amplitude == index)
+                named = constrained & (course.amplitude == index)
                 v[named], a[named] = course.end[named] * rate, course.end[named] * growth
         return v, a
 
     def support_kinks(self) -> list[tuple[str, float]]:
         """Amplitudes of supports whose rate jumps within the step, with the first step time."""
         out = []
-        for index in np.unique(self.support.amplitude[self.held]).tolist():
+        for index in np.unique(self.support.amplitude[self.constrained]).tolist():
             if index:
                 table = self.system.model.amplitudes[self.names[index]]
                 times = table.kinks() - (self.time if table.total_time else 0.0)
@@ -214,8 +214,8 @@ class Conditions:
 
     def reset_mass(self) -> None:
         """Let them act on the mass of the motion that this step belongs to."""
-        light = light_nodes(self.system, self.system.mass.redistribute)
-        self.system.core.set_light(np.zeros(0, bool) if light is None else light)
+        massless = massless_nodes(self.system, self.system.mass.redistribute)
+        self.system.core.set_massless(np.zeros(0, bool) if massless is None else massless)
         self.set_mass(self.system.mass.kind)
 
     def external(
@@ -245,7 +245,7 @@ class Conditions:
         triplets : tuple of ndarray or None
             Rows, columns and values of the rest of the derivative.
         """
-        nlgeom = self.system.turning
+        nlgeom = self.system.nlgeom
         force = self._known.get((step_time, nlgeom))
         if force is None:
             force = self._dead(step_time)
@@ -271,7 +271,7 @@ class Conditions:
         """External forces at a time that do not follow the displacement."""
         force = self._nodal(step_time)
         force += (1.0 - self._ramp(step_time)) * self.fading
-        nlgeom = self.system.turning
+        nlgeom = self.system.nlgeom
         for load in self.distributed.loads:
             dead = not (nlgeom and load.force.follows)
             if dead and (scale := self._scale(load, step_time)) != 0.0:
@@ -293,7 +293,7 @@ class Conditions:
         heating = self.heating
         if heating.any():
             force = force - self.system.thermal_rate(u, heating)
-        move = np.where(self.held, self.support.end - self.support.begin, 0.0)
+        move = np.where(self.constrained, self.support.end - self.support.begin, 0.0)
         return force, move
 
     def check_proportional(self) -> None:
@@ -304,7 +304,7 @@ class Conditions:
         ModelError
             If there is an amplitude, an abrupt load or a released support.
         """
-        named = {int(i) for i in np.unique(self.support.amplitude[self.held])}
+        named = {int(i) for i in np.unique(self.support.amplitude[self.constrained])}
         named |= set(self.timed) | {load.amplitude for load in self.distributed.loads}
         named |= {int(i) for i in np.unique(self.temperature.amplitude)}
         for index in named - {0}:
@@ -416,11 +416,11 @@ class Conditions:
                     item.where,
                 )
             dofs = dofs[dofs >= 0]
-            if self.system.ties is not None:
-                self.system.ties.refuse_held(dofs, item.where)
-            self.held[dofs] = True
+            if self.system.constraints is not None:
+                self.system.constraints.refuse_constrained(dofs, item.where)
+            self.constrained[dofs] = True
             self.support.set(dofs, item.value, self._amplitude(item.amplitude, item.where))
-        self.fixed = np.flatnonzero(self.held)
+        self.fixed = np.flatnonzero(self.constrained)
 
     def _set_loads(self, loads: list[Load]) -> None:
         forces = [item for item in loads if isinstance(item, NodalForce)]
@@ -457,8 +457,8 @@ class Conditions:
                 else "belongs to no element and cannot carry a force"
             )
             raise ModelError(f"node {label} {what}", item.where)
-        if self.system.ties is not None:
-            self.system.ties.refuse_loaded(dofs, item.where)
+        if self.system.constraints is not None:
+            self.system.constraints.refuse_loaded(dofs, item.where)
         return dofs
 
     def _replace_forces(self, forces: list[NodalForce]) -> None:

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from corota.analysis.linear.solvers import Faer
 from corota.analysis.procedures.motion import Inertia
 from corota.analysis.terms.attachments import Attachments
-from corota.analysis.terms.contact.equations import TouchingSystem
+from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
 from corota.analysis.terms.damping import damping_matrix
 from corota.errors import SingularError, UnsupportedError
@@ -25,7 +25,7 @@ from corota.errors import SingularError, UnsupportedError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.constraints.elimination import Link
+    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import Evaluation, System
 
     Floats = NDArray[np.float64]
@@ -148,21 +148,23 @@ class Linearized:
         self.system = system
         self.u = u.copy()
         self.states = states
-        touching = system.touching
-        self.multipliers = np.zeros(0) if touching is None else touching.committed
+        contact_term = system.contact_term
+        self.multipliers = np.zeros(0) if contact_term is None else contact_term.committed
         if multipliers is not None:
             self.multipliers = multipliers
         self._load = load
         with system.conditions.as_reached():
             self.at, coupling = self._evaluate(u)
-        self.link: Link | None = self.at.link
-        self.free = np.arange(system.n_dofs) if system.ties is None else system.ties.free
+        self.link: LinearizedConstraints | None = self.at.link
+        self.free = (
+            np.arange(system.n_dofs) if system.constraints is None else system.constraints.free
+        )
         self.nf = len(self.free)
         self.n_multipliers = 0 if coupling is None else len(coupling.diagonal)
         self.n = self.nf + self.n_multipliers
-        held = np.zeros(self.n, bool)
-        held[: self.nf] = system.conditions.held[self.free]
-        self.held, self.active = held, np.flatnonzero(~held)
+        constrained = np.zeros(self.n, bool)
+        constrained[: self.nf] = system.conditions.constrained[self.free]
+        self.constrained, self.active = constrained, np.flatnonzero(~constrained)
         new = len(system.per_node) + np.arange(self.n_multipliers)
         self.node = np.concatenate([system.node_of_dof[self.free], new])
         self.multiplier = np.arange(self.n) >= self.nf
@@ -173,30 +175,31 @@ class Linearized:
 
     def _evaluate(self, u: Floats) -> tuple[Evaluation, Any]:
         """Evaluation of the bodies with the forces of contact, and the rows of contact."""
-        system, touching = self.system, self.system.touching
-        if touching is None:
+        system, contact_term = self.system, self.system.contact_term
+        if contact_term is None:
             return system.evaluate(u.copy(), 0.0), None
-        contact = TouchingSystem(system, system)
+        contact = ContactEquations(system, system)
         found = contact.evaluate(np.concatenate([u, self.multipliers]), 0.0)
         if self.states is not None:
             states = self.states
-        elif touching.at is not None and touching.at.states:
-            states = touching.at.states
+        elif contact_term.at is not None and contact_term.at.states:
+            states = contact_term.at.states
         else:
             states = [
-                pair.states(terms, p, q) for pair, terms, (p, q) in contact._pairs(found.touch)
+                pair.states(terms, p, q)
+                for pair, terms, (p, q) in contact._pairs(found.contact_state)
             ]
         states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
         self.states = states
-        contact.senses = {p.first: np.ones(p.n) for p in touching.pairs}
-        coupling = contact._coupling(found.touch, states)[0]
-        own = np.zeros(touching.n)
-        for pair in touching.pairs:
+        contact.slip_directions = {p.first: np.ones(p.n) for p in contact_term.pairs}
+        coupling = contact._coupling(found.contact_state, states)[0]
+        own = np.zeros(contact_term.n)
+        for pair in contact_term.pairs:
             part = pair.full / pair.stiffness
             own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
         bare = coupling.diagonal == 0.0
         coupling.diagonal[bare] = -COMPLIANCE * own[bare]
-        touching.restore()
+        contact_term.restore()
         return found.at, coupling
 
     def _stiffness(self, coupling: Any) -> Any:
@@ -205,12 +208,18 @@ class Linearized:
         if at.load_stiffness is not None:
             rows, columns, values = at.load_stiffness
             triplets = (rows, columns, -values)
-        if coupling is not None and len(coupling.bend.values):
-            bend = coupling.bend
-            more = (bend.rows, bend.columns, bend.values)
-            triplets = more if triplets is None else tuple(
-                np.concatenate(pair) for pair in zip(triplets, more, strict=True)
-            )  # fmt: skip
+        if coupling is not None and len(coupling.geometric_stiffness.values):
+            geometric_stiffness = coupling.geometric_stiffness
+            more = (
+                geometric_stiffness.rows,
+                geometric_stiffness.columns,
+                geometric_stiffness.values,
+            )
+            triplets = (
+                more
+                if triplets is None
+                else tuple(np.concatenate(pair) for pair in zip(triplets, more, strict=True))
+            )
         residual = at.residual if self._load is None else at.residual - self._load
         k = self.reduce(at.values, triplets, residual)
         if coupling is None:
@@ -227,8 +236,8 @@ class Linearized:
     def _whole(self) -> Any:
         """All dofs in global axes by the independent ones."""
         assert self.link is not None
-        ties = self.link.ties
-        return ties.places.whole(ties.rows_of(self.link.g))
+        constraints = self.link.constraints
+        return constraints.places.whole(constraints.rows_of(self.link.g))
 
     # -- between dofs and unknowns -----------------------------------------------------
 

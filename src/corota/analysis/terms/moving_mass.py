@@ -51,19 +51,19 @@ def mass_of_step(steps: Sequence[Step], number: int) -> MovingMass:
     return MovingMass()
 
 
-def light_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
+def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
     """Nodes whose mass others carry: the slave nodes of contact.
 
     A contact force that acts on nodes without mass is bounded and does no work in the limit of
     small increments; on nodes with mass it creates energy and chatters.
     """
-    if system.touching is None or not redistribute:
+    if system.contact_term is None or not redistribute:
         return None
-    light = np.zeros(len(system.per_node), bool)
-    for pair in system.touching.pairs:
+    massless = np.zeros(len(system.per_node), bool)
+    for pair in system.contact_term.pairs:
         if not pair.tied:
-            light[pair.slave.node_list] = True
-    return light
+            massless[pair.slave.node_list] = True
+    return massless
 
 
-__all__ = ["MovingMass", "light_nodes", "mass_of_step"]
+__all__ = ["MovingMass", "mass_of_step", "massless_nodes"]

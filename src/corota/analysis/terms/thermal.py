@@ -181,13 +181,11 @@ class FreeStrains:
         """Largest thermal strain of a change of temperature about those of the core."""
         found = [
             np.abs(
-                block.expansion.strain(
-                    (self.now + heating)[block.nodes], self.now[block.nodes]
-                )
+                block.expansion.strain((self.now + heating)[block.nodes], self.now[block.nodes])
             ).max(initial=0.0)
             for block in self._blocks
             if block.expansion
-        ]  # fmt: skip
+        ]
         return float(max(found, default=0.0))
 
     def _wanted(self, temperature: Floats) -> Floats:

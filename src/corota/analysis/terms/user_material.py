@@ -86,7 +86,7 @@ class UserBlocks:
                 )
 
     def assemble(
-        self, u: Floats, turning: bool, assemble: Callable[[], None], between: bool = False
+        self, u: Floats, nlgeom: bool, assemble: Callable[[], None], between: bool = False
     ) -> None:
         """Assemble with the functions' answers at the strains of `u`.
 
@@ -103,14 +103,14 @@ class UserBlocks:
             assemble()
             return
         assemble_once = not any(b.modes for b in self.blocks)
-        seen = [self._strain(b, u, turning, True) for b in self.blocks]
+        seen = [self._strain(b, u, nlgeom, True) for b in self.blocks]
         for _ in range(MAX_CALLS):
             for block, strain in zip(self.blocks, seen, strict=True):
                 self._give(block, strain, between)
             assemble()
             if assemble_once:
                 return
-            now = [self._strain(b, u, turning, False) for b in self.blocks]
+            now = [self._strain(b, u, nlgeom, False) for b in self.blocks]
             size = max(float(np.abs(e).max(initial=0.0)) for e in now)
             change = max(
                 float(np.abs(a - b).max(initial=0.0)) for a, b in zip(now, seen, strict=True)
@@ -124,8 +124,8 @@ class UserBlocks:
             + ("; use Q4, Q8 or OPT there, or another scheme" if between else "")
         )
 
-    def _strain(self, block: _Block, u: Floats, turning: bool, committed: bool) -> Floats:
-        flat: Floats = self.core.strains(block.index, u, turning, committed)
+    def _strain(self, block: _Block, u: Floats, nlgeom: bool, committed: bool) -> Floats:
+        flat: Floats = self.core.strains(block.index, u, nlgeom, committed)
         return flat.reshape(*block.shape, 3)
 
     def _give(self, block: _Block, strain: Floats, between: bool) -> None:

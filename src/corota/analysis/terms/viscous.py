@@ -134,7 +134,7 @@ class ViscousElements:
         for block in self.blocks:
             own = block.matrix
             v = rate[block.dofs]
-            if block.turns and system.turning:
+            if block.turns and system.nlgeom:
                 change = _change(block, begin[block.dofs], end[block.dofs], v, dt)
                 own = np.swapaxes(change, 1, 2) @ own @ change
             f = np.einsum("eij,ej->ei", own, v)

@@ -24,8 +24,14 @@ OWN = {name: elements.find(name).cell for name in elements.names()}
 
 #: CalculiX and Abaqus names, without the prefix CPS (plane stress) or CPE (plane strain).
 ALIASES = {
-    "3": "T3", "4": "Q4", "4I": "Q4I", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R",
-}  # fmt: skip
+    "3": "T3",
+    "4": "Q4",
+    "4I": "Q4I",
+    "4R": "Q4I",
+    "6": "T6",
+    "8": "Q8",
+    "8R": "Q8R",
+}
 
 #: What reduced integration means to the letter; the element above is the default, see the page
 #: of keywords.
@@ -41,11 +47,16 @@ ELEMENTS: dict[str, DeckElement] = {
     **{
         shell: DeckElement(OWN[name], name, "stress", LITERAL.get(shell[1:], ""))
         for shell, name in {
-            "S3": "T3", "S4": "Q4", "S4R": "Q4I", "S6": "T6", "S8": "Q8", "S8R": "Q8R",
+            "S3": "T3",
+            "S4": "Q4",
+            "S4R": "Q4I",
+            "S6": "T6",
+            "S8": "Q8",
+            "S8R": "Q8R",
         }.items()
     },
     **{name: DeckElement(kind, name) for name, kind in OWN.items()},
-}  # fmt: skip
+}
 
 #: Elements that have rotations at their nodes.
 DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
@@ -56,7 +67,7 @@ LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3}
 
 
 @dataclass(frozen=True, slots=True)
-class Companion:
+class LineElement:
     """Kind of the cells, number of nodes in the deck, and the section it takes."""
 
     kind: str
@@ -65,12 +76,12 @@ class Companion:
 
 
 #: Beams and springs; beams of three nodes become two of two.
-COMPANIONS: dict[str, Companion] = {
-    **dict.fromkeys(("B21", "B23", "B31", "B31R", "B33"), Companion("line2", 2, "beam")),
-    **dict.fromkeys(("B22", "B32", "B32R"), Companion("line2", 3, "beam")),
-    **dict.fromkeys(("SPRINGA", "SPRING2"), Companion("line2", 2, "spring")),
-    "SPRING1": Companion("point1", 1, "spring"),
-}  # fmt: skip
+LINE_ELEMENTS: dict[str, LineElement] = {
+    **dict.fromkeys(("B21", "B23", "B31", "B31R", "B33"), LineElement("line2", 2, "beam")),
+    **dict.fromkeys(("B22", "B32", "B32R"), LineElement("line2", 3, "beam")),
+    **dict.fromkeys(("SPRINGA", "SPRING2"), LineElement("line2", 2, "spring")),
+    "SPRING1": LineElement("point1", 1, "spring"),
+}
 
 _AXI = "axisymmetric models are not part of this version"
 _SOLID = "only planar models are computed; use CPS* or CPE* elements"

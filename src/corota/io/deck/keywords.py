@@ -74,13 +74,13 @@ KEYWORDS: dict[str, Keyword] = {
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
     "DENSITY": Keyword(material.density, place="model"),
     "EXPANSION": Keyword(thermal.expansion, "TYPE ZERO", place="model"),
-    "PLASTIC": Keyword(
-        plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"
-    ),
+    "PLASTIC": Keyword(plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"),
     "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
     "SOLIDSECTION": Keyword(
-        material.solid_section, "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0",
-        "CONTROLS OFFSET", place="model",
+        material.solid_section,
+        "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0",
+        "CONTROLS OFFSET",
+        place="model",
     ),
     "SHELLSECTION": Keyword(
         material.shell_section, "ELSET MATERIAL ORIENTATION LOCALSTRAIN", "OFFSET", place="model"
@@ -122,34 +122,41 @@ KEYWORDS: dict[str, Keyword] = {
     "DISTRIBUTING": Keyword(tie.distributing, place="model"),
     "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
     "CONTACTPAIR": Keyword(
-        contact.contact_pair, "INTERACTION TYPE ADJUST SMALLSLIDING",
-        "EXTENSIONZONE HCRIT SMOOTH TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS", place="model",
+        contact.contact_pair,
+        "INTERACTION TYPE ADJUST SMALLSLIDING",
+        "EXTENSIONZONE HCRIT SMOOTH TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS",
+        place="model",
     ),
     "SURFACEINTERACTION": Keyword(
         contact.surface_interaction, "NAME", "DEPVAR PROPERTIES UNSYMM", place="model"
     ),
     "SURFACEBEHAVIOR": Keyword(
-        contact.surface_behavior, "PRESSURE-OVERCLOSURE", "AUGMENTEDLAGRANGE DIRECT PENALTY",
+        contact.surface_behavior,
+        "PRESSURE-OVERCLOSURE",
+        "AUGMENTEDLAGRANGE DIRECT PENALTY",
         place="model",
     ),
     "FRICTION": Keyword(contact.friction, "", "SLIPTOLERANCE LAGRANGE ELASTICSLIP", place="model"),
     "CLEARANCE": Keyword(contact.clearance, "SLAVE MASTER VALUE", place="model"),
     "TIE": Keyword(contact.tie, "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION", place="model"),
     "CONTACTCONTROLS": Keyword(
-        contact.contact_controls, "STABILIZE SLAVE MASTER",
+        contact.contact_controls,
+        "STABILIZE SLAVE MASTER",
         "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
         "LAGRANGEMULTIPLIER",
     ),
     "CONTACTINTERFERENCE": Keyword(contact.contact_interference, "SHRINK", "TYPE OP"),
     "CONTACTPRINT": Keyword(
-        output.contact_print, "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
+        output.contact_print,
+        "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
         "SUMMARY NSET",
     ),
     "CONTACTFILE": Keyword(
         output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER", "NSET"
     ),
     "CONTACTOUTPUT": Keyword(
-        output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
+        output.contact_file,
+        "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
         "NSET VARIABLE CPSET SURFACE",
     ),
     "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE"),
@@ -164,7 +171,8 @@ KEYWORDS: dict[str, Keyword] = {
     "ELFILE": Keyword(output.el_file, _FILE, _FILE_IGNORED),
     "ELEMENTOUTPUT": Keyword(output.el_file, _FILE, _FILE_IGNORED),
     "OUTPUT": Keyword(
-        output.output, "FREQUENCY FREQUENCYF VARIABLE",
+        output.output,
+        "FREQUENCY FREQUENCYF VARIABLE",
         "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS",
     ),
     "PART": Keyword(assembly.part, "NAME", place="model"),
@@ -173,7 +181,7 @@ KEYWORDS: dict[str, Keyword] = {
     "ENDASSEMBLY": Keyword(assembly.end_assembly, place="model"),
     "INSTANCE": Keyword(assembly.instance, "NAME PART", place="model"),
     "ENDINSTANCE": Keyword(assembly.end_instance, place="model"),
-}  # fmt: skip
+}
 
 #: Cards without effect here; each is listed in ``Model.notes``.
 IGNORED: dict[str, str] = {
@@ -202,8 +210,13 @@ _LINE = "only planar solids, trusses, beams and springs are part of this version
 UNSUPPORTED: dict[str, str] = {
     **dict.fromkeys(
         (
-            "CONTACT", "CONTACTINCLUSIONS", "CONTACTEXCLUSIONS", "CONTACTPROPERTYASSIGNMENT",
-            "CONTACTINITIALIZATIONDATA", "CONTACTINITIALIZATIONASSIGNMENT", "GAP",
+            "CONTACT",
+            "CONTACTINCLUSIONS",
+            "CONTACTEXCLUSIONS",
+            "CONTACTPROPERTYASSIGNMENT",
+            "CONTACTINITIALIZATIONDATA",
+            "CONTACTINITIALIZATIONASSIGNMENT",
+            "GAP",
         ),
         _CONTACT,
     ),
@@ -215,36 +228,60 @@ UNSUPPORTED: dict[str, str] = {
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
     **dict.fromkeys(
         (
-            "DISTRIBUTINGCOUPLING", "EMBEDDEDELEMENT", "CYCLICSYMMETRYMODEL",
+            "DISTRIBUTINGCOUPLING",
+            "EMBEDDEDELEMENT",
+            "CYCLICSYMMETRYMODEL",
         ),
         _MPC,
     ),
     **dict.fromkeys(
         (
-            "CONDUCTIVITY", "SPECIFICHEAT", "HEATTRANSFER", "CFLUX",
-            "DFLUX", "FILM", "RADIATE", "COUPLEDTEMPERATURE-DISPLACEMENT", "PHYSICALCONSTANTS",
+            "CONDUCTIVITY",
+            "SPECIFICHEAT",
+            "HEATTRANSFER",
+            "CFLUX",
+            "DFLUX",
+            "FILM",
+            "RADIATE",
+            "COUPLEDTEMPERATURE-DISPLACEMENT",
+            "PHYSICALCONSTANTS",
             "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
         ),
         _HEAT,
     ),
     **dict.fromkeys(
         (
-            "HYPERELASTIC", "HYPERFOAM", "CREEP", "RATEDEPENDENT",
-            "DEPVAR", "USERMATERIAL", "DEFORMATIONPLASTICITY", "MOHRCOULOMB", "CHANGEPLASTIC",
-            "VISCOELASTIC", "DAMAGEINITIATION",
+            "HYPERELASTIC",
+            "HYPERFOAM",
+            "CREEP",
+            "RATEDEPENDENT",
+            "DEPVAR",
+            "USERMATERIAL",
+            "DEFORMATIONPLASTICITY",
+            "MOHRCOULOMB",
+            "CHANGEPLASTIC",
+            "VISCOELASTIC",
+            "DAMAGEINITIATION",
         ),
         _PLASTIC,
     ),
     **dict.fromkeys(
         (
-            "VISCO", "GREEN", "SENSITIVITY", "CRACKPROPAGATION",
+            "VISCO",
+            "GREEN",
+            "SENSITIVITY",
+            "CRACKPROPAGATION",
         ),
         _PROCEDURE,
     ),
     **dict.fromkeys(
         (
-            "MEMBRANESECTION", "FLUIDSECTION", "USERELEMENT", "USERSECTION",
-            "ROTARYINERTIA", "TRUSSSECTION",
+            "MEMBRANESECTION",
+            "FLUIDSECTION",
+            "USERELEMENT",
+            "USERSECTION",
+            "ROTARYINERTIA",
+            "TRUSSSECTION",
         ),
         _LINE,
     ),
@@ -264,7 +301,7 @@ UNSUPPORTED: dict[str, str] = {
     "NORMAL": "planar elements have no normals of their own",
     "PARAMETER": "write the numbers themselves",
     "VALUESATINFINITY": "it belongs to fluid dynamics",
-}  # fmt: skip
+}
 
 #: Parameters that change the answer and are refused by name.
 REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
@@ -374,10 +411,31 @@ def _pretty(hint: str) -> str:
 SPELLED = {
     key(name): name
     for name in (
-        "SOLID SECTION", "SHELL SECTION", "TIME POINTS", "END STEP", "NODE PRINT", "EL PRINT",
-        "NODE FILE", "NODE OUTPUT", "EL FILE", "ELEMENT OUTPUT", "END PART", "END ASSEMBLY",
-        "END INSTANCE", "CONTACT PAIR", "BEAM SECTION", "RIGID BODY", "SURFACE INTERACTION",
-        "SURFACE BEHAVIOR", "CONTACT PRINT", "CONTACT FILE", "CONTACT OUTPUT", "CONTACT CONTROLS",
-        "CONTACT INTERFERENCE", "INITIAL CONDITIONS", "SECTION PRINT", "NODAL THICKNESS",
+        "SOLID SECTION",
+        "SHELL SECTION",
+        "TIME POINTS",
+        "END STEP",
+        "NODE PRINT",
+        "EL PRINT",
+        "NODE FILE",
+        "NODE OUTPUT",
+        "EL FILE",
+        "ELEMENT OUTPUT",
+        "END PART",
+        "END ASSEMBLY",
+        "END INSTANCE",
+        "CONTACT PAIR",
+        "BEAM SECTION",
+        "RIGID BODY",
+        "SURFACE INTERACTION",
+        "SURFACE BEHAVIOR",
+        "CONTACT PRINT",
+        "CONTACT FILE",
+        "CONTACT OUTPUT",
+        "CONTACT CONTROLS",
+        "CONTACT INTERFERENCE",
+        "INITIAL CONDITIONS",
+        "SECTION PRINT",
+        "NODAL THICKNESS",
     )
-}  # fmt: skip
+}

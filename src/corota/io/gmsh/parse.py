@@ -23,9 +23,15 @@ if TYPE_CHECKING:
 
 #: Cell kinds by Gmsh's element number.
 NAMES = {
-    1: "line2", 2: "tri3", 3: "quad4", 8: "line3", 9: "tri6", 10: "quad9", 15: "point1",
+    1: "line2",
+    2: "tri3",
+    3: "quad4",
+    8: "line3",
+    9: "tri6",
+    10: "quad9",
+    15: "point1",
     16: "quad8",
-}  # fmt: skip
+}
 _DIMENSION = {"line2": 1, "line3": 1, "point1": 0}
 _LABEL_LIMIT = 2**53
 _PHYSICAL = re.compile(r'\s*(\d{1,15})\s+(\d{1,15})\s+"(.*)"\s*\Z', re.ASCII)

@@ -191,9 +191,14 @@ def _compact(mesh: Mesh, used: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Me
     notes = [*mesh.notes, f"{int((~used).sum())} nodes without a cell are left out"]
     sets = {name: new[nodes][new[nodes] >= 0] for name, nodes in mesh.node_sets.items()}
     return Mesh(
-        mesh.points[used], cells, mesh.node_labels[used], sets, mesh.cell_sets,
-        mesh.edge_sets, notes,
-    )  # fmt: skip
+        mesh.points[used],
+        cells,
+        mesh.node_labels[used],
+        sets,
+        mesh.cell_sets,
+        mesh.edge_sets,
+        notes,
+    )
 
 
 __all__ = ["NAMES", "read_gmsh"]

@@ -121,10 +121,14 @@ class Histories:
         dt = frame.step_time - (time if frame.step == step else 0.0)
         self._before = (frame.step, frame.step_time)
         row: dict[str, float] = {
-            "step": frame.step, "increment": frame.increment, "time": frame.time,
-            "step time": frame.step_time, "dt": dt, "load factor": frame.factor,
+            "step": frame.step,
+            "increment": frame.increment,
+            "time": frame.time,
+            "step time": frame.step_time,
+            "dt": dt,
+            "load factor": frame.factor,
             "attempts": attempts if frame.increment else 0,
-        }  # fmt: skip
+        }
         row |= {name: frame.scalars.get(name, 0.0) for name in ALWAYS}
         row |= frame.scalars
         row["energy balance error"] = balance_error(frame.scalars)

@@ -88,12 +88,14 @@ def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
     ----------
     model : Model
     outputs : sequence of Output
-        Others than print requests are passed over.
+        Others than print requests are ignored.
     frame : Frame
     """
     tables = {
-        "node print": _node_tables, "el print": _element_tables, "contact print": contact_tables,
-    }  # fmt: skip
+        "node print": _node_tables,
+        "el print": _element_tables,
+        "contact print": contact_tables,
+    }
     asked = (o for o in outputs if o.kind in tables)
     return "".join(text for o in asked for text in tables[o.kind](model, o, frame))
 

@@ -76,8 +76,10 @@ def eigenvalue_tables(frame: Frame) -> str:
         rows = ((2.0 * math.pi * f, f, -rate) for f, rate in found)
         text = COMPLEX + "".join(_row(k, row) for k, row in enumerate(rows, start=1))
     else:
-        rows4 = ((4.0 * math.pi**2 * f * f - rate**2, 2.0 * math.pi * f, f, abs(rate))
-                 for f, rate in found)  # fmt: skip
+        rows4 = (
+            (4.0 * math.pi**2 * f * f - rate**2, 2.0 * math.pi * f, f, abs(rate))
+            for f, rate in found
+        )
         text = REAL + "".join(_row(k, row) for k, row in enumerate(rows4, start=1))
     return text + _masses(frame, len(found))
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import CorotaError, FileError
-from corota.io.atomic_file import TwinFile
+from corota.io.atomic_file import AtomicFile
 from corota.io.contacts import store_contacts
 from corota.io.finite import check_frame
 from corota.results import variables as vf
@@ -31,9 +31,15 @@ if TYPE_CHECKING:
 
 #: VTK cell types of our kinds; node orders agree.
 VTK_TYPES = {
-    "tri3": 5, "tri6": 22, "quad4": 9, "quad8": 23, "quad9": 28,
-    "line2": 3, "line3": 21, "point1": 1,
-}  # fmt: skip
+    "tri3": 5,
+    "tri6": 22,
+    "quad4": 9,
+    "quad8": 23,
+    "quad9": 28,
+    "line2": 3,
+    "line3": 21,
+    "point1": 1,
+}
 #: Bytes of a frame's data of one name held in one chunk, at most.
 _CHUNK = 4 << 20
 
@@ -114,9 +120,12 @@ def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
 
 def _scalars(frame: Frame) -> dict[str, Floats]:
     basic = {
-        "step": frame.step, "increment": frame.increment, "time": frame.time,
-        "step time": frame.step_time, "load factor": frame.factor,
-    }  # fmt: skip
+        "step": frame.step,
+        "increment": frame.increment,
+        "time": frame.time,
+        "step time": frame.step_time,
+        "load factor": frame.factor,
+    }
     return {k: np.array([float(v)]) for k, v in (basic | frame.scalars).items()}
 
 
@@ -135,7 +144,7 @@ class VtkhdfWriter:
         import h5py
 
         self.path, self.model, self.points = path, model, points
-        self._twin = TwinFile(path)
+        self._twin = AtomicFile(path)
         self._averaging = vf.Averaging(model.mesh)
         try:
             # A small chunk cache: every chunk is written once and never read back.

@@ -70,17 +70,20 @@ def measure() -> Iterator[Value]:
         for name, reference, found in zip(
             ("inner", "outer"), exact, displacements("Q8", 8, plane), strict=True
         ):
-            yield Value(f"displacement of the {name} edge, plane {plane}, Q8 8 x 16",
-                        reference, found, 2e-5)  # fmt: skip
+            yield Value(
+                f"displacement of the {name} edge, plane {plane}, Q8 8 x 16", reference, found, 2e-5
+            )
     stresses = hoop(run(model("Q9", 16), Static(nlgeom=False), fields=True))
-    for name, reference, found in zip(("inner", "outer"), (500 / 3, 200 / 3), stresses,
-                                      strict=True):  # fmt: skip
+    for name, reference, found in zip(
+        ("inner", "outer"), (500 / 3, 200 / 3), stresses, strict=True
+    ):
         yield Value(f"hoop stress at the {name} edge, Q9 16 x 32", reference, found, 2e-3)
     for element in ELEMENTS:
         errors = [error(element, n, "strain") for n in (8, 16)]
         order = float(np.log2(errors[0] / errors[1]))
-        yield Value(f"order of {element}, plane strain", ORDER[element] - 0.2, order, 0.0,
-                    "at least")  # fmt: skip
+        yield Value(
+            f"order of {element}, plane strain", ORDER[element] - 0.2, order, 0.0, "at least"
+        )
 
 
 def picture() -> Picture:

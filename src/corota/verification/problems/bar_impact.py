@@ -20,9 +20,12 @@ from corota.verification.impact_models import Impact, bar, strike
 
 #: Element, scheme and cells along the bar.
 CASES = [
-    ("Q4I", "hht", 200), ("Q4I", "energy_momentum", 200), ("Q8", "hht", 100),
-    ("OPT", "hht", 100), ("Q4D", "hht", 100),
-]  # fmt: skip
+    ("Q4I", "hht", 200),
+    ("Q4I", "energy_momentum", 200),
+    ("Q8", "hht", 100),
+    ("OPT", "hht", 100),
+    ("Q4D", "hht", 100),
+]
 
 
 @cache
@@ -71,10 +74,15 @@ def study() -> Study:
     cells = (25, 50, 100, 200)
     return Study(
         "error of the largest shortening",
-        {e: ([float(n) for n in cells],
-             [abs(struck(e, "hht", n).shortening - 1.0) for n in cells]) for e in ("Q4I", "Q4D")},
+        {
+            e: (
+                [float(n) for n in cells],
+                [abs(struck(e, "hht", n).shortening - 1.0) for n in cells],
+            )
+            for e in ("Q4I", "Q4D")
+        },
         "cells along the bar",
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

@@ -47,8 +47,13 @@ def measure() -> Iterator[Value]:
             for k, reference in enumerate(exact):
                 yield Value(f"beta L {k + 1}, {name}, {element}", reference, found[k], tolerance)
             if not clamped:
-                yield Value(f"largest rigid frequency over the first, {element}", 1e-3, rigid, 0.0,
-                            "at most")  # fmt: skip
+                yield Value(
+                    f"largest rigid frequency over the first, {element}",
+                    1e-3,
+                    rigid,
+                    0.0,
+                    "at most",
+                )
 
 
 PROBLEM = Problem(

@@ -55,17 +55,18 @@ def moved(element: str, way: str, speed: float, increments: int = 800) -> tuple[
     """Times, and displacements of the middle."""
     model, middle = beam(element, speed)
     keys: dict[str, Any] = {
-        "period": PERIOD, "increments": increments, "nlgeom": False,
+        "period": PERIOD,
+        "increments": increments,
+        "nlgeom": False,
         "loads": [NodalForce(np.array([middle]), 1, FORCE, "sine")],
-    }  # fmt: skip
+    }
     steps: Any = Dynamic(scheme="newmark", **keys)
     if way == "modal":
         steps = [Frequency(modes=12, nlgeom=False), ModalDynamic(**keys)]
     results = run(model, steps)
     last = results.frames[-1].step
     frames = [f for f in results.frames if f.step == last and f.increment > 0]
-    return (np.array([f.step_time for f in frames]),
-            np.array([f.U[middle, 1] for f in frames]))  # fmt: skip
+    return (np.array([f.step_time for f in frames]), np.array([f.U[middle, 1] for f in frames]))
 
 
 def exact(time: Any, speed: float) -> np.ndarray:
@@ -87,11 +88,16 @@ def measure() -> Iterator[Value]:
             time, found = moved(element, way, speed)
             known = exact(time, speed)
             worst = float(np.abs(found - known).max() / np.abs(known).max())
-            yield Value(f"largest error at {speed:g} 1/s, {element}, {way}", 0.0, worst, 5e-3,
-                        "absolute")  # fmt: skip
+            yield Value(
+                f"largest error at {speed:g} 1/s, {element}, {way}", 0.0, worst, 5e-3, "absolute"
+            )
             k = int(np.abs(known).argmax())
-            yield Value(f"largest displacement [m], {speed:g} 1/s, {element}, {way}", known[k],
-                        found[k], 5e-3)  # fmt: skip
+            yield Value(
+                f"largest displacement [m], {speed:g} 1/s, {element}, {way}",
+                known[k],
+                found[k],
+                5e-3,
+            )
 
 
 def picture() -> Picture:
@@ -105,9 +111,12 @@ def curve() -> Curve:
     """Displacement over time."""
     time, found = moved("BEAM", "newmark", 30.0)
     fine = np.linspace(0.0, PERIOD, 400)
-    return Curve("time [s]", "displacement of the middle [mm]",
-                 {"sum of modes": (fine, 1e3 * exact(fine, 30.0))},
-                 {"beams, 800 increments": (time[::25], 1e3 * found[::25])})  # fmt: skip
+    return Curve(
+        "time [s]",
+        "displacement of the middle [mm]",
+        {"sum of modes": (fine, 1e3 * exact(fine, 30.0))},
+        {"beams, 800 increments": (time[::25], 1e3 * found[::25])},
+    )
 
 
 def study() -> Study:
@@ -119,9 +128,14 @@ def study() -> Study:
         known = exact(time, 30.0)
         return float(np.abs(found - known).max() / np.abs(known).max())
 
-    return Study("largest error / largest displacement, down to that of 40 beams",
-                 {w: ([float(n) for n in counts], [worst(w, n) for n in counts])
-                  for w in ("newmark", "modal")}, "increments")  # fmt: skip
+    return Study(
+        "largest error / largest displacement, down to that of 40 beams",
+        {
+            w: ([float(n) for n in counts], [worst(w, n) for n in counts])
+            for w in ("newmark", "modal")
+        },
+        "increments",
+    )
 
 
 PROBLEM = Problem(

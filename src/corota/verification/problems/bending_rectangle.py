@@ -45,8 +45,12 @@ def measure() -> Iterator[Value]:
     """Every aspect."""
     for element, (row, tolerance) in ROWS.items():
         for aspect, expected in zip((1, 2, 4, 8, 16), row, strict=True):
-            yield Value(f"{element}, aspect {aspect}", expected, ratio(element, float(aspect), 1.0),
-                        tolerance)  # fmt: skip
+            yield Value(
+                f"{element}, aspect {aspect}",
+                expected,
+                ratio(element, float(aspect), 1.0),
+                tolerance,
+            )
 
 
 PROBLEM = Problem(

@@ -70,10 +70,11 @@ def curve() -> Curve:
     """Strain across against the aspect."""
     aspect = np.geomspace(1.0, 16.0, 40)
     return Curve(
-        "length of the cell / height", "strain across in the frame's axes",
+        "length of the cell / height",
+        "strain across in the frame's axes",
         {"formula": (aspect, [exact(a)[1] for a in aspect])},
         {"Q4": (ASPECTS, [frame(sheared("Q4", a))[1] for a in ASPECTS])},
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

@@ -44,9 +44,12 @@ def beams(n: int = 60, increments: int = 960) -> np.ndarray:
     model = Model(polyline(np.linspace([0.0, 0.0], [LENGTH, 0.0], n + 1)))
     area = WIDTH * DEPTH
     model.beam(
-        np.arange(n), material=Elastic(E=YOUNG, nu=POISSON, rho=DENSITY), area=area,
-        inertia=WIDTH * DEPTH**3 / 12.0, shear_area=area * 5.0 / 6.0,
-    )  # fmt: skip
+        np.arange(n),
+        material=Elastic(E=YOUNG, nu=POISSON, rho=DENSITY),
+        area=area,
+        inertia=WIDTH * DEPTH**3 / 12.0,
+        shear_area=area * 5.0 / 6.0,
+    )
     model.fix([0], rotation=True)
     time = np.linspace(0.0, PERIOD, 1501)
     model.amplitudes["sine"] = Amplitude(time, np.sin(OMEGA * time))
@@ -67,11 +70,20 @@ def measure() -> Iterator[Value]:
     known = beams()
     for element, tolerance in (("Q8", 0.005), ("Q4I", 0.02), ("OPT", 0.02), ("Q4D", 0.02)):
         found = solid(element)
-        yield Value(f"largest deflection [m], {element} 32 x 2", np.abs(known[:, 1]).max(),
-                    np.abs(found[:, 1]).max(), 0.005)  # fmt: skip
+        yield Value(
+            f"largest deflection [m], {element} 32 x 2",
+            np.abs(known[:, 1]).max(),
+            np.abs(found[:, 1]).max(),
+            0.005,
+        )
         distance = float(np.hypot(*(found - known).T).max()) / LENGTH
-        yield Value(f"largest distance of the paths / length, {element} 32 x 2", 0.0, distance,
-                    tolerance, "absolute")  # fmt: skip
+        yield Value(
+            f"largest distance of the paths / length, {element} 32 x 2",
+            0.0,
+            distance,
+            tolerance,
+            "absolute",
+        )
 
 
 def picture() -> Picture:
@@ -88,10 +100,11 @@ def curve() -> Curve:
     time = PERIOD * np.arange(1, 31) / 30.0
     known, found = beams(), solid("Q8")
     return Curve(
-        "time [s]", "displacement of the end [m]",
+        "time [s]",
+        "displacement of the end [m]",
         {"across, beams": (time, known[:, 1]), "along, beams": (time, known[:, 0])},
         {"across, Q8 32 x 2": (time, found[:, 1]), "along, Q8 32 x 2": (time, found[:, 0])},
-    )  # fmt: skip
+    )
 
 
 def study() -> Study:
@@ -99,11 +112,15 @@ def study() -> Study:
     cells = (12, 16, 24, 32)
     return Study(
         "largest distance of the paths / length",
-        {e: ([float(n) for n in cells],
-             [float(np.hypot(*(solid(e, n, 15 * n) - beams()).T).max()) / LENGTH for n in cells])
-         for e in ("Q4I", "Q4D", "OPT", "Q8")},
+        {
+            e: (
+                [float(n) for n in cells],
+                [float(np.hypot(*(solid(e, n, 15 * n) - beams()).T).max()) / LENGTH for n in cells],
+            )
+            for e in ("Q4I", "Q4D", "OPT", "Q8")
+        },
         "cells along",
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

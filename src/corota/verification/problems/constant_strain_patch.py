@@ -86,12 +86,22 @@ def stress_error(results: Results) -> float:
 def measure() -> Iterator[Value]:
     """Stress of both patches."""
     for element in ELEMENTS:
-        yield Value(f"stress error, moved boundary, {element}", 0.0, stress_error(moved(element)),
-                    1e-11, "absolute")  # fmt: skip
+        yield Value(
+            f"stress error, moved boundary, {element}",
+            0.0,
+            stress_error(moved(element)),
+            1e-11,
+            "absolute",
+        )
     for element in ELEMENTS:
         if element != "Q8R":
-            yield Value(f"stress error, edge tractions, {element}", 0.0,
-                        stress_error(pulled(element)), 1e-9, "absolute")  # fmt: skip
+            yield Value(
+                f"stress error, edge tractions, {element}",
+                0.0,
+                stress_error(pulled(element)),
+                1e-9,
+                "absolute",
+            )
 
 
 def picture() -> Picture:

@@ -53,17 +53,29 @@ def hold(model: Model, angle: float) -> None:
 
 
 def solved(
-    low: str, up: str, angle: float = 0.0, plane: Any = "stress", slave: str = "up",
-    nlgeom: bool = True, overhang: float = 0.0, **options: Any,
-) -> Results:  # fmt: skip
+    low: str,
+    up: str,
+    angle: float = 0.0,
+    plane: Any = "stress",
+    slave: str = "up",
+    nlgeom: bool = True,
+    overhang: float = 0.0,
+    **options: Any,
+) -> Results:
     """The blocks under the pressure; `slave` is the one that the multipliers live on."""
     model = Model(blocks(low, up, angle, overhang))
     material = Elastic(E=YOUNG, nu=POISSON)
     # A uniform strain is exact at large deformation with the strain of the true gradient only.
     strain: Any = "green_lagrange" if nlgeom else "linear"
     for name, element in (("low", low), ("up", up)):
-        model.section(name, element=element, material=material, thickness=0.5, plane=plane,
-                      local_strain=strain)  # fmt: skip
+        model.section(
+            name,
+            element=element,
+            material=material,
+            thickness=0.5,
+            plane=plane,
+            local_strain=strain,
+        )
     hold(model, angle)
     push = axes(angle) @ [0.0, -PRESSURE]
     model.traction("up.top", x=float(push[0]), y=float(push[1]))

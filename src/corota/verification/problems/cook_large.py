@@ -47,8 +47,9 @@ def measure() -> Iterator[Value]:
     for (force, exact), frame in zip(EXACT.items(), last_frames(results), strict=True):
         tolerance = 3e-4 if force <= 0.05 else 2e-3
         for axis, reference, found in zip("xy", exact, frame.U[tip], strict=True):
-            yield Value(f"displacement {axis} at F = {force:g}, Q9 32 x 32", reference, found,
-                        tolerance)  # fmt: skip
+            yield Value(
+                f"displacement {axis} at F = {force:g}, Q9 32 x 32", reference, found, tolerance
+            )
 
 
 def picture() -> Picture:
@@ -65,8 +66,9 @@ def curve() -> Curve:
         u = [0.0, *(float(f.U[tip, 1]) for f in last_frames(results))]
         series[f"{element} 8 x 8"] = (u, [0.0, *EXACT])
     points = np.array([v for _, v in EXACT.values()])
-    return Curve("displacement y of (48, 52)", "force", series,
-                 {"continuum": (points, list(EXACT))})  # fmt: skip
+    return Curve(
+        "displacement y of (48, 52)", "force", series, {"continuum": (points, list(EXACT))}
+    )
 
 
 PROBLEM = Problem(

@@ -14,7 +14,7 @@ from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cook, linear, run
 
-#: Element, diagonals, rotations clamped, and the displacement for 2, 4, 8, ... cells a side.
+#: Element, diagonals, rotations clamped, and the displacement for 2, 4, 8, ... elements per side.
 ROWS = [
     ("Q4", "right", False, [11.8452, 18.2992, 22.0792, 23.4304, 23.8176]),
     ("Q4I", "right", False, [21.0503, 23.0164, 23.6888, 23.8833, 23.9398]),

@@ -19,9 +19,14 @@ from corota.verification.models import cell, linear, run
 EXACT = 0.0886
 #: Cells across and around for each element.
 MESHES = {
-    "Q4I": (4, 64), "Q8": (2, 24), "Q8R": (2, 24), "Q9": (2, 24), "T6": (2, 24), "Q4D": (4, 64),
+    "Q4I": (4, 64),
+    "Q8": (2, 24),
+    "Q8R": (2, 24),
+    "Q9": (2, 24),
+    "T6": (2, 24),
+    "Q4D": (4, 64),
     "OPT": (4, 64),
-}  # fmt: skip
+}
 
 
 def model(element: str, across: int, around: int) -> Model:

@@ -40,8 +40,9 @@ def measure() -> Iterator[Value]:
     points = [p for p in results.critical_points if p.kind == "limit"]
     yield Value("limit points on the path", 2, len(points), 0.0, "absolute")
     yield Value("first limit load, Q8", FIRST, LOAD * points[0].factor, 1e-3)
-    for axis, exact, found in zip("xy", PLACE, results.frames[points[0].increment].U[crown],
-                                  strict=True):  # fmt: skip
+    for axis, exact, found in zip(
+        "xy", PLACE, results.frames[points[0].increment].U[crown], strict=True
+    ):
         yield Value(f"displacement {axis} there", exact, found, 1e-3)
     yield Value("second limit load, Q8", SECOND, LOAD * points[1].factor, 0.02)
 
@@ -56,10 +57,11 @@ def curve() -> Curve:
     results, crown = solved()
     drop = [-float(f.U[crown, 1]) for f in results.frames]
     return Curve(
-        "deflection of the crown", "load",
+        "deflection of the crown",
+        "load",
         {"Q8": (drop, [LOAD * f.factor for f in results.frames])},
         {"exact beam": ([-PLACE[1]], [FIRST])},
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

@@ -130,8 +130,9 @@ def measure() -> Iterator[Value]:
                 for name, known, value in zip(
                     ("hinge", "rigid corner"), elastica(sign * load), found[k], strict=True
                 ):
-                    yield Value(f"{name} from the middle, {text}", known, value, tolerance,
-                                "absolute")  # fmt: skip
+                    yield Value(
+                        f"{name} from the middle, {text}", known, value, tolerance, "absolute"
+                    )
 
 
 def picture() -> Picture:
@@ -145,10 +146,11 @@ def curve() -> Curve:
     rows = np.concatenate([distances("BEAM", -1.0)[::-1], [[HALF, HALF]], distances("BEAM", 1.0)])
     exact = np.array([elastica(p) if p else (HALF, HALF) for p in loads])
     return Curve(
-        "P L^2 / EI", "distance from the middle / L",
+        "P L^2 / EI",
+        "distance from the middle / L",
         {"hinge, beams": (loads, rows[:, 0]), "rigid corner, beams": (loads, rows[:, 1])},
         {"elastica, hinge": (loads, exact[:, 0]), "elastica, corner": (loads, exact[:, 1])},
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

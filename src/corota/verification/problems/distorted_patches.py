@@ -68,10 +68,10 @@ def measure() -> Iterator[Value]:
     for element in ELEMENTS:
         for plane in ("stress", "strain"):
             worst = np.max([errors(element, plane, seed) for seed in range(SEEDS)], axis=0)
-            yield Value(f"displacement error, {element}, plane {plane}", 0.0, worst[0], 1e-12,
-                        "absolute")  # fmt: skip
-            yield Value(f"stress error, {element}, plane {plane}", 0.0, worst[1], 1e-11,
-                        "absolute")  # fmt: skip
+            yield Value(
+                f"displacement error, {element}, plane {plane}", 0.0, worst[0], 1e-12, "absolute"
+            )
+            yield Value(f"stress error, {element}, plane {plane}", 0.0, worst[1], 1e-11, "absolute")
 
 
 def picture() -> Picture:

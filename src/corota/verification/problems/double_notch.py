@@ -21,9 +21,12 @@ from corota.verification.plastic_models import find, notched
 LIMIT = (2.0 + np.pi) / 3.0**0.5
 #: Element, mean dilatation, cells on the ligament, pull, tolerance.
 CASES = [
-    ("Q4", True, 8, 0.15, 0.01), ("Q4D", True, 12, 0.15, 0.01), ("Q8", False, 8, 0.15, 0.01),
-    ("Q8R", False, 8, 0.2, 0.013), ("Q4I", False, 8, 0.15, 0.01),
-]  # fmt: skip
+    ("Q4", True, 8, 0.15, 0.01),
+    ("Q4D", True, 12, 0.15, 0.01),
+    ("Q8", False, 8, 0.15, 0.01),
+    ("Q8R", False, 8, 0.2, 0.013),
+    ("Q4I", False, 8, 0.15, 0.01),
+]
 
 
 def solved(
@@ -39,8 +42,12 @@ def solved(
 def measure() -> Iterator[Value]:
     """Limit load of each element."""
     for element, mean, n, pull, tolerance in CASES:
-        yield Value(f"limit stress / yield stress, {element}, {n} cells on the ligament", LIMIT,
-                    solved(element, mean, n, pull)[1][-1], tolerance)  # fmt: skip
+        yield Value(
+            f"limit stress / yield stress, {element}, {n} cells on the ligament",
+            LIMIT,
+            solved(element, mean, n, pull)[1][-1],
+            tolerance,
+        )
 
 
 def picture() -> Picture:
@@ -52,12 +59,15 @@ def curve() -> Curve:
     """Stress against pull: one element that locks and two that do not."""
     series = {}
     for label, element, mean in (
-        ("Q4, locks", "Q4", False), ("Q4 with mean dilatation", "Q4", True), ("Q4I", "Q4I", False),
-    ):  # fmt: skip
+        ("Q4, locks", "Q4", False),
+        ("Q4 with mean dilatation", "Q4", True),
+        ("Q4I", "Q4I", False),
+    ):
         results, stress = solved(element, mean, 8, 0.15)
         series[label] = ([0.15 * f.factor for f in results.frames], stress)
-    return Curve("pull", "stress on the ligament / yield stress", series,
-                 {"limit": ([0.15], [LIMIT])})  # fmt: skip
+    return Curve(
+        "pull", "stress on the ligament / yield stress", series, {"limit": ([0.15], [LIMIT])}
+    )
 
 
 PROBLEM = Problem(

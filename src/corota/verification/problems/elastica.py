@@ -38,9 +38,14 @@ EXACT = [
 ]
 #: Cells along and across.
 MESHES = {
-    "Q8": (50, 1), "Q8R": (50, 1), "Q9": (50, 1), "T6": (60, 1), "Q4I": (100, 1), "OPT": (200, 2),
+    "Q8": (50, 1),
+    "Q8R": (50, 1),
+    "Q9": (50, 1),
+    "T6": (60, 1),
+    "Q4I": (100, 1),
+    "OPT": (200, 2),
     "Q4D": (100, 4),
-}  # fmt: skip
+}
 
 
 def solved(element: str, nx: int, ny: int, watch: Watch | None = None, **keys: object) -> Results:
@@ -88,11 +93,14 @@ def curve() -> Curve:
     load = np.concatenate([[0.0], exact[:, 0]])
     lines = np.concatenate([np.zeros((1, 2)), found])
     return Curve(
-        "P L^2 / EI", "displacement / L",
+        "P L^2 / EI",
+        "displacement / L",
         {"deflection, Q4I": (load, lines[:, 0]), "shortening, Q4I": (load, lines[:, 1])},
-        {"elastica, deflection": (exact[:, 0], exact[:, 1]),
-         "elastica, shortening": (exact[:, 0], exact[:, 2])},
-    )  # fmt: skip
+        {
+            "elastica, deflection": (exact[:, 0], exact[:, 1]),
+            "elastica, shortening": (exact[:, 0], exact[:, 2]),
+        },
+    )
 
 
 def study() -> Study:

@@ -47,9 +47,11 @@ def _line(a: tuple[float, float], b: tuple[float, float]) -> Any:
 def solved(element: str, along: int, across: int) -> Results:
     """The membrane on `along` cells around and `across` from the inner to the outer edge."""
     sides = [
-        _line((2.0, 0.0), (3.25, 0.0)), _ellipse(3.25, 2.75),
-        _line((0.0, 1.0), (0.0, 2.75)), _ellipse(2.0, 1.0),
-    ]  # fmt: skip
+        _line((2.0, 0.0), (3.25, 0.0)),
+        _ellipse(3.25, 2.75),
+        _line((0.0, 1.0), (0.0, 2.75)),
+        _ellipse(2.0, 1.0),
+    ]
     model = Model(meshes.mapped(sides, across, along, cell(element)))
     model.section("all", element=element, material=Elastic(E=210e9, nu=0.3), thickness=0.1)
     turn = 0.0 if element in DRILLING else None
@@ -70,8 +72,10 @@ def measure() -> Iterator[Value]:
     for element, (along, across, tolerance) in MESHES.items():
         yield Value(
             f"stress in y at D [Pa], {element} {along} x {across}",
-            TARGET, stress(element, along, across), tolerance,
-        )  # fmt: skip
+            TARGET,
+            stress(element, along, across),
+            tolerance,
+        )
 
 
 def picture() -> Picture:

@@ -30,7 +30,7 @@ GROWTH = 1.8
 
 @cache
 def solved(element: str, n: int) -> Results:
-    """The upper disc with `n` cells a side, the lower one with a quarter fewer."""
+    """The upper disc with `n` elements per side, the lower one with a quarter fewer."""
     up = meshes.move(quarter(R, n, element, GROWTH), shift=(0.0, R))
     low = meshes.move(quarter(R, 3 * n // 4, element, GROWTH, upper=True), shift=(0.0, -R))
     model = Model(meshes.assembly(up=up, low=low))
@@ -71,9 +71,12 @@ def curve() -> Curve:
     x, p = pressures(solved("Q4I", 48))
     near = np.abs(x) < 1.6 * HALF
     line = np.linspace(0.0, HALF, 60)
-    return Curve("distance from the middle", "pressure",
-                 {"Hertz": (line, PEAK * np.sqrt(1.0 - (line / HALF) ** 2))},
-                 {"nodes of Q4I 48 x 48": (x[near], p[near])})  # fmt: skip
+    return Curve(
+        "distance from the middle",
+        "pressure",
+        {"Hertz": (line, PEAK * np.sqrt(1.0 - (line / HALF) ** 2))},
+        {"nodes of Q4I 48 x 48": (x[near], p[near])},
+    )
 
 
 def study() -> Study:
@@ -86,7 +89,7 @@ def study() -> Study:
         )
         for e in ("Q4I", "Q4D")
     }
-    return Study("error of the peak pressure", series, "cells a side")
+    return Study("error of the peak pressure", series, "elements per side")
 
 
 PROBLEM = Problem(

@@ -47,8 +47,12 @@ def measure() -> Iterator[Value]:
         factors = run(column(element, n=80), Buckle(modes=3)).modes[0].factors
         yield Value(f"buckling load, {element} 80 x 2", euler_load(), factors[0], tolerance)
         for k in (1, 2):
-            yield Value(f"mode {k + 1} over the first, {element}", (2 * k + 1) ** 2,
-                        factors[k] / factors[0], 5e-3)  # fmt: skip
+            yield Value(
+                f"mode {k + 1} over the first, {element}",
+                (2 * k + 1) ** 2,
+                factors[k] / factors[0],
+                5e-3,
+            )
     results, tip = solved()
     critical = results.critical_points[0]
     linear = run(column("Q8", n=40), Buckle()).modes[0].factors[0]
@@ -71,12 +75,21 @@ def curve() -> Curve:
     loads = np.linspace(1.001, 1.4, 12)
     exact = [100.0 * elastica(p)[0] for p in loads]
     return Curve(
-        "deflection of the tip", "load over that of buckling",
-        {"Q8 40 x 2": ([float(f.U[tip, 1]) for f in results.frames],
-                       [f.factor / first for f in results.frames])},
-        {"elastica": ([x for x in exact if x < 71.0],
-                      [p for p, x in zip(loads, exact, strict=True) if x < 71.0])},
-    )  # fmt: skip
+        "deflection of the tip",
+        "load over that of buckling",
+        {
+            "Q8 40 x 2": (
+                [float(f.U[tip, 1]) for f in results.frames],
+                [f.factor / first for f in results.frames],
+            )
+        },
+        {
+            "elastica": (
+                [x for x in exact if x < 71.0],
+                [p for p, x in zip(loads, exact, strict=True) if x < 71.0],
+            )
+        },
+    )
 
 
 def study() -> Study:

@@ -80,9 +80,11 @@ def curve() -> Curve:
     down = [-float(f.U[node, 1]) for f in results.frames]
     load = [f.factor for f in results.frames]
     return Curve(
-        "displacement of the loaded point", "load", {"beams": (down, load)},
+        "displacement of the loaded point",
+        "load",
+        {"beams": (down, load)},
         {"exact beam": ([48.75424, 58.22496], list(CASES["Lee's frame"][2]))},
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

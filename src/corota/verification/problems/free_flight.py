@@ -23,8 +23,13 @@ from corota.verification.motion_models import column, flyer
 
 
 @cache
-def solved(element: str, strain: Any = "linear", mass: Any = "consistent",
-           scheme: Any = "energy_momentum", **keys: Any) -> Results:  # fmt: skip
+def solved(
+    element: str,
+    strain: Any = "linear",
+    mass: Any = "consistent",
+    scheme: Any = "energy_momentum",
+    **keys: Any,
+) -> Results:
     """Fly for two units of time."""
     step = Dynamic(period=2.0, increments=40, scheme=scheme, mass=mass, tolerance=1e-11)
     return run(flyer(element, strain), step, **keys)
@@ -51,9 +56,11 @@ def measure() -> Iterator[Value]:
         values = drift(solved(element, strain, mass))
         text = f"{element}, {strain}, {mass} mass"
         for name, value, bound in zip(
-            ("linear momentum", "angular momentum", "energy"), values, (1e-12, 1e-12, 1e-11),
+            ("linear momentum", "angular momentum", "energy"),
+            values,
+            (1e-12, 1e-12, 1e-11),
             strict=True,
-        ):  # fmt: skip
+        ):
             yield Value(f"drift of the {name}, {text}", 0.0, value, bound, "absolute")
     exchange = float(np.ptp(column(solved("Q4I"), "kinetic energy")))
     yield Value("energy that goes to and fro, Q4I", 1e-5, exchange, 0.0, "at least")

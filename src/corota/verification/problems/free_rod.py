@@ -57,8 +57,10 @@ def flown(element: str, **keys: Any) -> Results:
     where = np.array([node])
     loads: list[Any] = [NodalForce(where, 0, 8.0), NodalForce(where, 2, 80.0)]
     common: dict[str, Any] = {
-        "scheme": "energy_momentum", "tolerance": 1e-11, "max_iterations": 40,
-    }  # fmt: skip
+        "scheme": "energy_momentum",
+        "tolerance": 1e-11,
+        "max_iterations": 40,
+    }
     push = Dynamic(period=PUSH, increments=250, loads=loads, **common)
     free = Dynamic(period=END - PUSH, increments=150, new_loads=True, **common)
     return run(model, [push, free], **keys)
@@ -92,10 +94,20 @@ def measure() -> Iterator[Value]:
         if element == "Q4I":
             time, x, y = centre(results).T
             exact = np.where(time < PUSH, 3.0 + 0.4 * time**2, 5.5 + 2.0 * (time - PUSH))
-            yield Value(f"error of the centre's path x, {element}", 0.0, np.abs(x - exact).max(),
-                        1e-8, "absolute")  # fmt: skip
-            yield Value(f"error of the centre's path y, {element}", 0.0, np.abs(y - 4.0).max(),
-                        1e-8, "absolute")  # fmt: skip
+            yield Value(
+                f"error of the centre's path x, {element}",
+                0.0,
+                np.abs(x - exact).max(),
+                1e-8,
+                "absolute",
+            )
+            yield Value(
+                f"error of the centre's path y, {element}",
+                0.0,
+                np.abs(y - 4.0).max(),
+                1e-8,
+                "absolute",
+            )
         bent = float(np.ptp([s["internal work"] for s in late])) / size
         yield Value(f"strain energy that comes and goes, {element}", 1e-3, bent, 0.0, "at least")
 

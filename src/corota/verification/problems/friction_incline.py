@@ -71,8 +71,9 @@ def measure() -> Iterator[Value]:
     for method in ("mortar", "node_to_segment"):
         sums = run(incline(0.58, method)).frames[-1].scalars
         yield Value(f"force up, friction 0.58, {method}", 4.0, sums["slope: force y"], 1e-9)
-        yield Value(f"force across, friction 0.58, {method}", 0.0, sums["slope: force x"], 1e-8,
-                    "absolute")  # fmt: skip
+        yield Value(
+            f"force across, friction 0.58, {method}", 0.0, sums["slope: force x"], 1e-8, "absolute"
+        )
     try:
         run(incline(0.57), Static(smallest_increment=0.1))
         slides = 0.0
@@ -81,8 +82,9 @@ def measure() -> Iterator[Value]:
     yield Value("refused as sliding, friction 0.57", 1.0, slides, 0.0, "absolute")
     for friction in (0.0, 0.3):
         exact = 10.0 * (0.5 - friction * 0.75**0.5)
-        yield Value(f"acceleration down the slope, friction {friction:g}", exact,
-                    sliding(friction), 0.01)  # fmt: skip
+        yield Value(
+            f"acceleration down the slope, friction {friction:g}", exact, sliding(friction), 0.01
+        )
     last = dragged().frames[-1].scalars
     yield Value("normal force of the dragged block", 10.0, last["pair: force y"], 1e-8)
     yield Value("friction of the dragged block", -3.0, last["pair: force x"], 2e-3)

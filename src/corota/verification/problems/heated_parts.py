@@ -70,16 +70,26 @@ def measure() -> Iterator[Value]:
     for element in ELEMENTS:
         frame = plate(element, "stress", held=False).frames[-1]
         stress = float(np.abs(frame.fields[0].values["S"]).max()) / (YOUNG * ALPHA)
-        yield Value(f"stress of the free plate / (E alpha T), {element}", 0.0, stress, 1e-10,
-                    "absolute")  # fmt: skip
+        yield Value(
+            f"stress of the free plate / (E alpha T), {element}", 0.0, stress, 1e-10, "absolute"
+        )
         u = frame.U - ALPHA * plate(element, "stress", held=False).mesh.points
-        yield Value(f"error of its expansion / (alpha T), {element}", 0.0,
-                    float(np.abs(u).max()) / ALPHA, 1e-10, "absolute")  # fmt: skip
+        yield Value(
+            f"error of its expansion / (alpha T), {element}",
+            0.0,
+            float(np.abs(u).max()) / ALPHA,
+            1e-10,
+            "absolute",
+        )
         for plane, exact in (("stress", -1.0), ("strain", -1.0 / (1.0 - NU))):
             values = plate(element, plane, held=True).frames[-1].fields[0].values["S"][..., 0]
             worst = values.ravel()[np.abs(values / (YOUNG * ALPHA) - exact).argmax()]
-            yield Value(f"stress of the held plate / (E alpha T), plane {plane}, {element}", exact,
-                        worst / (YOUNG * ALPHA), 1e-9)  # fmt: skip
+            yield Value(
+                f"stress of the held plate / (E alpha T), plane {plane}, {element}",
+                exact,
+                worst / (YOUNG * ALPHA),
+                1e-9,
+            )
     for element in ("Q8", "Q4I", "Q4D"):
         results = strip(element)
         tip = nearest(results.mesh, LENGTH, 0.0)
@@ -110,11 +120,16 @@ def curve() -> Curve:
     tip = nearest(results.mesh, LENGTH, 0.0)
     part = np.linspace(0.01, 1.0, 40)
     return Curve(
-        "temperature [degrees]", "deflection of the end",
+        "temperature [degrees]",
+        "deflection of the end",
         {"Timoshenko's circle": (WARM * part, circle(part))},
-        {"Q8 60 x 4": ([WARM * f.factor for f in results.frames],
-                       [-float(f.U[tip, 1]) for f in results.frames])},
-    )  # fmt: skip
+        {
+            "Q8 60 x 4": (
+                [WARM * f.factor for f in results.frames],
+                [-float(f.U[tip, 1]) for f in results.frames],
+            )
+        },
+    )
 
 
 PROBLEM = Problem(

@@ -106,9 +106,12 @@ def curve() -> Curve:
     shear = z - z * z / np.sqrt(1.0 + z * z)
     depth, found = below(solved("strain", "Q4I", 48))
     near = depth < 4.0 * a
-    return Curve("depth / half width", "largest shear stress / peak pressure",
-                 {"Hertz": (z, shear)},
-                 {"nodes of Q4I 48 x 48": (depth[near] / a, found[near] / p0)})  # fmt: skip
+    return Curve(
+        "depth / half width",
+        "largest shear stress / peak pressure",
+        {"Hertz": (z, shear)},
+        {"nodes of Q4I 48 x 48": (depth[near] / a, found[near] / p0)},
+    )
 
 
 def study() -> Study:
@@ -121,7 +124,7 @@ def study() -> Study:
         )
         for e in ("Q4I", "Q4D")
     }
-    return Study("error of the half width", series, "cells a side")
+    return Study("error of the half width", series, "elements per side")
 
 
 PROBLEM = Problem(

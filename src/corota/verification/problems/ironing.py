@@ -61,15 +61,21 @@ def measure() -> Iterator[Value]:
             yield Value(f"force across / down, {text}", 0.0, ratio, 2e-3, "absolute")
         balance, law = 0.0, 0.0
         for frame in results.frames[1:]:
-            total = sum(frame.RF[mesh.nodes_of(n), :2].sum(axis=0)
-                        for n in ("die.top", "block.bottom"))  # fmt: skip
+            total = sum(
+                frame.RF[mesh.nodes_of(n), :2].sum(axis=0) for n in ("die.top", "block.bottom")
+            )
             balance = max(balance, float(np.abs(total).max()))
             assert frame.C is not None
             slips = frame.C[:, 4] == 2.0
             differ = np.abs(frame.C[slips, 1]) - friction * frame.C[slips, 0]
             law = max(law, float(np.abs(differ).max(initial=0.0)))
-        yield Value(f"resultant of all supports / force down, {text}", 0.0,
-                    balance / float(down.max()), 1e-7, "absolute")  # fmt: skip
+        yield Value(
+            f"resultant of all supports / force down, {text}",
+            0.0,
+            balance / float(down.max()),
+            1e-7,
+            "absolute",
+        )
         if friction:
             yield Value(f"shear less friction times pressure, {text}", 0.0, law, 1e-9, "absolute")
         yield Value(f"work over strain energy and friction, {text}", 1.0, work(results), 0.03)
@@ -97,11 +103,15 @@ def study() -> Study:
     finer = (1, 2, 4)
     return Study(
         "what the work lacks over strain energy and friction",
-        {f"friction {f:g}": ([10.0 * k for k in finer],
-                             [abs(work(solved(f, k)) - 1.0) for k in finer])
-         for f in (0.0, FRICTION)},
+        {
+            f"friction {f:g}": (
+                [10.0 * k for k in finer],
+                [abs(work(solved(f, k)) - 1.0) for k in finer],
+            )
+            for f in (0.0, FRICTION)
+        },
         "increments across",
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

@@ -39,20 +39,33 @@ def _arc(t: Any) -> Any:
 
 
 def roller(
-    n: int, element: str, plane: Any = "strain", load: float = LOAD, nlgeom: bool = False,
+    n: int,
+    element: str,
+    plane: Any = "strain",
+    load: float = LOAD,
+    nlgeom: bool = False,
     **keys: Any,
-) -> Results:  # fmt: skip
+) -> Results:
     """A quarter of the roller on half of the block; the load is that of the whole."""
     kind, corner = cell(element), (0.6 * R, R)
     disc = meshes.mapped(
         [_arc, _graded(_arc(1.0), corner), _graded((0, R), corner), _graded((0, 0), (0, R))],
-        n, n, kind,
-    )  # fmt: skip
+        n,
+        n,
+        kind,
+    )
     up, side = _graded((0, 0), (0, -H)), _graded((H, 0), (H, -H))
     block = meshes.mapped(
-        [_graded((0, -H), (H, -H)), lambda t: side(1.0 - np.asarray(t)), _graded((0, 0), (H, 0)),
-         lambda t: up(1.0 - np.asarray(t))], n, n, kind,
-    )  # fmt: skip
+        [
+            _graded((0, -H), (H, -H)),
+            lambda t: side(1.0 - np.asarray(t)),
+            _graded((0, 0), (H, 0)),
+            lambda t: up(1.0 - np.asarray(t)),
+        ],
+        n,
+        n,
+        kind,
+    )
     model = Model(meshes.assembly(disc=disc, block=block))
     for name, modulus in (("disc", E1), ("block", E2)):
         material = Elastic(E=modulus, nu=NU)
@@ -108,9 +121,12 @@ def curve() -> Curve:
     a, p0 = hertz(LOAD, "strain")
     near = np.abs(x) < 1.6 * a
     line = np.linspace(0.0, a, 60)
-    return Curve("distance from the middle", "pressure",
-                 {"Hertz": (line, p0 * np.sqrt(1.0 - (line / a) ** 2))},
-                 {"nodes of Q8R 20 x 20": (x[near], p[near])})  # fmt: skip
+    return Curve(
+        "distance from the middle",
+        "pressure",
+        {"Hertz": (line, p0 * np.sqrt(1.0 - (line / a) ** 2))},
+        {"nodes of Q8R 20 x 20": (x[near], p[near])},
+    )
 
 
 def study() -> Study:
@@ -123,7 +139,7 @@ def study() -> Study:
         )
         for e in ("Q4I", "Q4D", "Q8R")
     }
-    return Study("error of the peak pressure", series, "cells a side")
+    return Study("error of the peak pressure", series, "elements per side")
 
 
 PROBLEM = Problem(

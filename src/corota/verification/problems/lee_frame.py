@@ -53,12 +53,17 @@ def curve() -> Curve:
     results, node = solved()
     load = [f.factor for f in results.frames]
     return Curve(
-        "displacement of the loaded point", "load",
-        {"to the right": ([float(f.U[node, 0]) for f in results.frames], load),
-         "down": ([-float(f.U[node, 1]) for f in results.frames], load)},
-        {"exact beam, right": ([e[1] for e in EXACT], [e[0] for e in EXACT]),
-         "exact beam, down": ([-e[2] for e in EXACT], [e[0] for e in EXACT])},
-    )  # fmt: skip
+        "displacement of the loaded point",
+        "load",
+        {
+            "to the right": ([float(f.U[node, 0]) for f in results.frames], load),
+            "down": ([-float(f.U[node, 1]) for f in results.frames], load),
+        },
+        {
+            "exact beam, right": ([e[1] for e in EXACT], [e[0] for e in EXACT]),
+            "exact beam, down": ([-e[2] for e in EXACT], [e[0] for e in EXACT]),
+        },
+    )
 
 
 PROBLEM = Problem(

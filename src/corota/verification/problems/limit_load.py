@@ -44,8 +44,7 @@ def solved(shape: str, element: str, ny: int) -> Results:
         model.section("all", element=element, material=law)
         model.fix("left", rotation=True if element in DRILLING else None)
         model.fix("right", x=None, y=-move)
-    return run(model, Static(nlgeom=False, first_increment=0.1, largest_increment=0.1),
-               fields=True)  # fmt: skip
+    return run(model, Static(nlgeom=False, first_increment=0.1, largest_increment=0.1), fields=True)
 
 
 def loads(results: Results, shape: str) -> tuple[np.ndarray, np.ndarray]:
@@ -75,11 +74,16 @@ def measure() -> Iterator[Value]:
         text = f"10 x 1, {element}, {ny} layers"
         yield Value(f"collapse load / limit, {text}, at least", 1.0, end[-1], 0.0, "at least")
         yield Value(f"collapse load / limit, {text}, at most", 1.06, end[-1], 0.0, "at most")
-        yield Value(f"growth in the last increment, {text}", 0.0, end[-1] / end[-2] - 1.0, 1e-3,
-                    "absolute")  # fmt: skip
+        yield Value(
+            f"growth in the last increment, {text}", 0.0, end[-1] / end[-2] - 1.0, 1e-3, "absolute"
+        )
         found = loads(solved("6 x 0.5", element, ny), "6 x 0.5")[1][-1]
-        yield Value(f"load / limit at 0.65, 6 x 0.5, {element}, {ny} layers",
-                    prager_hodge("6 x 0.5"), found, 0.01)  # fmt: skip
+        yield Value(
+            f"load / limit at 0.65, 6 x 0.5, {element}, {ny} layers",
+            prager_hodge("6 x 0.5"),
+            found,
+            0.01,
+        )
 
 
 def picture() -> Picture:
@@ -90,11 +94,14 @@ def picture() -> Picture:
 def curve() -> Curve:
     """Load against the movement."""
     return Curve(
-        "movement of the tip", "load / limit of beam theory",
+        "movement of the tip",
+        "load / limit of beam theory",
         {f"{s}, Q4I": loads(solved(s, "Q4I", 8), s) for s in SHAPES},
-        {"Prager and Hodge, 6 x 0.5": ([0.65], [prager_hodge("6 x 0.5")]),
-         "beam theory": ([0.5], [1.0])},
-    )  # fmt: skip
+        {
+            "Prager and Hodge, 6 x 0.5": ([0.65], [prager_hodge("6 x 0.5")]),
+            "beam theory": ([0.5], [1.0]),
+        },
+    )
 
 
 def study() -> Study:
@@ -103,11 +110,15 @@ def study() -> Study:
     last = {e: loads(solved("10 x 1", e, 32), "10 x 1")[1][-1] for e in ("Q4I", "Q8R", "Q4D")}
     return Study(
         "collapse load less that of 32 layers, relative",
-        {e: ([float(n) for n in layers],
-             [abs(loads(solved("10 x 1", e, n), "10 x 1")[1][-1] / v - 1.0) for n in layers])
-         for e, v in last.items()},
+        {
+            e: (
+                [float(n) for n in layers],
+                [abs(loads(solved("10 x 1", e, n), "10 x 1")[1][-1] / v - 1.0) for n in layers],
+            )
+            for e, v in last.items()
+        },
         "layers",
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

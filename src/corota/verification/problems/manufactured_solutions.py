@@ -1,9 +1,9 @@
 """Orders of convergence on manufactured solutions of linear elasticity, for every element.
 
 The complex potentials phi = exp(z), psi = sin(z) are in equilibrium without body force; two sine
-waves need one, so that loads are measured too. A skew region with 4, 8 and 16 cells a side, its
-boundary moved by the solution. The error of the displacement falls with order two for linear and
-three for quadratic elements, that of the gradient with one order less; drilling elements and
+waves need one, so that loads are measured too. A skew region with 4, 8 and 16 elements per side,
+its boundary moved by the solution. The error of the displacement falls with order two for linear
+and three for quadratic elements, that of the gradient with one order less; drilling elements and
 incompatible modes count as linear.
 """
 
@@ -98,8 +98,9 @@ def body_forces(mesh: Mesh, force: Callable[[np.ndarray], np.ndarray]) -> list[A
 
 
 SOLUTIONS: dict[str, tuple[Field, Callable[[np.ndarray], np.ndarray] | None]] = {
-    "potentials": (potentials, None), "waves": (waves, waves_body_force),
-}  # fmt: skip
+    "potentials": (potentials, None),
+    "waves": (waves, waves_body_force),
+}
 
 
 def errors(element: str, n: int, solution: str) -> tuple[float, float]:
@@ -133,8 +134,13 @@ def measure() -> Iterator[Value]:
             for what, bound, a, b in zip(
                 ("displacement", "gradient"), (first, first - 1.0), coarse, fine, strict=True
             ):
-                yield Value(f"order of the {what}, {element}, {solution}", bound,
-                            float(np.log2(a / b)), 0.0, "at least")  # fmt: skip
+                yield Value(
+                    f"order of the {what}, {element}, {solution}",
+                    bound,
+                    float(np.log2(a / b)),
+                    0.0,
+                    "at least",
+                )
 
 
 def study() -> Study:
@@ -146,7 +152,7 @@ def study() -> Study:
             e: ([float(n) for n in cells], [errors(e, n, "potentials")[0] for n in cells])
             for e in ELEMENTS
         },
-        "cells a side",
+        "elements per side",
     )
 
 

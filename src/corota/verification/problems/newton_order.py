@@ -46,11 +46,17 @@ def measure() -> Iterator[Value]:
     """Every element."""
     for strain in ("linear", "green_lagrange"):
         for element in ELEMENTS:
-            yield Value(f"order, {element}, {strain}", BOUND, order(element, strain), 0.0,
-                        "at least")  # fmt: skip
+            yield Value(
+                f"order, {element}, {strain}", BOUND, order(element, strain), 0.0, "at least"
+            )
     for element in ELEMENTS:
-        yield Value(f"order with a following pressure, {element}", BOUND, pressure_order(element),
-                    0.0, "at least")  # fmt: skip
+        yield Value(
+            f"order with a following pressure, {element}",
+            BOUND,
+            pressure_order(element),
+            0.0,
+            "at least",
+        )
 
 
 PROBLEM = Problem(

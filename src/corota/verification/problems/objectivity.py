@@ -82,14 +82,21 @@ def rigid(element: str) -> float:
 def measure() -> Iterator[Value]:
     """Every element; the turned strain for every local strain."""
     for element in ELEMENTS:
-        yield Value(f"force under rigid motion, 0 to 720 degrees, {element}", 0.0, rigid(element),
-                    1e-11, "absolute")  # fmt: skip
+        yield Value(
+            f"force under rigid motion, 0 to 720 degrees, {element}",
+            0.0,
+            rigid(element),
+            1e-11,
+            "absolute",
+        )
         for strain in STRAINS:
             force, tangent = errors(element, strain)
-            yield Value(f"error of turned forces, {element}, {strain}", 0.0, force, 1e-11,
-                        "absolute")  # fmt: skip
-            yield Value(f"error of turned stiffness, {element}, {strain}", 0.0, tangent, 1e-11,
-                        "absolute")  # fmt: skip
+            yield Value(
+                f"error of turned forces, {element}, {strain}", 0.0, force, 1e-11, "absolute"
+            )
+            yield Value(
+                f"error of turned stiffness, {element}, {strain}", 0.0, tangent, 1e-11, "absolute"
+            )
 
 
 PROBLEM = Problem(

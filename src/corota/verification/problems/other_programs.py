@@ -1,4 +1,4 @@
-"""The same mesh in other programs: a cantilever with large rotations, at rest and in motion.
+"""The same mesh in other programs: a cantilever with large rotations, in statics and dynamics.
 
 10 x 1, thickness 0.01, E = 1.2e6, nu = 0.3, plane stress, four cells of Q4 across, the
 local strain `green_lagrange`, which is the total-Lagrangian St. Venant-Kirchhoff solid. A dead
@@ -63,11 +63,17 @@ def measure() -> Iterator[Value]:
     for n, exact in STATIC.items():
         results, tip = bent(n)
         for axis, known, found in zip("xy", exact, results.frames[-1].U[tip], strict=True):
-            yield Value(f"displacement {axis} at rest, {10 * n} x {n}", known, found, 5.1e-6,
-                        "absolute")  # fmt: skip
+            yield Value(
+                f"displacement {axis} at rest, {10 * n} x {n}", known, found, 5.1e-6, "absolute"
+            )
     for load, known in MOTION.items():
-        yield Value(f"largest displacement y in motion, load {load:g}", known, moved(load)[1].max(),
-                    5.1e-6, "absolute")  # fmt: skip
+        yield Value(
+            f"largest displacement y in motion, load {load:g}",
+            known,
+            moved(load)[1].max(),
+            5.1e-6,
+            "absolute",
+        )
 
 
 def picture() -> Picture:
@@ -79,8 +85,12 @@ def curve() -> Curve:
     """Motion of the end."""
     series = {f"Q4, load {load:g}": moved(load) for load in MOTION}
     tops = [float(t[u.argmax()]) for t, u in series.values()]
-    return Curve("time", "displacement y of the end", series,
-                 {"DOLFINx, largest": (tops, list(MOTION.values()))})  # fmt: skip
+    return Curve(
+        "time",
+        "displacement y of the end",
+        series,
+        {"DOLFINx, largest": (tops, list(MOTION.values()))},
+    )
 
 
 PROBLEM = Problem(

@@ -31,9 +31,10 @@ MASS_PERIOD = float(4.0 * ellipk(0.5) * np.sqrt(LENGTH / GRAVITY))
 #: Angle of the centre above the pin's level at the start, from hanging.
 START = 0.5 * np.pi + np.arctan(DEPTH / LENGTH)
 PERIOD = float(
-    4.0 * ellipk(np.sin(0.5 * START) ** 2)
+    4.0
+    * ellipk(np.sin(0.5 * START) ** 2)
     * np.sqrt(2.0 * np.hypot(LENGTH, DEPTH) / (3.0 * GRAVITY))
-)  # fmt: skip
+)
 
 
 def pendulum(element: str) -> Model:
@@ -48,9 +49,11 @@ def pendulum(element: str) -> Model:
 def swing(element: str, periods: float = 1.6, per_period: int = 200, **keys: Any) -> Results:
     """Swing with the energy-momentum scheme."""
     step = Dynamic(
-        period=periods * PERIOD, increments=round(periods * per_period), scheme="energy_momentum",
+        period=periods * PERIOD,
+        increments=round(periods * per_period),
+        scheme="energy_momentum",
         tolerance=1e-10,
-    )  # fmt: skip
+    )
     return run(pendulum(element), step, **keys)
 
 
@@ -80,8 +83,9 @@ def on_a_bar() -> float:
     model.point_mass([1], 1.0)
     model.fix([0])
     model.force([1], y=-GRAVITY)
-    step = Dynamic(period=1.6 * MASS_PERIOD, increments=640, scheme="energy_momentum",
-                   tolerance=1e-10)  # fmt: skip
+    step = Dynamic(
+        period=1.6 * MASS_PERIOD, increments=640, scheme="energy_momentum", tolerance=1e-10
+    )
     frames = run(model, step).frames
     time = np.array([f.time for f in frames])
     return crossings(time, np.array([LENGTH + f.U[1, 0] for f in frames]))
@@ -106,17 +110,23 @@ def picture() -> Picture:
 def curve() -> Curve:
     """Position of the end."""
     time, x = tip(swing("Q4D"))
-    return Curve("time", "x of the end", {"Q4D": (time, x)},
-                 {"a quarter and three of the rigid period": ([PERIOD / 4, 3 * PERIOD / 4],
-                                                              [0.0, 0.0])})  # fmt: skip
+    return Curve(
+        "time",
+        "x of the end",
+        {"Q4D": (time, x)},
+        {"a quarter and three of the rigid period": ([PERIOD / 4, 3 * PERIOD / 4], [0.0, 0.0])},
+    )
 
 
 def study() -> Study:
     """Error of the period against increments a period."""
     counts = (100, 200, 400)
     errors = [abs(period(swing("Q4I", 1.6, n)) / PERIOD - 1.0) for n in counts]
-    return Study("error of the period, down to the flexibility", {
-        "Q4I": ([float(n) for n in counts], errors)}, "increments a period")  # fmt: skip
+    return Study(
+        "error of the period, down to the flexibility",
+        {"Q4I": ([float(n) for n in counts], errors)},
+        "increments a period",
+    )
 
 
 PROBLEM = Problem(

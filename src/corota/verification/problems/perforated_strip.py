@@ -50,17 +50,34 @@ def force(results: Results) -> np.ndarray:
 
 def measure() -> Iterator[Value]:
     """Limit load; force with hardening."""
-    for element, n, tolerance in (("Q8R", 6, 0.006), ("Q8", 6, 0.01), ("Q4I", 10, 0.01),
-                                  ("Q4D", 12, 0.025), ("OPT", 12, 0.03)):  # fmt: skip
+    for element, n, tolerance in (
+        ("Q8R", 6, 0.006),
+        ("Q8", 6, 0.01),
+        ("Q4I", 10, 0.01),
+        ("Q4D", 12, 0.025),
+        ("OPT", 12, 0.03),
+    ):
         found = force(limit(element, n))
-        yield Value(f"limit load / (yield stress x ligament), {element}, n = {n}", 1.0,
-                    found[-1] / LIMIT, tolerance)  # fmt: skip
-        yield Value(f"growth over the last tenth of the pull, {element}", 0.0,
-                    found[-1] / np.interp(0.9, factors(limit(element, n)), found) - 1.0, 2e-3,
-                    "absolute")  # fmt: skip
+        yield Value(
+            f"limit load / (yield stress x ligament), {element}, n = {n}",
+            1.0,
+            found[-1] / LIMIT,
+            tolerance,
+        )
+        yield Value(
+            f"growth over the last tenth of the pull, {element}",
+            0.0,
+            found[-1] / np.interp(0.9, factors(limit(element, n)), found) - 1.0,
+            2e-3,
+            "absolute",
+        )
     for element, n, peer in HARDENING:
-        yield Value(f"force with hardening at 0.3, {element}, n = {n}", peer,
-                    force(hardened(element, n))[-1], 0.005)  # fmt: skip
+        yield Value(
+            f"force with hardening at 0.3, {element}, n = {n}",
+            peer,
+            force(hardened(element, n))[-1],
+            0.005,
+        )
 
 
 def factors(results: Results) -> np.ndarray:

@@ -112,9 +112,12 @@ def curve() -> Curve:
     """Moment against curvature."""
     k = np.linspace(0.2, 10.0, 25)
     exact = np.where(k < 1.0, k, 1.5 - 0.5 / np.maximum(k, 1.0) ** 2)
-    return Curve("curvature over the first", "moment over the first",
-                 {"exact": (k, exact)},
-                 {"Q8, ten layers": (RATIOS, bend(list(RATIOS)))})  # fmt: skip
+    return Curve(
+        "curvature over the first",
+        "moment over the first",
+        {"exact": (k, exact)},
+        {"Q8, ten layers": (RATIOS, bend(list(RATIOS)))},
+    )
 
 
 PROBLEM = Problem(

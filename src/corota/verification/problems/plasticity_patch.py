@@ -83,8 +83,9 @@ def patch(element: str) -> np.ndarray:
     """Stresses (xx, yy) after each step of a distorted mesh whose boundary moves."""
     mesh = meshes.distort(meshes.rectangle(1.0, 1.0, 3, 3, cell(element)), 0.2, seed=1)
     model = Model(mesh)
-    model.section("all", element=element, material=Mises(E=E, nu=NU, yield_stress=YIELD),
-                  plane="strain")  # fmt: skip
+    model.section(
+        "all", element=element, material=Mises(E=E, nu=NU, yield_stress=YIELD), plane="strain"
+    )
     frames = last_frames(strained(model))
     return np.array([f.fields[0].values["S"][..., :2].reshape(-1, 2) for f in frames])
 
@@ -94,8 +95,13 @@ def measure() -> Iterator[Value]:
     reference, fine, coarse = exact(), point(FINE), point(COARSE)
     for k in range(len(STEPS)):
         for axis, name in enumerate(("xx", "yy")):
-            yield Value(f"stress {name} after step {k + 1} [MPa]", reference[k, axis],
-                        fine[k, axis], 1e-3, "absolute")  # fmt: skip
+            yield Value(
+                f"stress {name} after step {k + 1} [MPa]",
+                reference[k, axis],
+                fine[k, axis],
+                1e-3,
+                "absolute",
+            )
     for element in ("Q4I", "T6", "Q8", "Q8R", "Q9"):
         worst = float(np.abs(patch(element) - coarse[:, None]).max())
         yield Value(f"patch of {element} beside the material [MPa]", 0.0, worst, 1e-7, "absolute")
@@ -104,9 +110,12 @@ def measure() -> Iterator[Value]:
 def curve() -> Curve:
     """Stress along x, exact and with ten increments a step."""
     count = np.arange(1, len(STEPS) + 1)
-    return Curve("step", "stress along x [MPa]",
-                 {"exact": (np.append(0, count), np.append(0.0, exact()[:, 0]))},
-                 {"ten increments a step": (count, point(COARSE)[:, 0])})  # fmt: skip
+    return Curve(
+        "step",
+        "stress along x [MPa]",
+        {"exact": (np.append(0, count), np.append(0.0, exact()[:, 0]))},
+        {"ten increments a step": (count, point(COARSE)[:, 0])},
+    )
 
 
 PROBLEM = Problem(

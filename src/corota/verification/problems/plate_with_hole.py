@@ -29,11 +29,13 @@ def kirsch(x: float, y: float) -> np.ndarray:
     r, a = np.hypot(x, y), np.arctan2(y, x)
     q, c2, c4 = (R / r) ** 2, np.cos(2 * a), np.cos(4 * a)
     s2, s4 = np.sin(2 * a), np.sin(4 * a)
-    return np.array([
-        1 - q * (1.5 * c2 + c4) + 1.5 * q * q * c4,
-        -q * (0.5 * c2 - c4) - 1.5 * q * q * c4,
-        -q * (0.5 * s2 + s4) + 1.5 * q * q * s4,
-    ])  # fmt: skip
+    return np.array(
+        [
+            1 - q * (1.5 * c2 + c4) + 1.5 * q * q * c4,
+            -q * (0.5 * c2 - c4) - 1.5 * q * q * c4,
+            -q * (0.5 * s2 + s4) + 1.5 * q * q * s4,
+        ]
+    )
 
 
 def _quarter(element: str, n: int, width: float, height: float) -> Model:
@@ -86,8 +88,12 @@ def measure() -> Iterator[Value]:
         top, side = stresses(infinite(element, 16))
         yield Value(f"Kirsch: largest stress, {element}, n = 16", 3.0, top, 5e-3)
         yield Value(f"Kirsch: smallest stress, {element}, n = 16", -1.0, side, 2e-2)
-        yield Value(f"Howland: largest stress, {element}, n = 16", 4.32,
-                    stresses(strip(element, 16))[1], 0.01)  # fmt: skip
+        yield Value(
+            f"Howland: largest stress, {element}, n = 16",
+            4.32,
+            stresses(strip(element, 16))[1],
+            0.01,
+        )
 
 
 def picture() -> Picture:

@@ -52,10 +52,12 @@ def measure() -> Iterator[Value]:
         for leg, exact in enumerate(legs, 1):
             found = answer["stress"][leg * steps - 1]
             for name, reference, value in zip(("11", "22", "12"), exact, found, strict=True):
-                yield Value(f"stress {name}, leg {leg}, {text}", reference, value, 0.6e-8,
-                            "absolute")  # fmt: skip
-        yield Value(f"equivalent plastic strain, {text}", alpha, answer["PEEQ"][-1], 0.6e-10,
-                    "absolute")  # fmt: skip
+                yield Value(
+                    f"stress {name}, leg {leg}, {text}", reference, value, 0.6e-8, "absolute"
+                )
+        yield Value(
+            f"equivalent plastic strain, {text}", alpha, answer["PEEQ"][-1], 0.6e-10, "absolute"
+        )
 
 
 PROBLEM = Problem(

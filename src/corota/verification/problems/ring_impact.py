@@ -27,9 +27,14 @@ CASES = [("Q4I", False, 200), ("Q4I", True, 0), ("Q4D", True, 0)]
 def flown(element: str, plastic: bool, increments: int = 0, tolerance: float = 2e-3) -> Flight:
     """One impact."""
     return fly(
-        element, plastic=plastic, speed=1.0 if plastic else 2.0, around=AROUND,
-        period=1.0 if plastic else 0.8, increments=increments, tolerance=tolerance,
-    )  # fmt: skip
+        element,
+        plastic=plastic,
+        speed=1.0 if plastic else 2.0,
+        around=AROUND,
+        period=1.0 if plastic else 0.8,
+        increments=increments,
+        tolerance=tolerance,
+    )
 
 
 def impulse(flight: Flight) -> float:
@@ -46,16 +51,22 @@ def measure() -> Iterator[Value]:
     for element, plastic, increments in CASES:
         flight = flown(element, plastic, increments)
         text = f"{'yielding' if plastic else 'elastic'}, {element}"
-        yield Value(f"energy that the balance lacks at most, {text}", 0.0, flight.lack,
-                    0.03 if plastic else 2e-4, "absolute")  # fmt: skip
+        yield Value(
+            f"energy that the balance lacks at most, {text}",
+            0.0,
+            flight.energy_error,
+            0.03 if plastic else 2e-4,
+            "absolute",
+        )
         yield Value(f"momentum along the wall, {text}", 0.0, flight.sideways, 1e-9, "absolute")
-        yield Value(f"momentum that the wall gave, {text}", 1.0 + flight.rebound, impulse(flight),
-                    1e-8)  # fmt: skip
-        yield Value(f"velocity of the rebound at most, {text}", 1.0, flight.rebound, 0.0,
-                    "at most")  # fmt: skip
-    slow, fast = flown("Q4I", True, 0, 8e-3).lack, flown("Q4I", True).lack
-    yield Value("energy lacking with finer increments over that before", 0.7, fast / slow, 0.0,
-                "at most")  # fmt: skip
+        yield Value(
+            f"momentum that the wall gave, {text}", 1.0 + flight.rebound, impulse(flight), 1e-8
+        )
+        yield Value(f"velocity of the rebound at most, {text}", 1.0, flight.rebound, 0.0, "at most")
+    slow, fast = flown("Q4I", True, 0, 8e-3).energy_error, flown("Q4I", True).energy_error
+    yield Value(
+        "energy lacking with finer increments over that before", 0.7, fast / slow, 0.0, "at most"
+    )
 
 
 def picture() -> Picture:
@@ -78,10 +89,12 @@ def study() -> Study:
     sizes = (8e-3, 2e-3, 5e-4)
     return Study(
         "energy that the balance of the yielding ring lacks",
-        {e: ([1.0 / s for s in sizes], [flown(e, True, 0, s).lack for s in sizes])
-         for e in ("Q4I", "Q4D")},
+        {
+            e: ([1.0 / s for s in sizes], [flown(e, True, 0, s).energy_error for s in sizes])
+            for e in ("Q4I", "Q4D")
+        },
         "1 / tolerance of the increments",
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

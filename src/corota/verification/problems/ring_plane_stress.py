@@ -65,8 +65,13 @@ def measure() -> Iterator[Value]:
         r, mine, size = radial_stress(results)
         exact = np.array([radial(float(v)) for v in r])
         error = float(np.sqrt(size @ (mine - exact) ** 2 / size.sum())) / YIELD
-        yield Value(f"mean error of the radial stress / yield stress, {element}", 0.0, error, 0.04,
-                    "absolute")  # fmt: skip
+        yield Value(
+            f"mean error of the radial stress / yield stress, {element}",
+            0.0,
+            error,
+            0.04,
+            "absolute",
+        )
 
 
 def picture() -> Picture:
@@ -79,8 +84,12 @@ def curve() -> Curve:
     p, _, radial = nadai(FRONT)
     r, mine, _ = radial_stress(ring("Q8", 6, "stress", 0.3, p)[0])
     line = np.linspace(INNER, OUTER, 60)
-    return Curve("radius", "radial stress", {"Nadai": (line, [radial(float(v)) for v in line])},
-                 {"points of Q8 6 x 12": (r, mine)})  # fmt: skip
+    return Curve(
+        "radius",
+        "radial stress",
+        {"Nadai": (line, [radial(float(v)) for v in line])},
+        {"points of Q8 6 x 12": (r, mine)},
+    )
 
 
 PROBLEM = Problem(

@@ -55,8 +55,13 @@ def measure() -> Iterator[Value]:
             EXACT.items(), places(solved(element, nx, ny)), strict=True
         ):
             miss = float(np.hypot(*(found - exact)))
-            yield Value(f"miss of the end / L at {part:g}, {element} {nx} x {ny}",
-                        0.0, miss, 2e-3, "absolute")  # fmt: skip
+            yield Value(
+                f"miss of the end / L at {part:g}, {element} {nx} x {ny}",
+                0.0,
+                miss,
+                2e-3,
+                "absolute",
+            )
 
 
 def picture() -> Picture:
@@ -69,9 +74,11 @@ def curve() -> Curve:
     path = places(solved("Q4D", 100, 4), every=True)
     a = np.linspace(1e-6, 2.0 * np.pi, 60)
     return Curve(
-        "x / L", "y / L", {"exact": (np.sin(a) / a, (1.0 - np.cos(a)) / a)},
+        "x / L",
+        "y / L",
+        {"exact": (np.sin(a) / a, (1.0 - np.cos(a)) / a)},
         {"end, Q4D 100 x 4": (path[:, 0], path[:, 1])},
-    )  # fmt: skip
+    )
 
 
 def study() -> Study:

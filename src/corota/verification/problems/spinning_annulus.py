@@ -44,12 +44,20 @@ def growth(results: Results, edge: str) -> float:
 
 def measure() -> Iterator[Value]:
     """Growth for three elements, stresses for one."""
-    for element, n, tolerance in (("Q8", 16, 1e-4), ("Q4I", 32, 5e-3), ("Q4D", 32, 5e-3),
-                                  ("OPT", 32, 5e-3)):  # fmt: skip
+    for element, n, tolerance in (
+        ("Q8", 16, 1e-4),
+        ("Q4I", 32, 5e-3),
+        ("Q4D", 32, 5e-3),
+        ("OPT", 32, 5e-3),
+    ):
         results = solved(element, n)
         for edge, (exact, _) in EXACT.items():
-            yield Value(f"growth of the {edge} edge [m], {element} {n} x {2 * n}", exact,
-                        growth(results, edge), tolerance)  # fmt: skip
+            yield Value(
+                f"growth of the {edge} edge [m], {element} {n} x {2 * n}",
+                exact,
+                growth(results, edge),
+                tolerance,
+            )
     results = solved("Q9", 32)
     for edge, radius in (("inner", INNER), ("outer", OUTER)):
         stress = float(results.nodal("S22")[nearest(results.mesh, radius, 0.0)])

@@ -107,10 +107,11 @@ def curve() -> Curve:
     """Load against angle."""
     loads = np.linspace(0.02, 2.0, 60)
     return Curve(
-        "angle from the vertical [rad]", "P L / k",
+        "angle from the vertical [rad]",
+        "P L / k",
         {"balance of moments": ([exact(p) for p in loads], loads)},
         {"beam and torsion spring": ([angle(p) for p in LOADS], LOADS)},
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

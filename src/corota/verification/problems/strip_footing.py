@@ -69,8 +69,13 @@ def measure() -> Iterator[Value]:
         found = pressures(solved(element, mean, n))
         text = f"{element}{' with mean dilatation' if mean else ''}, n = {n}"
         yield Value(f"mean pressure / k, {text}", LIMIT, found[-1], tolerance)
-        yield Value(f"growth in the last increment, {text}", 0.0, found[-1] / found[-2] - 1.0,
-                    1e-3, "absolute")  # fmt: skip
+        yield Value(
+            f"growth in the last increment, {text}",
+            0.0,
+            found[-1] / found[-2] - 1.0,
+            1e-3,
+            "absolute",
+        )
     locked = pressures(solved("Q4", False, 8))
     yield Value("mean pressure / k, Q4 that locks, n = 8", 1.2 * LIMIT, locked[-1], 0.0, "at least")
 
@@ -84,8 +89,10 @@ def curve() -> Curve:
     """Pressure against the way down."""
     series = {}
     for label, element, mean in (
-        ("Q4, locks", "Q4", False), ("Q4 with mean dilatation", "Q4", True), ("Q8R", "Q8R", False),
-    ):  # fmt: skip
+        ("Q4, locks", "Q4", False),
+        ("Q4 with mean dilatation", "Q4", True),
+        ("Q8R", "Q8R", False),
+    ):
         results = solved(element, mean, 8)
         series[label] = ([PRESS * f.factor for f in results.frames], pressures(results))
     return Curve("way down", "mean pressure / k", series, {"limit": ([PRESS], [LIMIT])})
@@ -96,11 +103,15 @@ def study() -> Study:
     cells = (4, 8, 16)
     return Study(
         "error of the limit load",
-        {e: ([float(n) for n in cells],
-             [abs(pressures(solved(e, m, n))[-1] / LIMIT - 1.0) for n in cells])
-         for e, m in (("Q8R", False), ("Q4I", False), ("Q4", True))},
+        {
+            e: (
+                [float(n) for n in cells],
+                [abs(pressures(solved(e, m, n))[-1] / LIMIT - 1.0) for n in cells],
+            )
+            for e, m in (("Q8R", False), ("Q4I", False), ("Q4", True))
+        },
         "cells below half of the footing",
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

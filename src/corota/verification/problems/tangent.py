@@ -35,8 +35,13 @@ def measure() -> Iterator[Value]:
     """Every element and local strain."""
     for element in ELEMENTS:
         for strain in STRAINS:
-            yield Value(f"error of the tangent, {element}, {strain}", 0.0, error(element, strain),
-                        1e-7, "absolute")  # fmt: skip
+            yield Value(
+                f"error of the tangent, {element}, {strain}",
+                0.0,
+                error(element, strain),
+                1e-7,
+                "absolute",
+            )
 
 
 PROBLEM = Problem(

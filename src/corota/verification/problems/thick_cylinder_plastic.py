@@ -24,8 +24,11 @@ from corota.verification.models import DRILLING, cell, nearest, run
 INNER, OUTER, YOUNG, YIELD = 100.0, 200.0, 210000.0, 240.0
 #: Elements that do not lock, with the options that keep them from it.
 ELEMENTS: dict[str, dict[str, Any]] = {
-    "Q4I": {}, "Q8R": {}, "Q4D": {"mean_dilatation": True}, "Q4": {"mean_dilatation": True},
-}  # fmt: skip
+    "Q4I": {},
+    "Q8R": {},
+    "Q4D": {"mean_dilatation": True},
+    "Q4": {"mean_dilatation": True},
+}
 #: Pressure and outer displacement of steel, nu = 0.3.
 STEEL = [(160.0, 0.111633), (180.0, 0.153985), (190.0, 0.20537)]
 
@@ -59,15 +62,27 @@ def measure() -> Iterator[Value]:
     for element, options in ELEMENTS.items():
         for c in (120.0, 160.0):
             p, exact = hill(c, 0.4999)
-            yield Value(f"outer displacement, plastic to {c:g}, {element} 12 x 24", exact,
-                        ring(element, 12, "strain", 0.4999, p, **options)[1], 0.01)  # fmt: skip
+            yield Value(
+                f"outer displacement, plastic to {c:g}, {element} 12 x 24",
+                exact,
+                ring(element, 12, "strain", 0.4999, p, **options)[1],
+                0.01,
+            )
     results = ring("Q9", 24, "strain", 0.3, 1.0, 1e9)[0]
     node = nearest(results.mesh, INNER, 0.0)
-    yield Value("pressure at first yield, Q9 24 x 48", 103.75,
-                YIELD / float(results.nodal("MISES")[node]), 3e-3)  # fmt: skip
+    yield Value(
+        "pressure at first yield, Q9 24 x 48",
+        103.75,
+        YIELD / float(results.nodal("MISES")[node]),
+        3e-3,
+    )
     for p, exact in STEEL:
-        yield Value(f"outer displacement at {p:g}, nu = 0.3, Q8R 12 x 24", exact,
-                    ring("Q8R", 12, "strain", 0.3, p)[1], 3e-3)  # fmt: skip
+        yield Value(
+            f"outer displacement at {p:g}, nu = 0.3, Q8R 12 x 24",
+            exact,
+            ring("Q8R", 12, "strain", 0.3, p)[1],
+            3e-3,
+        )
 
 
 def picture() -> Picture:

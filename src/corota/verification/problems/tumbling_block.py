@@ -36,13 +36,16 @@ def measure() -> Iterator[Value]:
     push = flown("block", "Q4I").frames[-1].scalars
     # The pulse is sin^2: half of its height times its length, over a side of 1.
     for axis, force in (("x", 10.0), ("y", 30.0)):
-        yield Value(f"momentum {axis} of the block", 0.5 * PULSE * force, push[f"momentum {axis}"],
-                    1e-9)  # fmt: skip
+        yield Value(
+            f"momentum {axis} of the block", 0.5 * PULSE * force, push[f"momentum {axis}"], 1e-9
+        )
     lost = drift(flown("block", "Q4I", "hht"))
-    yield Value("angular momentum that HHT loses at least", 1e-6, lost["angular momentum"], 0.0,
-                "at least")  # fmt: skip
-    yield Value("angular momentum that HHT loses at most", 1e-2, lost["angular momentum"], 0.0,
-                "at most")  # fmt: skip
+    yield Value(
+        "angular momentum that HHT loses at least", 1e-6, lost["angular momentum"], 0.0, "at least"
+    )
+    yield Value(
+        "angular momentum that HHT loses at most", 1e-2, lost["angular momentum"], 0.0, "at most"
+    )
     yield Value("linear momentum that HHT loses", 0.0, lost["momentum x"], 1e-9, "absolute")
 
 

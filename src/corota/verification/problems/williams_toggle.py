@@ -51,10 +51,11 @@ def curve() -> Curve:
     results, apex = solved()
     drop = [-float(f.U[apex, 1]) for f in results.frames]
     return Curve(
-        "deflection of the apex [in]", "load [lbf]",
+        "deflection of the apex [in]",
+        "load [lbf]",
         {"Q8": (drop, [f.factor for f in results.frames])},
         {"exact beam": ([e[1] for e in EXACT], [e[0] for e in EXACT])},
-    )  # fmt: skip
+    )
 
 
 PROBLEM = Problem(

@@ -64,34 +64,46 @@ def measure() -> Iterator[Value]:
     found = stresses([(0.1, 0.0, 0.0)])
     yield Value("tension without strain across, limit", 2.0 * YIELD / root, found[0, 0], 1e-6)
     yield Value("stress across there", YIELD / root, found[0, 1], 1e-3)
-    for name, iso, kin in (("isotropic", 3000.0, 0.0), ("kinematic", 0.0, 3000.0),
-                           ("both", 1000.0, 2000.0)):  # fmt: skip
+    for name, iso, kin in (
+        ("isotropic", 3000.0, 0.0),
+        ("kinematic", 0.0, 3000.0),
+        ("both", 1000.0, 2000.0),
+    ):
         slope = YOUNG * 3000.0 / (YOUNG + 3000.0)
         top = YIELD + slope * (0.01 - YIELD / YOUNG)
         plastic = 0.01 - top / YOUNG
         # The elastic range is as wide as the yield stress has become, both ways.
         low = top - 2.0 * (YIELD + iso * plastic)
         turn = 0.01 - (top - low) / YOUNG
-        at = stresses([(0.01, None, 0.0), (turn, None, 0.0), (turn - 0.001, None, 0.0)],
-                      isotropic=iso, kinematic=kin)  # fmt: skip
+        at = stresses(
+            [(0.01, None, 0.0), (turn, None, 0.0), (turn - 0.001, None, 0.0)],
+            isotropic=iso,
+            kinematic=kin,
+        )
         yield Value(f"stress at a strain of 0.01, {name} hardening", top, at[0, 0], 1e-9)
         yield Value(f"stress at reverse yield, {name} hardening", low, at[1, 0], 1e-9)
-        yield Value(f"slope beyond it, {name} hardening", slope, (at[1, 0] - at[2, 0]) / 0.001,
-                    1e-7)  # fmt: skip
+        yield Value(
+            f"slope beyond it, {name} hardening", slope, (at[1, 0] - at[2, 0]) / 0.001, 1e-7
+        )
 
 
 def curve() -> Curve:
     """Stress against strain of the three loadings without hardening."""
     size = np.linspace(0.0, 0.006, 49)[1:]
-    cases = {"shear": (0.0, 0.0, 1.0), "tension, no strain across": (1.0, 0.0, 0.0),
-             "equal tension": (1.0, 1.0, 0.0)}  # fmt: skip
+    cases = {
+        "shear": (0.0, 0.0, 1.0),
+        "tension, no strain across": (1.0, 0.0, 0.0),
+        "equal tension": (1.0, 1.0, 0.0),
+    }
     series = {}
     for name, (xx, yy, angle) in cases.items():
         found = stresses([(xx * s, yy * s, angle * s) for s in size])
         column = found[:, 2 if name == "shear" else 0] / YIELD
         series[name] = ([0.0, *size], [0.0, *column])
-    limits = {f"limit, {n}": ([0.006], [v]) for n, v in zip(
-        cases, (1.0 / 3.0**0.5, 2.0 / 3.0**0.5, 1.0), strict=True)}  # fmt: skip
+    limits = {
+        f"limit, {n}": ([0.006], [v])
+        for n, v in zip(cases, (1.0 / 3.0**0.5, 2.0 / 3.0**0.5, 1.0), strict=True)
+    }
     return Curve("strain", "stress / yield stress", series, limits)
 
 

@@ -30,8 +30,9 @@ def one(element: str) -> Model:
         x = TRIANGLE[:n] @ (SKEW[[1, 3]] - SKEW[0])
     else:
         r, s = QUAD[:n].T
-        weights = 0.25 * np.stack([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s),
-                                   (1 - r) * (1 + s)], axis=1)  # fmt: skip
+        weights = 0.25 * np.stack(
+            [(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)], axis=1
+        )
         x = weights @ SKEW
     return single(element, x, E=1.0, nu=0.3)
 
@@ -57,10 +58,16 @@ def measure() -> Iterator[Value]:
     """Every element, alone and beside another."""
     for element in ELEMENTS:
         expected = 4 if element == "Q8R" else 3
-        yield Value(f"zero modes of one cell, {element}", expected, zeros(one(element), element),
-                    0.0, "absolute")  # fmt: skip
-        yield Value(f"zero modes of two cells, {element}", 3, zeros(two(element), element), 0.0,
-                    "absolute")  # fmt: skip
+        yield Value(
+            f"zero modes of one cell, {element}",
+            expected,
+            zeros(one(element), element),
+            0.0,
+            "absolute",
+        )
+        yield Value(
+            f"zero modes of two cells, {element}", 3, zeros(two(element), element), 0.0, "absolute"
+        )
 
 
 PROBLEM = Problem(

@@ -16,7 +16,7 @@ from corota.analysis.newton import ElementFailure, Settings
 from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.corrector import Point
 from corota.analysis.procedures.path.equations import path_system
-from corota.analysis.procedures.path.tracer import End, Follower, PathStalled, Plan
+from corota.analysis.procedures.path.tracer import End, PathStalled, PathTracer, Plan
 from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
 from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label, dof_index
 from corota.results.observer import Iteration
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.newton import Judgement
+    from corota.analysis.newton import ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.procedures.path.stability import Critical
     from corota.analysis.procedures.path.tracer import Increment
@@ -107,13 +107,13 @@ class PathStep:
         at = self.along.evaluate(start, self.factor * period)
         force, move = system.load_rate(state.u)
         heats = system.free.largest(system.conditions.heating) > 0.0
-        if not (np.any(force[~system.conditions.held]) or np.any(move) or heats):
+        if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
             raise ModelError(
                 f"step {self.number} follows a path, but nothing in it grows with the load "
                 "factor: give it a load or a moving support of its own",
                 step.where,
             )
-        follower = Follower(
+        follower = PathTracer(
             self.along,
             Point(start, self.factor, at),
             period,
@@ -173,7 +173,7 @@ class PathStep:
             "dt": found.size * self.step.period,
             "iterations": float(found.iterations),
             "attempts": float(found.attempts),
-            "residual": system.judge(at, u).size,
+            "residual": system.residual_norms(at, u).size,
             "external work": state.energies.work,
             "negative pivots": float(found.negative),
         }
@@ -187,10 +187,14 @@ class PathStep:
             kind = found.critical.kind
             scalars[f"{kind} point"] = 1.0
             critical = CriticalPoint(
-                kind, self.number, self.increment, self.factor,
-                system.by_node(found.critical.mode[: system.n_dofs]), found.critical.projection,
+                kind,
+                self.number,
+                self.increment,
+                self.factor,
+                system.by_node(found.critical.mode[: system.n_dofs]),
+                found.critical.projection,
                 found.critical.negative,
-            )  # fmt: skip
+            )
             state.critical.append(critical)
             state.notes.append(str(critical))
         if found.control == "mode" and self.located is not None:
@@ -232,7 +236,7 @@ class PathStep:
         self,
         attempt: int,
         iteration: int,
-        judged: Judgement,
+        norms: ResidualNorms,
         correction: float,
         factor: float,
         size: float,
@@ -244,11 +248,11 @@ class PathStep:
                 self.increment + 1,
                 attempt,
                 iteration,
-                judged.force,
-                judged.moment,
+                norms.force,
+                norms.moment,
                 correction,
-                int(system.node_of_dof[judged.worst]),
-                int(system.component[judged.worst]),
+                int(system.node_of_dof[norms.worst]),
+                int(system.component[norms.worst]),
                 "",
                 size,
                 factor,

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.procedures.path.stability import Critical, Station
-    from corota.analysis.procedures.path.tracer import Follower
+    from corota.analysis.procedures.path.tracer import PathTracer
 
     Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ class Branch:
     attempts: int
 
 
-def switch(tracer: Follower, critical: Critical) -> Increment:
+def switch(tracer: PathTracer, critical: Critical) -> Increment:
     """Leave along a branch: its amplitude is held, load and shape adapt.
 
     Raises
@@ -91,12 +91,12 @@ def switch(tracer: Follower, critical: Critical) -> Increment:
     return _take(tracer, found[wanted - 1])
 
 
-def _cosine(tracer: Follower, a: Branch, b: Branch) -> float:
+def _cosine(tracer: PathTracer, a: Branch, b: Branch) -> float:
     counted = tracer.system.counted
     return float(a.direction[counted] @ b.direction[counted])
 
 
-def _directions(tracer: Follower, critical: Critical) -> list[Floats]:
+def _directions(tracer: PathTracer, critical: Critical) -> list[Floats]:
     """Directions to try: the mode, or those all around a null space of several."""
     before, after = critical.negative
     counted = tracer.system.counted
@@ -114,7 +114,7 @@ def _directions(tracer: Follower, critical: Critical) -> list[Floats]:
     return out
 
 
-def _null_space(tracer: Follower, critical: Critical, count: int) -> list[Floats]:
+def _null_space(tracer: PathTracer, critical: Critical, count: int) -> list[Floats]:
     """Softest modes at a multiple point, orthonormal in the displacements."""
     system = tracer.system
     try:
@@ -126,8 +126,8 @@ def _null_space(tracer: Follower, critical: Critical, count: int) -> list[Floats
     x = np.random.default_rng(7).standard_normal((n, count))
     x[:, 0] = critical.mode[:n]
     for _ in range(12):
-        x, _ = np.linalg.qr(np.column_stack([system.solve_again(c)[:n] for c in x.T]))
-    whole = np.column_stack([system.solve_again(c) for c in x.T])
+        x, _ = np.linalg.qr(np.column_stack([system.solve_with_last_factor(c)[:n] for c in x.T]))
+    whole = np.column_stack([system.solve_with_last_factor(c) for c in x.T])
     whole = whole / np.linalg.norm(whole[:n], axis=0)
     basis, r = np.linalg.qr(whole[counted])
     whole = whole @ np.linalg.inv(r)
@@ -147,7 +147,7 @@ def _null_space(tracer: Follower, critical: Critical, count: int) -> list[Floats
     return out
 
 
-def _enter(tracer: Follower, along: Floats) -> tuple[Branch | None, str]:
+def _enter(tracer: PathTracer, along: Floats) -> tuple[Branch | None, str]:
     """A state on the branch in a direction, before any end of the path, and why there is none."""
     system, base = tracer.system, tracer.base
     counted = np.flatnonzero(system.counted & (along != 0.0))
@@ -162,7 +162,7 @@ def _enter(tracer: Follower, along: Floats) -> tuple[Branch | None, str]:
         tracer.guess = guess  # the branch turns off: the angle is not judged
         station, reason = None, done.reason
         if done.point is not None:
-            station, reason = tracer._judge(done.point, tracer.size)
+            station, reason = tracer._check_growth(done.point, tracer.size)
         tracer.guess = None
         if station is None:
             continue
@@ -176,7 +176,7 @@ def _enter(tracer: Follower, along: Floats) -> tuple[Branch | None, str]:
     return beyond, reason
 
 
-def _take(tracer: Follower, branch: Branch) -> Increment:
+def _take(tracer: PathTracer, branch: Branch) -> Increment:
     """Commit a state on a branch, or the end of the path if that comes first."""
     base, system = tracer.base, tracer.system
     station = branch.station
@@ -212,7 +212,7 @@ def _take(tracer: Follower, branch: Branch) -> Increment:
     )
 
 
-def returned(tracer: Follower, before: Point, now: Point, origin: Point) -> bool:
+def returned(tracer: PathTracer, before: Point, now: Point, origin: Point) -> bool:
     """Whether an increment on a branch passes the point at which the branch began."""
     metric = tracer.metric
     du, df = now.u - before.u, now.factor - before.factor

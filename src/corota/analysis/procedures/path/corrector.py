@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.newton import DIVERGED, ElementFailure, GiveUp, Judgement, Settings
+from corota.analysis.newton import DIVERGED, ElementFailure, GiveUp, ResidualNorms, Settings
 from corota.analysis.procedures.path.controls import product
 from corota.errors import SingularError
 
@@ -117,7 +117,7 @@ def correct(
     period: float,
     control: Control,
     settings: Settings,
-    report: Callable[[int, Judgement, float, float], None] | None = None,
+    report: Callable[[int, ResidualNorms, float, float], None] | None = None,
     loose: bool = False,
 ) -> Corrected:
     """Find the equilibrium that meets a control, starting from a guess.
@@ -162,12 +162,12 @@ def _search(
     period: float,
     control: Control,
     settings: Settings,
-    report: Callable[[int, Judgement, float, float], None] | None,
+    report: Callable[[int, ResidualNorms, float, float], None] | None,
 ) -> Any:
     """Fill in what became of an attempt; returns the last evaluation, None if there is none."""
     u, factor = guess.u, guess.factor
     n, best, at = system.n_dofs, np.inf, None
-    judged: Judgement | None = None
+    norms: ResidualNorms | None = None
     correction = 0.0
     for iteration in range(settings.max_iterations + 1):
         try:
@@ -175,26 +175,26 @@ def _search(
         except ElementFailure as error:
             done.reason = str(error)
             return at
-        before, judged = judged, system.judge(at, u)
-        settled = judged.size <= settings.tolerance
-        if not settled and before is not None and judged.size >= 0.1 * before.size:
-            settled = judged.rounding(settings.tolerance)
+        before, norms = norms, system.residual_norms(at, u)
+        settled = norms.size <= settings.tolerance
+        if not settled and before is not None and norms.size >= 0.1 * before.size:
+            settled = norms.rounding(settings.tolerance)
             if settled:
-                judged.force, judged.moment = judged.honest
-        done.sizes.append(judged.size)
+                norms.force, norms.moment = norms.honest
+        done.sizes.append(norms.size)
         done.iterations = iteration
         if iteration and report is not None:
-            report(iteration, judged, correction, factor)
-        if not np.isfinite(judged.size):
+            report(iteration, norms, correction, factor)
+        if not np.isfinite(norms.size):
             done.reason = "the residual is not finite"
             return at
         if settled:
             done.point = Point(u, factor, at)
             return at
-        if iteration > 1 and judged.size > DIVERGED * max(best, 1e-6):
-            done.reason = f"diverges: the residual grew to {judged.size:.1e}"
+        if iteration > 1 and norms.size > DIVERGED * max(best, 1e-6):
+            done.reason = f"diverges: the residual grew to {norms.size:.1e}"
             return at
-        best = min(best, judged.size)
+        best = min(best, norms.size)
         if iteration == settings.max_iterations:
             break
         force, move = system.load_rate(u)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation, System
-    from corota.analysis.newton import Judgement
+    from corota.analysis.newton import ResidualNorms
     from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
 
     Floats = NDArray[np.float64]
@@ -58,7 +58,7 @@ class PathSystem(Protocol):
         """Residual and tangent."""
         ...
 
-    def judge(self, at: Any, u: Floats) -> Judgement:
+    def residual_norms(self, at: Any, u: Floats) -> ResidualNorms:
         """Size of the residual."""
         ...
 
@@ -85,7 +85,7 @@ class PathSystem(Protocol):
         """Change per unit of load factor, and negative pivots (-1 if unknown)."""
         ...
 
-    def solve_again(self, rhs: Floats) -> Floats:
+    def solve_with_last_factor(self, rhs: Floats) -> Floats:
         """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
         ...
 
@@ -124,8 +124,15 @@ class SmoothPath:
     def __init__(self, system: System) -> None:
         self.system = system
         self.n_dofs, self.counted, self.length = system.n_dofs, system.counted, system.length
-        self.evaluate, self.judge, self.commit = system.evaluate, system.judge, system.commit
-        self.load_rate, self.solve_again = system.load_rate, system.solve_again
+        self.evaluate, self.residual_norms, self.commit = (
+            system.evaluate,
+            system.residual_norms,
+            system.commit,
+        )
+        self.load_rate, self.solve_with_last_factor = (
+            system.load_rate,
+            system.solve_with_last_factor,
+        )
         self.rate = system.correct
 
     def start(self, u: Floats) -> Floats:
@@ -157,18 +164,18 @@ class SmoothPath:
     def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """See :class:`PathSystem`; `at` is overwritten."""
         rhs = np.stack([-at.residual, force], axis=1)
-        held = np.stack([np.zeros_like(move), move], axis=1)
-        x, _ = self.system.correct(at, rhs, held)
+        constrained = np.stack([np.zeros_like(move), move], axis=1)
+        x, _ = self.system.correct(at, rhs, constrained)
         return x[:, 0], x[:, 1]
 
 
 def path_system(system: System, notes: list[str]) -> Any:
     """The system as a path sees it; `notes` takes remarks for the user."""
-    if system.touching is None:
+    if system.contact_term is None:
         return SmoothPath(system)
-    from corota.analysis.terms.contact.path import TouchingPath
+    from corota.analysis.terms.contact.path import ContactPathEquations
 
-    return TouchingPath(system, notes)
+    return ContactPathEquations(system, notes)
 
 
 __all__ = ["NOT_CONSERVATIVE", "PathSystem", "SmoothPath", "path_system"]

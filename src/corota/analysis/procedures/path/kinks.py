@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 #: Cosine from which two directions tell the sense of each other.
-ALIKE = 0.5
+MIN_COSINE = 0.5
 
 
 def direction(
@@ -69,7 +69,7 @@ def direction(
         return tangent, None
     length = metric.size(du, df) or 1.0
     along = 0.0 if aim is None else metric.dot(tangent.u, tangent.factor, aim.u, aim.factor)
-    if abs(along) > ALIKE and along * ahead > 0.0:
+    if abs(along) > MIN_COSINE and along * ahead > 0.0:
         return (tangent if along > 0.0 else tangent.reversed()), 0.0
     aside = _aside(metric, du, df, old, tangent)
     if ahead < 0.0:

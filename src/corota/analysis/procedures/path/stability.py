@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 #: A critical point is located to this share of the increment that holds it.
-SHARPNESS = 1e-7
+CRITICAL_POINT_TOLERANCE = 1e-7
 #: A kink to this share, looked for beside where it is expected by one of the bracket.
-BLUNT, ASIDE = 1e-4, 0.02
+BLUNT, BISECTION_OFFSET = 1e-4, 0.02
 #: Behind a critical point the next one is looked for from this share of the increment on.
 CLEAR = 1e-2
 #: Distances at which a neighbour of a point without inverse is tried.
@@ -116,7 +116,7 @@ def softest_mode(system: PathSystem, start: Floats | None) -> tuple[float, Float
     x /= np.linalg.norm(x)
     value = 0.0
     for _ in range(40):
-        whole = system.solve_again(x)
+        whole = system.solve_with_last_factor(x)
         y = whole[:n]
         size = float(np.linalg.norm(y))
         if size == 0.0 or not np.isfinite(size):
@@ -179,8 +179,14 @@ def locate(
         if kink:
             # Near the crossing, but so that both ends of the bracket come nearer in turn.
             left = high.share - low.share
-            share = crossing(low, high) + (ASIDE if best and best[1] is low else -ASIDE) * left
-            share = min(max(share, low.share + ASIDE * left), high.share - ASIDE * left)
+            share = (
+                crossing(low, high)
+                + (BISECTION_OFFSET if best and best[1] is low else -BISECTION_OFFSET) * left
+            )
+            share = min(
+                max(share, low.share + BISECTION_OFFSET * left),
+                high.share - BISECTION_OFFSET * left,
+            )
         sample = None
         now: Station | None = low
         for distance in NEARBY:
@@ -214,7 +220,7 @@ def locate(
         tests.append((now.share, test))
         if best is None or kink or abs(value) <= abs(best[0]):
             best = (value, now, mode)
-        if high.share - low.share <= (BLUNT if kink else SHARPNESS):
+        if high.share - low.share <= (BLUNT if kink else CRITICAL_POINT_TOLERANCE):
             break
         if not kink and _settled(tests):
             break
@@ -262,7 +268,7 @@ def _settled(tests: list[tuple[float, float]]) -> bool:
     if len(tests) < 3:
         return False
     (a, f), (b, g) = tests[-2:]
-    return abs(b - a) <= SHARPNESS and abs(g) <= abs(f)
+    return abs(b - a) <= CRITICAL_POINT_TOLERANCE and abs(g) <= abs(f)
 
 
 def work_share(system: PathSystem, point: Point, mode: Floats) -> float:

@@ -36,20 +36,20 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.newton import Judgement, Settings
+    from corota.analysis.newton import ResidualNorms, Settings
     from corota.analysis.procedures.path.controls import Control
     from corota.analysis.procedures.path.corrector import Corrected
     from corota.analysis.procedures.path.equations import PathSystem
 
     Floats = NDArray[np.float64]
-    Report = Callable[[int, int, Judgement, float, float, float], None]
+    Report = Callable[[int, int, ResidualNorms, float, float, float], None]
 
 #: Iterations that an increment should take ...
 DESIRED = 5
 #: ... and the angle by which the path should turn over it [rad].
 TURN = 0.35
 #: An increment over which the path turns by more is solved again, shorter [rad].
-SHARPEST = 1.05
+MAX_TURN = 1.05
 #: Bounds on the change of size from one increment to the next.
 SHRINK, GROW = 0.5, 2.0
 #: Share to which a failed attempt is cut.
@@ -57,9 +57,9 @@ CUT = 0.4
 #: Residual above which a start is out of balance.
 UNBALANCED = 1e-6
 #: Least part of a direction in the mean of two, of which the sharpest kink has none.
-SHARP = 0.02
+MIN_BISECTOR = 0.02
 #: Share of an increment with a kink that may lie beside the directions before and behind ...
-ASIDE = 0.3
+MAX_KINK_OFFSET = 0.3
 #: ... and attempts after which such a turn is taken as it is.
 KINK = 3
 #: Attempts at an increment before the path is given up ...
@@ -68,7 +68,7 @@ MAX_ATTEMPTS = 16
 OTHER_CONTROL = 6
 
 
-class Follower:
+class PathTracer:
     """A path from a starting point; iterate to get its increments.
 
     Parameters
@@ -164,8 +164,8 @@ class Follower:
         A start that is out of balance, as surfaces that overlap, and one where something moves
         freely, as bodies before they touch, has none before a first load has found its hold.
         """
-        judged = self.system.judge(self.base.at, self.base.u)
-        balanced = judged.size <= max(UNBALANCED, 10.0 * self.settings.tolerance)
+        norms = self.system.residual_norms(self.base.at, self.base.u)
+        balanced = norms.size <= max(UNBALANCED, 10.0 * self.settings.tolerance)
         with suppress(SingularError):
             self.tangent, self.metric = tangent_at(self.system, self.base)
             if balanced:
@@ -195,9 +195,14 @@ class Follower:
             self._commit(done.point)
             self.base = done.point
             return Increment(
-                done.point, self.tangent, done.iterations, self.attempt, length,
-                self.tangent.negative, "load",
-            )  # fmt: skip
+                done.point,
+                self.tangent,
+                done.iterations,
+                self.attempt,
+                length,
+                self.tangent.negative,
+                "load",
+            )
         raise PathStalled(f"no equilibrium near the start: {reason}")
 
     # -- one increment -----------------------------------------------------------------
@@ -212,7 +217,7 @@ class Follower:
             done = self._solve(guess, control, size)
             reason = done.reason
             if done.point is not None:
-                station, reason = self._judge(done.point, size)
+                station, reason = self._check_growth(done.point, size)
                 if station is not None:
                     found = self._finish(station, done, size, name)
                     if found is not None:
@@ -282,19 +287,25 @@ class Follower:
         return Arc(radius, self.system.counted, weight), "arc"
 
     def _solve(self, guess: Point, control: Control, size: float, loose: bool = False) -> Corrected:
-        def report(iteration: int, judged: Judgement, correction: float, factor: float) -> None:
+        def report(iteration: int, norms: ResidualNorms, correction: float, factor: float) -> None:
             if self.report is not None:
-                self.report(self.attempt, iteration, judged, correction, factor, size)
+                self.report(self.attempt, iteration, norms, correction, factor, size)
 
         done = correct(
-            self.system, self.base, guess, self.period, control,
-            self.settings, report, loose,
-        )  # fmt: skip
+            self.system,
+            self.base,
+            guess,
+            self.period,
+            control,
+            self.settings,
+            report,
+            loose,
+        )
         self._evaluated = done.point
         self.iterations += done.iterations
         return done
 
-    def _judge(self, point: Point, size: float) -> tuple[Station | None, str]:
+    def _check_growth(self, point: Point, size: float) -> tuple[Station | None, str]:
         """Direction at a new point, if it can be the next on this path."""
         du, df = point.u - self.base.u, point.factor - self.base.factor
         length = self.metric.size(du, df)
@@ -310,9 +321,9 @@ class Follower:
             if aside is not None and self.aim is not None:
                 there = self.aim[0]
                 aside = self.metric.size(point.u - there.u, point.factor - there.factor) / length
-            if aside is not None and aside > ASIDE:
+            if aside is not None and aside > MAX_KINK_OFFSET:
                 return None, "the path has more than one kink"
-            if aside is None and (turn > SHARPEST or length > 3.0 * size):
+            if aside is None and (turn > MAX_TURN or length > 3.0 * size):
                 return None, f"the path turns by {math.degrees(turn):.0f} degrees"
         return Station(1.0, point, tangent, aside is not None), ""
 
@@ -367,9 +378,15 @@ class Follower:
         else:
             before = critical.negative[0]
             found = Increment(
-                point, tangent, done.iterations, self.attempt, length, before, name,
+                point,
+                tangent,
+                done.iterations,
+                self.attempt,
+                length,
+                before,
+                name,
                 None if critical.kind == "kink" else critical,
-            )  # fmt: skip
+            )
             self._go_on_behind(critical, end, size)
         self.base = point
         return found
@@ -437,7 +454,7 @@ class Follower:
             return metric.dot(mean.u, mean.factor, u, f)
 
         whole, before, behind = part(du, df), part(old.u, old.factor), part(new.u, new.factor)
-        kink = end.behind and min(whole, before - SHARP, behind - SHARP) > 0.0
+        kink = end.behind and min(whole, before - MIN_BISECTOR, behind - MIN_BISECTOR) > 0.0
 
         def place(share: float) -> tuple[Floats, float, Control]:
             if not kink and self._still(metric.displacement(du)):
@@ -497,7 +514,7 @@ class Follower:
         done = self._solve(Point(u, factor, None), end.control(self.base), share)
         if done.point is None:
             return None
-        found, _ = self._judge(done.point, self.size)
+        found, _ = self._check_growth(done.point, self.size)
         return None if found is None else (found.point, found.tangent)
 
     def _ends_after(self, found: Increment, count: int) -> bool:
@@ -513,4 +530,4 @@ def _arc_cosine(x: float) -> float:
     return math.acos(min(max(x, -1.0), 1.0))
 
 
-__all__ = ["End", "Follower", "Increment", "PathStalled", "Plan"]
+__all__ = ["End", "Increment", "PathStalled", "PathTracer", "Plan"]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.linear.saddle_point import Bordered
+    from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ STABILISE = 1e-3
 
 
 @dataclass
-class Touch:
+class ContactState:
     """All pairs at a state.
 
     Parameters
@@ -57,7 +57,7 @@ class Touch:
     states: list[NDArray[np.int8]] = field(default_factory=list)
 
 
-class Touching:
+class ContactTerm:
     """All contact pairs and ties of a model.
 
     Parameters
@@ -88,7 +88,7 @@ class Touching:
             self.n += pair.width
         self.committed = np.zeros(self.n)
         self.u = np.zeros(system.n_dofs)
-        self.at: Touch | None = None
+        self.at: ContactState | None = None
         self.period, self.number = 1.0, 0
         self.time = 0.0
         self.notes: list[str] = []
@@ -103,7 +103,9 @@ class Touching:
         self._dof = np.append(dof, -1)
         self._stiff = False
         self.told: set[int] = set()  # dropped constraints that were reported
-        self.border: Bordered | None = None  # linear algebra with the multipliers, made when needed
+        self.border: SaddlePointSystem | None = (
+            None  # linear algebra with the multipliers, made when needed
+        )
 
     # -- steps -------------------------------------------------------------------------
 
@@ -119,7 +121,7 @@ class Touching:
         for pair in self.pairs:
             pair.fixed = pair.start = None
             if self.persistent and not pair.tied and pair.law is None:
-                pair.persist(pair.evaluate(x, x, self.system.turning))
+                pair.persist(pair.evaluate(x, x, self.system.nlgeom))
 
     def _start(self) -> None:
         """Look at the gaps of the start; report, adjust or note what to ramp."""
@@ -199,7 +201,9 @@ class Touching:
             out.append((p, q if pair.two else np.zeros(pair.n)))
         return out
 
-    def evaluate(self, u: Floats, multipliers: Floats, step_time: float, values: Floats) -> Touch:
+    def evaluate(
+        self, u: Floats, multipliers: Floats, step_time: float, values: Floats
+    ) -> ContactState:
         """All pairs at a trial state.
 
         Parameters
@@ -216,7 +220,7 @@ class Touching:
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
                 self._ramp(pair, step_time)
-                terms = pair.evaluate(x, old, system.turning)
+                terms = pair.evaluate(x, old, system.nlgeom)
             found.append(terms)
             part = p[terms.constraint, None] * terms.gap_gradient
             if pair.two:
@@ -225,7 +229,7 @@ class Touching:
             np.add.at(force, where, part)
             np.add.at(size, where, np.abs(part))
         damping = self._damping(step_time)
-        return Touch(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
+        return ContactState(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
 
     def _ramp(self, pair: Pair, step_time: float) -> None:
         item = pair.item
@@ -265,40 +269,44 @@ class Touching:
 
     # -- increments --------------------------------------------------------------------
 
-    def commit(self, u: Floats, touch: Touch, step_time: float) -> None:
+    def commit(self, u: Floats, contact_state: ContactState, step_time: float) -> None:
         """Accept a state."""
         states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
         if self.at is not None:
             states = self.at.states
         for pair, terms, (_, q), (_, before), state in zip(
-            self.pairs, touch.terms, self.parts(touch.multipliers), self.parts(self.committed),
-            states, strict=True,
-        ):  # fmt: skip
+            self.pairs,
+            contact_state.terms,
+            self.parts(contact_state.multipliers),
+            self.parts(self.committed),
+            states,
+            strict=True,
+        ):
             pair.commit(terms, q, before, state == CLOSED)
         # The equations of both ends have these forces, and so has the work of the loads.
         before, self._damping_force = self._damping_force, np.zeros(0)
-        if touch.damping is not None:
-            self._damping_force = touch.damping * (u - self.u)
+        if contact_state.damping is not None:
+            self._damping_force = contact_state.damping * (u - self.u)
             mean = self._damping_force + (before if len(before) else 0.0)
             self.damping_work += 0.5 * float(mean @ (u - self.u))
-        self.u, self.committed, self.time = u.copy(), touch.multipliers.copy(), step_time
-        touch.states = [
+        self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
+        contact_state.states = [
             pair.states(terms, p, q)
             for pair, terms, (p, q) in zip(
-                self.pairs, touch.terms, self.parts(self.committed), strict=True
+                self.pairs, contact_state.terms, self.parts(self.committed), strict=True
             )
         ]
         # Rounding leaves crumbs on what is open.
         for pair, state, tractions in zip(
-            self.pairs, touch.states, self.parts(self.committed), strict=True
+            self.pairs, contact_state.states, self.parts(self.committed), strict=True
         ):
             for part in tractions if not pair.tied else ():
                 part[state == OPEN] = 0.0
-        for i, (pair, terms) in enumerate(zip(self.pairs, touch.terms, strict=True)):
+        for i, (pair, terms) in enumerate(zip(self.pairs, contact_state.terms, strict=True)):
             if pair.start is not None:
                 pair.persist(terms)
-            touch.terms[i] = terms.bare or terms
-        self.at = touch
+            contact_state.terms[i] = terms.bare or terms
+        self.at = contact_state
 
     def restore(self) -> None:
         """Go back to the committed state."""
@@ -339,4 +347,4 @@ def _few(labels: Ints, most: int = 5) -> str:
     return shown + (", ..." if len(labels) > most else "")
 
 
-__all__ = ["Touch", "Touching"]
+__all__ = ["ContactState", "ContactTerm"]

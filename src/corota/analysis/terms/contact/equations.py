@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from corota.analysis.linear.saddle_point import Bordered, Coupling, Triplets
-from corota.analysis.newton import PROGRESS, GiveUp, Judgement, Outcome
+from corota.analysis.linear.saddle_point import Coupling, SaddlePointSystem, Triplets
+from corota.analysis.newton import PROGRESS, GiveUp, Outcome, ResidualNorms
 from corota.analysis.terms.contact.columns import border, stacked
-from corota.analysis.terms.contact.contact import Touch, Touching
+from corota.analysis.terms.contact.contact import ContactState, ContactTerm
 from corota.analysis.terms.contact.messages import explained
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.pivoting import pivoted
@@ -37,28 +37,28 @@ if TYPE_CHECKING:
 
 EPS = float(np.finfo(float).eps)
 #: Iterations that contact may take beyond those of the step.
-MORE = 24
+MAX_EXTRA_CONTACT_ITERATIONS = 24
 #: Iterations without progress after which an increment is cut: few that take more converge.
 PATIENCE = 8
 #: And after which states come from the whole linearised problem.
-WAITED = 3
+ITERATIONS_BEFORE_PIVOTING = 3
 #: How often a set of states may come back before single changes are made.
-RETURNS = 2
+MAX_STATE_REPEATS = 2
 #: And how often before the increment is given up.
-HOPELESS = 7
+MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Corrections after which partly covered nodes keep to whom they belong.
-SETTLED = 4
+CORRECTIONS_BEFORE_FREEZE = 4
 #: Relative difference of lacks that is none.
-ALIKE = 1e-6
+RELATIVE_DIFFERENCE = 1e-6
 #: Share of the friction bound from which a correction is made anew with slip, and how often.
-BEYOND, SLIPS = 2.0, 3
+FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
 #: Times the first correction that an increment may move before it counts as a jump, driven by
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
 
 
 @dataclass
-class Touched:
+class ContactEvaluation:
     """Evaluation of a system and its contact.
 
     Parameters
@@ -69,12 +69,12 @@ class Touched:
     """
 
     at: Evaluation
-    touch: Touch
+    contact_state: ContactState
 
     @property
     def residual(self) -> Floats:
         """That of equilibrium, and zeros for the multipliers."""
-        return np.concatenate([self.at.residual, np.zeros(len(self.touch.multipliers))])
+        return np.concatenate([self.at.residual, np.zeros(len(self.contact_state.multipliers))])
 
     @property
     def internal(self) -> Floats:
@@ -90,7 +90,7 @@ class Touched:
 
 
 @dataclass
-class Asked:
+class RightHandSides:
     """Right-hand sides of one linearisation, a column each.
 
     Parameters
@@ -102,11 +102,11 @@ class Asked:
     """
 
     force: Floats
-    held: Floats
+    constrained: Floats
     own: Floats
 
 
-class TouchingSystem:
+class ContactEquations:
     """A system with contact, for one increment.
 
     Parameters
@@ -119,9 +119,9 @@ class TouchingSystem:
     """
 
     def __init__(self, inner: Any, system: System, weight: float = 1.0) -> None:
-        assert system.touching is not None
+        assert system.contact_term is not None
         self.inner, self.system, self.weight = inner, system, weight
-        self.touching: Touching = system.touching
+        self.contact_term: ContactTerm = system.contact_term
         self.n = system.n_dofs
         self.forget()
 
@@ -129,11 +129,11 @@ class TouchingSystem:
         """Begin an attempt at the increment."""
         # What was closed stays so while its pressure does.
         self.last: States | None = None
-        if self.touching.at is not None and self.touching.at.states:
-            self.last = [s.copy() for s in self.touching.at.states]
+        if self.contact_term.at is not None and self.contact_term.at.states:
+            self.last = [s.copy() for s in self.contact_term.at.states]
         self.seen: dict[bytes, int] = {}
         self.cautious = False
-        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.touching.pairs]
+        self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.contact_term.pairs]
         self.single = self.sliding = self.corrections = self.pivoted = 0
         self.pivoting = False  # whether states come from the whole linearised problem
         self.least, self.waited = np.inf, 0
@@ -141,75 +141,82 @@ class TouchingSystem:
         self.relaxing = False  # whether the bodies may move to another equilibrium
         self.first_move = 0.0  # of the first correction [length]
         self.loose = ""  # what nothing held until contact was closed for it
-        self.senses: dict[int, Floats] = {}  # of slipping tractions, by the pair's first multiplier
+        self.slip_directions: dict[
+            int, Floats
+        ] = {}  # of slipping tractions, by the pair's first multiplier
 
     # -- the protocol of Newton's method -----------------------------------------------
 
     def start(self, u: Floats) -> Floats:
         """Displacements with the committed multipliers."""
-        return np.concatenate([u, self.touching.committed])
+        return np.concatenate([u, self.contact_term.committed])
 
-    def evaluate(self, z: Floats, step_time: float) -> Touched:
+    def evaluate(self, z: Floats, step_time: float) -> ContactEvaluation:
         """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
         u, multipliers = z[: self.n], z[self.n :].copy()
         at = self.inner.evaluate(u, step_time)
-        touch = self.touching.evaluate(u, multipliers, step_time, at.values)
-        at.internal = at.internal - self.weight * touch.force
-        at.scale = at.scale + self.weight * touch.size
-        if touch.damping is not None:
-            at.internal += touch.damping * (u - self.touching.u)
-            at.added = touch.damping
-            at.values[self.system.indptr[1:].astype(np.int64) - 1] += touch.damping
-        return Touched(at, touch)
+        contact_state = self.contact_term.evaluate(u, multipliers, step_time, at.values)
+        at.internal = at.internal - self.weight * contact_state.force
+        at.scale = at.scale + self.weight * contact_state.size
+        if contact_state.damping is not None:
+            at.internal += contact_state.damping * (u - self.contact_term.u)
+            at.added = contact_state.damping
+            at.values[self.system.indptr[1:].astype(np.int64) - 1] += contact_state.damping
+        return ContactEvaluation(at, contact_state)
 
-    def judge(self, at: Touched, z: Floats) -> Judgement:
+    def residual_norms(self, at: ContactEvaluation, z: Floats) -> ResidualNorms:
         """Size of the residual, of equilibrium and of the contact conditions."""
-        judged: Judgement = self.inner.judge(at.at, z[: self.n])
-        judged.note = self.stage
-        lack, pair, constraint = self.lack(at)
-        before = judged.force
-        self.system.scales.add_lack(judged, lack)
-        if judged.force > before:
-            node = self.touching.pairs[pair].nodes[constraint]
-            judged.worst = int(self.system.start[node])
+        norms: ResidualNorms = self.inner.residual_norms(at.at, z[: self.n])
+        norms.note = self.stage
+        complementarity, pair, constraint = self.complementarity(at)
+        before = norms.force
+        self.system.scales.add_complementarity(norms, complementarity)
+        if norms.force > before:
+            node = self.contact_term.pairs[pair].nodes[constraint]
+            norms.worst = int(self.system.start[node])
         if self.corrections:  # before the first, supports may still have to move
-            self.waited = 0 if judged.size < PROGRESS * self.least else self.waited + 1
-            self.least = min(self.least, judged.size)
-        return judged
+            self.waited = 0 if norms.size < PROGRESS * self.least else self.waited + 1
+            self.least = min(self.least, norms.size)
+        return norms
 
-    def release(self, at: Touched) -> None:
+    def return_tangent(self, at: ContactEvaluation) -> None:
         """Keep the tangent: states of contact are looked back at."""
 
-    def lack(self, at: Touched) -> tuple[float, int, int]:
+    def complementarity(self, at: ContactEvaluation) -> tuple[float, int, int]:
         """Largest lack of the contact conditions as a force; its pair and constraint."""
         worst = (0.0, 0, 0)
-        for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.touch)):
+        for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
             if pair.n:
-                lack = pair.violation(terms, p, q)
-                i = int(np.argmax(lack))
-                if lack[i] > worst[0]:
-                    worst = (float(lack[i]), k, i)
+                complementarity = pair.violation(terms, p, q)
+                i = int(np.argmax(complementarity))
+                if complementarity[i] > worst[0]:
+                    worst = (float(complementarity[i]), k, i)
         return worst
 
-    def predict(self, at: Touched, du_held: Floats) -> tuple[Floats, int]:
+    def predict(self, at: ContactEvaluation, du_prescribed: Floats) -> tuple[Floats, int]:
         """Newton correction of displacements and multipliers."""
-        return self.correct(at, -at.residual, du_held)
+        return self.correct(at, -at.residual, du_prescribed)
 
-    def correct(self, at: Touched, rhs: Floats, du_held: Floats) -> tuple[Floats, int]:
+    def correct(
+        self, at: ContactEvaluation, rhs: Floats, du_prescribed: Floats
+    ) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
-        asked = Asked(rhs[: self.n, None], du_held[: self.n, None], np.ones(1))
-        self.pivoting = self.pivoting or self.waited >= WAITED
+        right_sides = RightHandSides(rhs[: self.n, None], du_prescribed[: self.n, None], np.ones(1))
+        self.pivoting = self.pivoting or self.waited >= ITERATIONS_BEFORE_PIVOTING
         if self.pivoting:
             self._freeze()
-            found = pivoted(self, at, asked)
+            found = pivoted(self, at, right_sides)
             if found is not None:
-                z, self.last, senses = found
-                self.senses = {p.first: s for p, s in zip(self.touching.pairs, senses, strict=True)}
+                z, self.last, slip_directions = found
+                self.slip_directions = {
+                    p.first: s
+                    for p, s in zip(self.contact_term.pairs, slip_directions, strict=True)
+                }
                 self.pivoted += 1
                 self.stage = "contact states by pivoting"
                 return self._moved(z), -1
         before = self.single
-        z, negative = self._columns(at, asked, self._choose(at.touch))
+        z, negative = self._columns(at, right_sides, self._choose(at.contact_state))
         self.stage = "single change of contact" if self.single > before else ""
         return self._moved(z[:, 0]), negative
 
@@ -221,43 +228,46 @@ class TouchingSystem:
 
     def _freeze(self) -> None:
         self.corrections += 1
-        for pair in self.touching.pairs:
-            pair.frozen = self.corrections >= SETTLED
+        for pair in self.contact_term.pairs:
+            pair.frozen = self.corrections >= CORRECTIONS_BEFORE_FREEZE
 
     def _columns(
         self,
-        at: Touched,
-        asked: Asked,
+        at: ContactEvaluation,
+        right_sides: RightHandSides,
         states: States,
-        senses: dict[tuple[int, int], float] | None = None,
+        slip_directions: dict[tuple[int, int], float] | None = None,
     ) -> tuple[Floats, int]:
         """Solutions of one linearisation, shape (n_dofs + n_multipliers, k)."""
         self._freeze()
-        self.senses = {
-            pair.first: pair.sense(terms, q) for pair, terms, (p, q) in self._pairs(at.touch)
+        self.slip_directions = {
+            pair.first: pair.slip_direction(terms, q)
+            for pair, terms, (p, q) in self._pairs(at.contact_state)
         }
-        for (k, i), sense in (senses or {}).items():
-            self.senses[self.touching.pairs[k].first][i] = sense
-        du, dp, negative, states = self._held(at, states, asked)
-        for (pair, terms, (p, q)), state in zip(self._pairs(at.touch), states, strict=True):
+        for (k, i), slip_direction in (slip_directions or {}).items():
+            self.slip_directions[self.contact_term.pairs[k].first][i] = slip_direction
+        du, dp, negative, states = self._held(at, states, right_sides)
+        for (pair, terms, (p, q)), state in zip(self._pairs(at.contact_state), states, strict=True):
             if pair.two:
                 # Slipping tractions follow the pressure; they are no unknowns of the solution.
-                ratio = pair.rows(terms, state, p, q, self.senses[pair.first])[4]
-                now = np.outer(p, asked.own) + dp[pair.first : pair.first + pair.n]
-                new = ratio[:, None] * now - np.outer(q, asked.own)
+                ratio = pair.rows(terms, state, p, q, self.slip_directions[pair.first])[4]
+                now = np.outer(p, right_sides.own) + dp[pair.first : pair.first + pair.n]
+                new = ratio[:, None] * now - np.outer(q, right_sides.own)
                 slips = state != CLOSED
                 dp[pair.first + pair.n : pair.first + pair.width][slips] = new[slips]
         return np.concatenate([du, dp]), negative
 
-    def _solve(self, at: Touched, states: States, asked: Asked) -> tuple[Floats, Floats, int]:
-        coupling, own, expected = self._coupling(at.touch, states)
-        force = asked.force + np.outer(self.system.at_nodes(coupling.force), asked.own)
-        rows = np.outer(own, asked.own)
-        du, dp, negative = self.border.solve(at.at, coupling, force, rows, asked.held)
+    def _solve(
+        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
+    ) -> tuple[Floats, Floats, int]:
+        coupling, own, expected = self._coupling(at.contact_state, states)
+        force = right_sides.force + np.outer(self.system.at_nodes(coupling.force), right_sides.own)
+        rows = np.outer(own, right_sides.own)
+        du, dp, negative = self.border.solve(at.at, coupling, force, rows, right_sides.constrained)
         return du, dp, negative - expected if negative >= 0 else -1
 
     def _held(
-        self, at: Touched, states: States, asked: Asked
+        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int, States]:
         """Correction for states that hold the bodies, changed as little as that takes.
 
@@ -271,24 +281,24 @@ class TouchingSystem:
         problem: SingularError | None = None
         for tried in tries:
             try:
-                du, dp, negative = self._solve(at, tried, asked)
+                du, dp, negative = self._solve(at, tried, right_sides)
             except SingularError as error:
                 problem = error
                 self.sliding += slipping
                 continue
-            if tried is not stuck and slipping and self._far(du, asked):
+            if tried is not stuck and slipping and self._far(du, right_sides):
                 self.sliding += 1
                 continue
-            du, dp, negative, tried = self._let_slip(at, tried, asked, (du, dp, negative))
+            du, dp, negative, tried = self._let_slip(at, tried, right_sides, (du, dp, negative))
             self.last = tried
             return du, dp, negative, tried
         assert problem is not None
-        return self._close_some(at, stuck if slipping else states, asked, problem)
+        return self._close_some(at, stuck if slipping else states, right_sides, problem)
 
-    def _least_stick(self, at: Touched, states: States) -> States:
+    def _least_stick(self, at: ContactEvaluation, states: States) -> States:
         """States with the half that exceeds the friction least sticking again."""
         out = []
-        for s, (pair, terms, (p, q)) in zip(states, self._pairs(at.touch), strict=True):
+        for s, (pair, terms, (p, q)) in zip(states, self._pairs(at.contact_state), strict=True):
             slips = np.flatnonzero(s == SLIPPING)
             shear, loaded = np.abs(pair.shear(terms, q))[slips], p[slips] > 0.0
             over = np.where(loaded, shear / np.where(loaded, p[slips], 1.0), np.inf)
@@ -299,57 +309,70 @@ class TouchingSystem:
 
     def _let_slip(
         self,
-        at: Touched,
+        at: ContactEvaluation,
         states: States,
-        asked: Asked,
+        right_sides: RightHandSides,
         found: tuple[Floats, Floats, int],
     ) -> tuple[Floats, Floats, int, States]:
         """Let slip at once what a correction would load far beyond friction.
 
         Otherwise a long motion of supports drags the mesh along before anything slips.
         """
-        for _ in range(SLIPS if self.corrections <= 2 else 0):
+        for _ in range(MAX_SLIP_CORRECTIONS if self.corrections <= 2 else 0):
             new = [s.copy() for s in states]
-            senses = dict(self.senses)
-            for s, (pair, _, (p, q)) in zip(new, self._pairs(at.touch), strict=True):
+            slip_directions = dict(self.slip_directions)
+            for s, (pair, _, (p, q)) in zip(new, self._pairs(at.contact_state), strict=True):
                 if not pair.friction:
                     continue
                 p1 = p + found[1][pair.first : pair.first + pair.n, 0]
                 q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
-                over = (s == CLOSED) & (np.abs(q1) > BEYOND * pair.friction * np.maximum(p1, p))
+                over = (s == CLOSED) & (
+                    np.abs(q1) > FRICTION_EXCESS * pair.friction * np.maximum(p1, p)
+                )
                 s[over] = SLIPPING
-                sense = self.senses[pair.first]
-                senses[pair.first] = np.where(over, np.where(q1 > 0.0, 1.0, -1.0), sense)
+                slip_direction = self.slip_directions[pair.first]
+                slip_directions[pair.first] = np.where(
+                    over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction
+                )
             if all(np.array_equal(a, b) for a, b in zip(new, states, strict=True)):
                 break
-            before, self.senses = self.senses, senses
+            before, self.slip_directions = self.slip_directions, slip_directions
             try:
-                other = self._solve(at, new, asked)
+                other = self._solve(at, new, right_sides)
             except SingularError:
-                self.senses = before
+                self.slip_directions = before
                 break
-            if self._far(other[0], asked):
-                self.senses = before
+            if self._far(other[0], right_sides):
+                self.slip_directions = before
                 break
             found, states = other, new
         return *found, states
 
-    def _far(self, du: Floats, asked: Asked) -> bool:
+    def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
         """Whether a correction moves the surfaces farther than contact looks."""
         moved = self.system.by_node(du[:, 0])[:, :2]
-        held = 2.0 * float(np.abs(self.system.by_node(asked.held[:, 0])[:, :2]).max())
-        for pair in self.touching.pairs:
-            if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach + held:
+        constrained = 2.0 * float(
+            np.abs(self.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
+        )
+        for pair in self.contact_term.pairs:
+            if (
+                pair.friction
+                and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained
+            ):
                 return True
         return False
 
     def _close_some(
-        self, at: Touched, states: States, asked: Asked, error: SingularError
+        self,
+        at: ContactEvaluation,
+        states: States,
+        right_sides: RightHandSides,
+        error: SingularError,
     ) -> tuple[Floats, Floats, int, States]:
         """Bring bodies that nothing holds into contact: close the nearest nodes, ever more."""
         gaps = [
             np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
-            for s, (pair, terms, (p, _)) in zip(states, self._pairs(at.touch), strict=True)
+            for s, (pair, terms, (p, _)) in zip(states, self._pairs(at.contact_state), strict=True)
         ]
         nearest = min(float(gap.min(initial=np.inf)) for gap in gaps)
         for count in (0, 1, 2, None):
@@ -361,15 +384,16 @@ class TouchingSystem:
             if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
                 break
             try:
-                du, dp, negative = self._solve(at, tried, asked)
+                du, dp, negative = self._solve(at, tried, right_sides)
             except SingularError:
                 continue
             self.last, self.loose = tried, str(error)
             return du, dp, negative, tried
         open_pairs = [
-            pair.name for pair, s in zip(self.touching.pairs, states, strict=True)
+            pair.name
+            for pair, s in zip(self.contact_term.pairs, states, strict=True)
             if not (s != OPEN).any()
-        ]  # fmt: skip
+        ]
         if open_pairs:
             raise SingularError(
                 f"{error}; contact pair {open_pairs[0]!r} is open: hold the body until it "
@@ -381,26 +405,31 @@ class TouchingSystem:
         raise error
 
     @property
-    def border(self) -> Bordered:
+    def border(self) -> SaddlePointSystem:
         """Linear algebra, kept with the system."""
-        border = self.touching.border
+        border = self.contact_term.border
         if border is None:
-            border = self.touching.border = Bordered(self.system, self.touching.n)
+            border = self.contact_term.border = SaddlePointSystem(self.system, self.contact_term.n)
         return border
 
     # -- states ------------------------------------------------------------------------
 
-    def _pairs(self, touch: Touch) -> Any:
+    def _pairs(self, contact_state: ContactState) -> Any:
         return zip(
-            self.touching.pairs, touch.terms, self.touching.parts(touch.multipliers), strict=True
+            self.contact_term.pairs,
+            contact_state.terms,
+            self.contact_term.parts(contact_state.multipliers),
+            strict=True,
         )
 
-    def _choose(self, touch: Touch) -> States:
+    def _choose(self, contact_state: ContactState) -> States:
         """States for the next correction; single changes once a set comes back."""
-        before: Sequence[NDArray[np.int8] | None] = self.last or [None] * len(self.touching.pairs)
+        before: Sequence[NDArray[np.int8] | None] = self.last or [None] * len(
+            self.contact_term.pairs
+        )
         wanted = [
             pair.states(terms, p, q, last)
-            for (pair, terms, (p, q)), last in zip(self._pairs(touch), before, strict=True)
+            for (pair, terms, (p, q)), last in zip(self._pairs(contact_state), before, strict=True)
         ]
         if self.last is not None:
             changed = [a != b for a, b in zip(wanted, self.last, strict=True)]
@@ -409,50 +438,60 @@ class TouchingSystem:
             if any(c.any() for c in changed):
                 key = b"".join(s.tobytes() for s in wanted)
                 self.seen[key] = self.seen.get(key, 0) + 1
-                if self.seen[key] > HOPELESS:
+                if self.seen[key] > MAX_REPEATS_BEFORE_CUTBACK:
                     raise GiveUp("the contact states go round in a circle")
-                self.cautious = self.cautious or self.seen[key] > RETURNS
+                self.cautious = self.cautious or self.seen[key] > MAX_STATE_REPEATS
                 self.pivoting = self.pivoting or self.cautious
                 if self.cautious:
-                    wanted = self._one_change(touch, wanted, changed)
+                    wanted = self._one_change(contact_state, wanted, changed)
         self.last = wanted
         return wanted
 
-    def _one_change(self, touch: Touch, wanted: States, changed: list[NDArray[np.bool_]]) -> States:
+    def _one_change(
+        self, contact_state: ContactState, wanted: States, changed: list[NDArray[np.bool_]]
+    ) -> States:
         """Only the change that the conditions lack most, and all that lie next to nothing."""
         assert self.last is not None
         self.single += 1
         best, where = -1.0, (0, 0)
-        for k, (pair, terms, (p, q)) in enumerate(self._pairs(touch)):
-            lack = np.where(changed[k], pair.violation(terms, p, q), -1.0)
+        for k, (pair, terms, (p, q)) in enumerate(self._pairs(contact_state)):
+            complementarity = np.where(changed[k], pair.violation(terms, p, q), -1.0)
             # Of equals, as in symmetric models, the first: rounding must not choose.
-            if pair.n and lack.max() > (1.0 + ALIKE) * best:
-                first = int(np.argmax(lack >= (1.0 - ALIKE) * lack.max()))
-                best, where = float(lack[first]), (k, first)
+            if pair.n and complementarity.max() > (1.0 + RELATIVE_DIFFERENCE) * best:
+                first = int(
+                    np.argmax(
+                        complementarity >= (1.0 - RELATIVE_DIFFERENCE) * complementarity.max()
+                    )
+                )
+                best, where = float(complementarity[first]), (k, first)
         out = [s.copy() for s in self.last]
         out[where[0]][where[1]] = wanted[where[0]][where[1]]
         # What sees nothing of the other side cannot be closed.
-        for state, pair, terms in zip(out, self.touching.pairs, touch.terms, strict=True):
+        for state, pair, terms in zip(
+            out, self.contact_term.pairs, contact_state.terms, strict=True
+        ):
             state[terms.area <= 1e-9 * pair.full] = OPEN
         return out
 
     # -- linear equations --------------------------------------------------------------
 
-    def _coupling(self, touch: Touch, states: States) -> tuple[Coupling, Floats, int]:
+    def _coupling(
+        self, contact_state: ContactState, states: States
+    ) -> tuple[Coupling, Floats, int]:
         """The border for states, its right-hand side, and its negative pivots."""
-        touching, w = self.touching, self.weight
-        m = touching.n
-        bend, rows, follow = [], [], []
+        contact_term, w = self.contact_term, self.weight
+        m = contact_term.n
+        geometric_stiffness, rows, follow = [], [], []
         diagonal, rhs = np.ones(m), np.zeros(m)
         force = np.zeros(self.n + 1)
         near: list[tuple[Ints, Ints]] = []
         expected = 0
-        for (pair, terms, (p, q)), state in zip(self._pairs(touch), states, strict=True):
+        for (pair, terms, (p, q)), state in zip(self._pairs(contact_state), states, strict=True):
             first, n = pair.first, pair.n
-            dp, rp, dq, rq, ratio = pair.rows(terms, state, p, q, self.senses[first])
+            dp, rp, dq, rq, ratio = pair.rows(terms, state, p, q, self.slip_directions[first])
             diagonal[first : first + n], rhs[first : first + n] = dp, rp
             expected += int((state != OPEN).sum())
-            where = touching.dofs(terms.variables)
+            where = contact_term.dofs(terms.variables)
             k = terms.constraint
             closed = state != OPEN
             rows.append(border(where, first + k, -w * terms.gap_gradient, closed[k]))
@@ -469,19 +508,23 @@ class TouchingSystem:
                 slope = -w * ratio[k, None] * terms.slip_gradient
                 follow.append(border(where, first + k, slope, state[k] == SLIPPING))
             np.add.at(force, where, part)
-            if self.system.turning and (p.any() or q.any()):
-                bend.append(self._bend(pair, p, q))
+            if self.system.nlgeom and (p.any() or q.any()):
+                geometric_stiffness.append(self._geometric_stiffness(pair, p, q))
             near.append(self._near(pair, terms))
         coupling = Coupling(
-            Triplets.join(bend), Triplets.join(rows), Triplets.join(follow), diagonal,
-            force[:-1], stacked(near),
-        )  # fmt: skip
+            Triplets.join(geometric_stiffness),
+            Triplets.join(rows),
+            Triplets.join(follow),
+            diagonal,
+            force[:-1],
+            stacked(near),
+        )
         return coupling, rhs, expected
 
-    def _bend(self, pair: Any, p: Floats, q: Floats) -> Triplets:
+    def _geometric_stiffness(self, pair: Any, p: Floats, q: Floats) -> Triplets:
         with self.system.timed("contact"):
             _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
-        where = self.touching.dofs(variables)
+        where = self.contact_term.dofs(variables)
         v = where.shape[1]
         a, b = np.repeat(where, v, axis=1).ravel(), np.tile(where, (1, v)).ravel()
         entries = -self.weight * values.reshape(-1)
@@ -490,7 +533,7 @@ class TouchingSystem:
 
     def _near(self, pair: Any, terms: Any) -> tuple[Ints, Ints]:
         """Dofs and multipliers of candidate pairs next to those that touch."""
-        if not self.system.turning:
+        if not self.system.nlgeom:
             return np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int64)
         variables, constraints = pair.core.pattern()
         found = pair.core.candidates()
@@ -500,18 +543,18 @@ class TouchingSystem:
             return np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int64)
         width = int(found[:, 1].max()) + 8
         key = found[:, 0] * width + found[:, 1] + 3
-        touching = np.sort(key[used])
-        next_up = np.minimum(np.searchsorted(touching, key - 2), len(touching) - 1)
-        close = np.abs(touching[next_up] - key) <= 2
+        contact_term = np.sort(key[used])
+        next_up = np.minimum(np.searchsorted(contact_term, key - 2), len(contact_term) - 1)
+        close = np.abs(contact_term[next_up] - key) <= 2
         variables, constraints = variables[close], constraints[close]
         own = np.where(constraints >= 0, pair.first + pair.owner[constraints], -1)
         if pair.two:
             own = np.concatenate([own, np.where(own >= 0, own + pair.n, -1)], axis=1)
-        return self.touching.dofs(variables), own
+        return self.contact_term.dofs(variables), own
 
     # -- the end of an increment -------------------------------------------------------
 
-    def settle(self, outcome: Outcome[Touched]) -> Outcome[Evaluation]:
+    def settle(self, outcome: Outcome[ContactEvaluation]) -> Outcome[Evaluation]:
         """What became of an increment in terms of the system; explains failures."""
         u = outcome.u[: self.n].copy()
         at = None if outcome.at is None else outcome.at.at
@@ -519,10 +562,10 @@ class TouchingSystem:
             outcome.reason = self.refuse(outcome.at, outcome.u)
             outcome.converged = not outcome.reason
         settled: Outcome[Any] = replace(outcome, u=u, at=cast("Any", at))
-        self.touch = None if outcome.at is None else outcome.at.touch
+        self.contact_state = None if outcome.at is None else outcome.at.contact_state
         if not outcome.converged:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
-            self.touching.restore()
+            self.contact_term.restore()
         elif self.single:
             settled.note = f"{outcome.note}; {self.single} single changes of contact".strip("; ")
         if outcome.converged and self.pivoted:
@@ -530,7 +573,7 @@ class TouchingSystem:
             settled.note = f"{settled.note}; {said}".strip("; ")
         return settled
 
-    def refuse(self, at: Touched, z: Floats) -> str:
+    def refuse(self, at: ContactEvaluation, z: Floats) -> str:
         """Why an equilibrium is not taken, or nothing.
 
         Nodes went through the other surface, or a body that nothing holds is far away.
@@ -539,46 +582,49 @@ class TouchingSystem:
             far: str = self.system.scales.senseless(z)
             if far:
                 return far
-        if not self.system.turning:
+        if not self.system.nlgeom:
             return ""
-        old, new = self.touching.positions(self.touching.u), self.touching.positions(z[: self.n])
+        old, new = (
+            self.contact_term.positions(self.contact_term.u),
+            self.contact_term.positions(z[: self.n]),
+        )
         still = self.pivoted and not self.relaxing and self.inner is self.system
         if still and not self.near(z[: self.n]):
             return "the equilibrium that was found is far from the one before"
-        for pair, terms, (p, q) in self._pairs(at.touch):
+        for pair, terms, (p, q) in self._pairs(at.contact_state):
             found = passed(pair, old, new, pair.states(terms, p, q))
             if len(found):
                 return (
-                    f"node {self.touching.label(pair, int(found[0]))} went through the other "
+                    f"node {self.contact_term.label(pair, int(found[0]))} went through the other "
                     f"side of contact pair {pair.name!r} in one increment"
                 )
         return ""
 
     def near(self, u: Floats) -> bool:
         """Whether an equilibrium is near the committed one, as far as its first correction says."""
-        moved = float(np.abs((u - self.touching.u)[~self.system.is_rotation]).max())
+        moved = float(np.abs((u - self.contact_term.u)[~self.system.is_rotation]).max())
         forces = bool(np.any(self.system.load_rate(u)[0]))
         limit = (JUMP_OF_FORCE if forces else JUMP) * self.first_move
         return limit == 0.0 or moved <= limit
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
-        assert self.touch is not None
-        self.touching.commit(u, self.touch, step_time)
+        assert self.contact_state is not None
+        self.contact_term.commit(u, self.contact_state, step_time)
         notes = []
-        for number in sorted(self.border.dropped - self.touching.told):
-            pair = next(p for p in reversed(self.touching.pairs) if p.first <= number)
-            label = self.touching.label(pair, (number - pair.first) % pair.n)
+        for number in sorted(self.border.dropped - self.contact_term.told):
+            pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
+            label = self.contact_term.label(pair, (number - pair.first) % pair.n)
             notes.append(
                 f"contact pair {pair.name!r}: the constraint at node {label} follows from others "
                 "(supports, ties or other pairs) and was left out"
             )
-        self.touching.told |= self.border.dropped
+        self.contact_term.told |= self.border.dropped
         return notes
 
-    def explain(self, at: Touched | None) -> str:
+    def explain(self, at: ContactEvaluation | None) -> str:
         """Which pair and nodes a failed increment hung on, and what was tried."""
         return explained(self, at)
 
 
-__all__ = ["MORE", "PATIENCE", "Touched", "TouchingSystem"]
+__all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "PATIENCE", "ContactEquations", "ContactEvaluation"]

@@ -22,7 +22,7 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.path import Along, TouchingPath
+    from corota.analysis.terms.contact.path import Along, ContactPathEquations
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
@@ -33,8 +33,13 @@ if TYPE_CHECKING:
 MOST, AT_ONCE = 12, 1e-9
 
 
-def go_round(
-    path: TouchingPath, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
+def predict_through_events(
+    path: ContactPathEquations,
+    base: Point,
+    tangent: Tangent,
+    metric: Metric,
+    size: float,
+    period: float,
 ) -> tuple[Point, Tangent, States] | None:
     """Predict a point behind changes of states; None where there is none on the way.
 
@@ -55,10 +60,10 @@ def go_round(
     states : list of ndarray
         Predicted at the point.
     """
-    committed = path.touching.at
+    committed = path.contact_term.at
     if committed is None or not committed.states:
         return None
-    way = Way(path, base, tangent, [s.copy() for s in committed.states])
+    way = EventPath(path, base, tangent, [s.copy() for s in committed.states])
     left, met = size, None
     for _ in range(MOST):
         event = way.first(None if met is None else met[0])
@@ -77,7 +82,7 @@ def go_round(
     return Point(way.z, way.factor, None), way.tangent, way.states
 
 
-class Way:
+class EventPath:
     """A way along directions of the linearised path.
 
     Parameters
@@ -91,13 +96,15 @@ class Way:
         There; changed in place.
     """
 
-    def __init__(self, path: TouchingPath, base: Point, tangent: Tangent, states: States) -> None:
+    def __init__(
+        self, path: ContactPathEquations, base: Point, tangent: Tangent, states: States
+    ) -> None:
         self.path, self.base, self.tangent, self.states = path, base, tangent, states
         self.at: Along = base.at
-        self.gaps = [terms.gap for terms in self.at.touch.terms]
+        self.gaps = [terms.gap for terms in self.at.contact_state.terms]
         self.z, self.factor = base.u, base.factor
         self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}
-        self.senses: dict[tuple[int, int], float] = {}
+        self.slip_directions: dict[tuple[int, int], float] = {}
         self._changed = False
 
     def go(self, distance: float) -> None:
@@ -110,15 +117,15 @@ class Way:
     def change(self, k: int, i: int, state: int, period: float) -> bool:
         """Give a constraint another state; False where it had it before."""
         path = self.path
-        pair = path.touching.pairs[k]
+        pair = path.contact_term.pairs[k]
         slides = path.gap_rates(self.at, self.tangent.u)[k][1][i]
         if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
             # What closes while it slides goes on sliding, if it can.
-            state, self.senses[k, i] = SLIPPING, -float(np.sign(slides))
+            state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
         elif state == SLIPPING:
-            q = path.touching.parts(self.z[path.n :])[k][1][i]
-            dq = path.touching.parts(self.tangent.u[path.n :])[k][1][i]
-            self.senses[k, i] = 1.0 if (q or dq) > 0.0 else -1.0
+            q = path.contact_term.parts(self.z[path.n :])[k][1][i]
+            dq = path.contact_term.parts(self.tangent.u[path.n :])[k][1][i]
+            self.slip_directions[k, i] = 1.0 if (q or dq) > 0.0 else -1.0
         if (k, i, state) in self.seen:
             return False
         if not self._changed:
@@ -135,7 +142,7 @@ class Way:
         path = self.path
         try:
             x, negative = path.rate_with(
-                self.at, self.states, *path.load_rate(self.base.u), self.senses
+                self.at, self.states, *path.load_rate(self.base.u), self.slip_directions
             )
         except SingularError:
             return False
@@ -151,33 +158,33 @@ class Way:
     def _going(self, where: tuple[int, int], before: int, state: int) -> float:
         """Positive where the direction leads into a new state."""
         (k, i), path = where, self.path
-        dp, dq = path.touching.parts(self.tangent.u[path.n :])[k]
+        dp, dq = path.contact_term.parts(self.tangent.u[path.n :])[k]
         dgap, dslip = path.gap_rates(self.at, self.tangent.u)[k]
         if state == OPEN:
             return float(dgap[i])
         if before == OPEN:
             return float(dp[i])
-        q = path.touching.parts(self.z[path.n :])[k][1][i]
-        sense = self.senses.get((k, i), 1.0 if q > 0.0 else -1.0)
+        q = path.contact_term.parts(self.z[path.n :])[k][1][i]
+        slip_direction = self.slip_directions.get((k, i), 1.0 if q > 0.0 else -1.0)
         if state == SLIPPING:
-            return float(-sense * dslip[i])
+            return float(-slip_direction * dslip[i])
         # What sticks again loads off.
-        return float(path.touching.pairs[k].friction * dp[i] - sense * dq[i])
+        return float(path.contact_term.pairs[k].friction * dp[i] - slip_direction * dq[i])
 
     def first(self, latest: tuple[int, int] | None) -> Event | None:
         """The next change along the direction; of several at once, that of the latest first."""
         best: Event | None = None
-        path, touching = self.path, self.path.touching
+        path, contact_term = self.path, self.path.contact_term
         tractions, rates = (
-            touching.parts(self.z[path.n :]),
-            touching.parts(self.tangent.u[path.n :]),
+            contact_term.parts(self.z[path.n :]),
+            contact_term.parts(self.tangent.u[path.n :]),
         )
         moves = path.gap_rates(self.at, self.tangent.u)
-        for k, pair in enumerate(touching.pairs):
+        for k, pair in enumerate(contact_term.pairs):
             if pair.tied or pair.law is not None or not pair.n:
                 continue
             (p, q), (dp, dq), (dgap, dslip) = tractions[k], rates[k], moves[k]
-            state, seen = self.states[k], self.at.touch.terms[k].area > COVERED * pair.full
+            state, seen = self.states[k], self.at.contact_state.terms[k].area > COVERED * pair.full
             found = [
                 (_reach(self.gaps[k], -dgap, seen & (state == OPEN)), CLOSED),
                 (_reach(p, -dp, state != OPEN), OPEN),
@@ -185,13 +192,13 @@ class Way:
             if pair.friction:
                 mu, sticks = pair.friction, state == CLOSED
                 for sign in (1.0, -1.0):
-                    room = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)
-                    found.append((room, SLIPPING))
-                sense = np.sign(q)
-                for (which, i), other in self.senses.items():
+                    margin = _reach(mu * p - sign * q, sign * dq - mu * dp, sticks)
+                    found.append((margin, SLIPPING))
+                slip_direction = np.sign(q)
+                for (which, i), other in self.slip_directions.items():
                     if which == k:
-                        sense[i] = other
-                found.append((_reach(0.0 * q, dslip * sense, state == SLIPPING), CLOSED))
+                        slip_direction[i] = other
+                found.append((_reach(0.0 * q, dslip * slip_direction, state == SLIPPING), CLOSED))
             for ways, new in found:
                 i = int(np.argmin(ways))
                 if latest is not None and latest[0] == k and ways[latest[1]] <= ways[i]:
@@ -201,10 +208,10 @@ class Way:
         return best
 
 
-def _reach(room: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
-    """Ways after which something that shrinks at a rate has used up its room."""
+def _reach(margin: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
+    """Ways after which something that shrinks at a rate has used up its margin."""
     shrinks = which & (rate > 0.0)
-    return np.where(shrinks, np.maximum(room, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
+    return np.where(shrinks, np.maximum(margin, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
 
 
-__all__ = ["go_round"]
+__all__ = ["predict_through_events"]

@@ -8,38 +8,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from corota.analysis.terms.contact.equations import Touched, TouchingSystem
+    from corota.analysis.terms.contact.equations import ContactEquations, ContactEvaluation
 
 #: How often a state must have changed to be named.
 OFTEN = 2
 
 
-def explained(problem: TouchingSystem, at: Touched | None) -> str:
+def explained(problem: ContactEquations, at: ContactEvaluation | None) -> str:
     """Which pair and nodes a failed increment hung on, and what was tried."""
     if at is None:
         return ""
     said = ""
-    lack, k, i = problem.lack(at)
-    pair, terms = problem.touching.pairs[k], at.touch.terms[k]
-    if lack > 0.0:
-        p = problem.touching.parts(at.touch.multipliers)[k][0][i]
+    complementarity, k, i = problem.complementarity(at)
+    pair, terms = problem.contact_term.pairs[k], at.contact_state.terms[k]
+    if complementarity > 0.0:
+        p = problem.contact_term.parts(at.contact_state.multipliers)[k][0][i]
         area = terms.area[i]
         gap = f"{terms.gap[i] / area:.3g}" if area > 0.0 else "none"
         said = (
-            f"; contact pair {pair.name!r}: worst at node {problem.touching.label(pair, i)} "
+            f"; contact pair {pair.name!r}: worst at node {problem.contact_term.label(pair, i)} "
             f"(gap {gap}, pressure {p:.3g})"
         )
-    turning = [
+    nlgeom = [
         (int(f[j]), pair, int(j))
-        for pair, f in zip(problem.touching.pairs, problem.flips, strict=True)
+        for pair, f in zip(problem.contact_term.pairs, problem.flips, strict=True)
         for j in np.flatnonzero(f > OFTEN)
     ]
-    turning.sort(key=lambda item: -item[0])
-    if turning:
-        names = ", ".join(str(problem.touching.label(q, j)) for _, q, j in turning[:5])
+    nlgeom.sort(key=lambda item: -item[0])
+    if nlgeom:
+        names = ", ".join(str(problem.contact_term.label(q, j)) for _, q, j in nlgeom[:5])
         said += (
-            f"; the contact state kept changing at node{'s' if len(turning) > 1 else ''} "
-            f"{names}{', ...' if len(turning) > 5 else ''} of pair {turning[0][1].name!r}"
+            f"; the contact state kept changing at node{'s' if len(nlgeom) > 1 else ''} "
+            f"{names}{', ...' if len(nlgeom) > 5 else ''} of pair {nlgeom[0][1].name!r}"
         )
         if problem.sliding > OFTEN:
             said += "; friction does not hold the bodies: they slide"

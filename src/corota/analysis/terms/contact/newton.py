@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation, System
-    from corota.analysis.newton import Judgement, Outcome, Settings
-    from corota.analysis.terms.contact.equations import TouchingSystem
+    from corota.analysis.newton import Outcome, ResidualNorms, Settings
+    from corota.analysis.terms.contact.equations import ContactEquations
 
     Floats = NDArray[np.float64]
 
@@ -30,11 +30,11 @@ def newton_with_contact(
     prescribed: Floats,
     step_time: float,
     settings: Settings,
-    report: Callable[[int, Judgement, float, str], None] | None = None,
+    report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     weight: float = 1.0,
     tangent: Floats | None = None,
     last_chance: bool = False,
-) -> tuple[Outcome[Evaluation], TouchingSystem]:
+) -> tuple[Outcome[Evaluation], ContactEquations]:
     """Newton's method on displacements and multipliers of contact.
 
     Parameters
@@ -58,13 +58,17 @@ def newton_with_contact(
     touching : TouchingSystem
         Its ``accept`` commits contact, once the increment is taken.
     """
-    from corota.analysis.terms.contact.equations import MORE, PATIENCE, TouchingSystem
+    from corota.analysis.terms.contact.equations import (
+        MAX_EXTRA_CONTACT_ITERATIONS,
+        PATIENCE,
+        ContactEquations,
+    )
 
-    problem = TouchingSystem(inner, system, weight)
+    problem = ContactEquations(inner, system, weight)
     n = system.n_dofs
     z = problem.start(u)
     target = np.concatenate([prescribed, z[n:]])
-    most = settings.max_iterations + MORE
+    most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
     more = replace(settings, max_iterations=most, patience=0 if last_chance else PATIENCE)
     start = None
     if tangent is not None:

@@ -12,26 +12,26 @@ from corota.analysis.terms.contact.pair import COVERED, OPEN
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import Touching
+    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair, Terms
 
     Floats = NDArray[np.float64]
 
 
-def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
+def output(contact_term: ContactTerm) -> tuple[Floats, dict[str, float]]:
     """See :meth:`corota.analysis.terms.contact.contact.Touching.output`."""
-    n = len(touching.system.per_node)
+    n = len(contact_term.system.per_node)
     values = np.zeros((n, 5))
     sums: dict[str, float] = {}
-    touch = touching.at
+    contact_state = contact_term.at
     friction = law = 0.0
-    x = touching.positions(touching.u)
+    x = contact_term.positions(contact_term.u)
     for k, (pair, (p, q)) in enumerate(
-        zip(touching.pairs, touching.parts(touching.committed), strict=True)
+        zip(contact_term.pairs, contact_term.parts(contact_term.committed), strict=True)
     ):
-        if touch is None:
+        if contact_state is None:
             continue
-        terms, state = touch.terms[k], touch.states[k]
+        terms, state = contact_state.terms[k], contact_state.states[k]
         seen = terms.area > COVERED * pair.full
         gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
         # Positive when the slave is pulled along its own edges' direction.
@@ -53,7 +53,7 @@ def output(touching: Touching) -> tuple[Floats, dict[str, float]]:
         law += pair.law_energy(terms)
     sums["friction energy"] = friction
     sums["contact energy"] = law
-    sums["stabilisation energy"] = touching.damping_work
+    sums["stabilisation energy"] = contact_term.damping_work
     return values, sums
 
 

@@ -118,9 +118,9 @@ class Pair:
 
     # -- evaluation --------------------------------------------------------------------
 
-    def evaluate(self, x: Floats, old: Floats, turning: bool) -> Terms:
+    def evaluate(self, x: Floats, old: Floats, nlgeom: bool) -> Terms:
         """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3)."""
-        if not turning:
+        if not nlgeom:
             return self._since(self._linear(x, old))
         self.core.search(x)
         return self._since(self._read(self.core.evaluate(x, old if self.friction else None)))
@@ -158,9 +158,16 @@ class Pair:
                 gap, slip, area = (np.bincount(self.owner, t, self.n) for t in (gap, slip, area))
                 constraint = self.owner[constraint]
         return Terms(
-            gap, slip, area, constraint, raw["pair"],
-            raw["variables"], raw["gap_gradient"], raw["slip_gradient"], parts,
-        )  # fmt: skip
+            gap,
+            slip,
+            area,
+            constraint,
+            raw["pair"],
+            raw["variables"],
+            raw["gap_gradient"],
+            raw["slip_gradient"],
+            parts,
+        )
 
     def _owners(self, area: Floats) -> Ints:
         """Constraint that each node's part belongs to: its own, or a neighbour's.
@@ -195,9 +202,16 @@ class Pair:
         gap = at.gap + rise(at.gap_gradient, self.reference)
         slip = rise(at.slip_gradient, self.reference if self.tied else old)
         return Terms(
-            gap, slip, at.area, at.constraint, at.pair, at.variables, at.gap_gradient,
-            at.slip_gradient, (gap, at.area),
-        )  # fmt: skip
+            gap,
+            slip,
+            at.area,
+            at.constraint,
+            at.pair,
+            at.variables,
+            at.gap_gradient,
+            at.slip_gradient,
+            (gap, at.area),
+        )
 
     # -- states ------------------------------------------------------------------------
 
@@ -243,7 +257,7 @@ class Pair:
             state[slips] = SLIPPING
         return state
 
-    def sense(self, terms: Terms, q: Floats) -> Floats:
+    def slip_direction(self, terms: Terms, q: Floats) -> Floats:
         """Sign of the shear traction if it slips, shape (n,)."""
         return np.where(self.shear(terms, q) > 0.0, 1.0, -1.0)
 
@@ -267,23 +281,21 @@ class Pair:
         if self.tied:
             return np.where(seen, area * c * np.hypot(gap, slip), self.full * np.hypot(p, q))
         if self.law is None:
-            lack = np.abs(np.minimum(c * gap, p))
+            complementarity = np.abs(np.minimum(c * gap, p))
         else:
-            lack = np.abs(p - self._pressure(terms.gap / self.area)[0])
-        lack = np.where(seen, lack, np.abs(p))
+            complementarity = np.abs(p - self._pressure(terms.gap / self.area)[0])
+        complementarity = np.where(seen, complementarity, np.abs(p))
         if self.friction:
             bound = self.friction * np.maximum(p, 0.0)
-            lack += np.abs(q - np.where(seen, np.clip(q - c * slip, -bound, bound), 0.0))
-        return area * lack
+            complementarity += np.abs(q - np.where(seen, np.clip(q - c * slip, -bound, bound), 0.0))
+        return area * complementarity
 
     def _pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
         """The law at gaps: pressure, slope, energy per area; none where it has not begun."""
         assert self.law is not None
         begun = -gap > self.law.start
         p, slope, energy = self.law(np.where(begun, -gap, self.law.start))
-        return (
-            np.where(begun, p, 0.0), np.where(begun, slope, 0.0), np.where(begun, energy, 0.0)
-        )  # fmt: skip
+        return (np.where(begun, p, 0.0), np.where(begun, slope, 0.0), np.where(begun, energy, 0.0))
 
     def law_energy(self, terms: Terms) -> float:
         """Energy of the pressure law [force*length]."""
@@ -294,7 +306,7 @@ class Pair:
         return float((self._pressure(gap)[2] * self.area)[seen].sum())
 
     def rows(
-        self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, sense: Floats
+        self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats
     ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """The constraints linearised: diagonals and right-hand sides of p and q, and the slope.
 
@@ -320,7 +332,7 @@ class Pair:
             return dp, rp, dp[:0], dp[:0], dp[:0]
         sticks = state == CLOSED
         dq = np.where(sticks, 0.0, own)
-        follow = np.where(state == SLIPPING, self.friction * sense, 0.0)
+        follow = np.where(state == SLIPPING, self.friction * slip_direction, 0.0)
         rq = np.where(sticks, terms.slip, 0.0)
         return dp, rp, dq, rq, follow
 

@@ -13,8 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.procedures.path.equations import NOT_CONSERVATIVE
-from corota.analysis.terms.contact.equations import MORE, Asked, Touched, TouchingSystem
-from corota.analysis.terms.contact.event_predictor import go_round
+from corota.analysis.terms.contact.equations import (
+    MAX_EXTRA_CONTACT_ITERATIONS,
+    ContactEquations,
+    ContactEvaluation,
+    RightHandSides,
+)
+from corota.analysis.terms.contact.event_predictor import predict_through_events
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.errors import ModelError
 
@@ -35,7 +40,7 @@ SLIPS = (
 
 
 @dataclass
-class Along(Touched):
+class Along(ContactEvaluation):
     """An evaluation on a path.
 
     Parameters
@@ -53,12 +58,12 @@ class Along(Touched):
     def internal(self) -> Floats:
         """Forces at dofs, then gaps and slips as the multipliers see them."""
         parts = [self.at.internal]
-        for terms, two in zip(self.touch.terms, self.two, strict=True):
+        for terms, two in zip(self.contact_state.terms, self.two, strict=True):
             parts += [-terms.gap, -terms.slip] if two else [-terms.gap]
         return np.concatenate(parts)
 
 
-class TouchingPath(TouchingSystem):
+class ContactPathEquations(ContactEquations):
     """See :class:`corota.analysis.procedures.path.equations.PathSystem`.
 
     Parameters
@@ -73,13 +78,13 @@ class TouchingPath(TouchingSystem):
         If an overlap is to be ramped along the path.
     """
 
-    more_iterations = MORE
+    more_iterations = MAX_EXTRA_CONTACT_ITERATIONS
 
     def __init__(self, system: System, notes: list[str]) -> None:
         super().__init__(system, system)
-        touching = self.touching
-        for pair in touching.pairs:
-            ramped = getattr(pair.item, "start", "") == "ramp" and touching.number == 1
+        contact_term = self.contact_term
+        for pair in contact_term.pairs:
+            ramped = getattr(pair.item, "start", "") == "ramp" and contact_term.number == 1
             if ramped and pair.overlap.any():
                 raise ModelError(
                     f"contact pair {pair.name!r} overlaps at the start, which start='ramp' would "
@@ -87,11 +92,11 @@ class TouchingPath(TouchingSystem):
                     "take start='keep' or 'adjust'",
                     pair.item.where,
                 )
-        touching.damps = False
+        contact_term.damps = False
         self.notes = notes
         self.n_dofs, self.length = system.n_dofs, system.length
-        self.counted = np.concatenate([system.counted, np.zeros(touching.n, bool)])
-        self.two = tuple(pair.two for pair in touching.pairs)
+        self.counted = np.concatenate([system.counted, np.zeros(contact_term.n, bool)])
+        self.two = tuple(pair.two for pair in contact_term.pairs)
         self._now: tuple[Floats, Along, float] | None = None
         #: States of the direction at the committed state, with which an attempt begins.
         self._base: States | None = None
@@ -101,7 +106,7 @@ class TouchingPath(TouchingSystem):
     @property
     def not_conservative(self) -> str:
         """Why pivots do not tell stability."""
-        return SLIPS if any(p.friction for p in self.touching.pairs) else NOT_CONSERVATIVE
+        return SLIPS if any(p.friction for p in self.contact_term.pairs) else NOT_CONSERVATIVE
 
     def plain(self, at: Along) -> Evaluation:
         """The system's own evaluation, its internal force with that of contact."""
@@ -109,7 +114,7 @@ class TouchingPath(TouchingSystem):
 
     def restart(self, loose: bool = False, like: Along | None = None) -> None:
         """Begin an attempt with the states of the last commit, or of another evaluation."""
-        self.touching.restore()
+        self.contact_term.restore()
         self.forget()
         self._fresh, self._loose = False, loose
         first = self._base if like is None or like.states is None else like.states
@@ -119,25 +124,25 @@ class TouchingPath(TouchingSystem):
     def evaluate(self, z: Floats, step_time: float) -> Along:
         """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
         found = super().evaluate(z, step_time)
-        at = Along(found.at, found.touch, self.two)
+        at = Along(found.at, found.contact_state, self.two)
         self._now = (z, at, step_time)
         return at
 
     def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of held dofs per unit of load factor, 0 for multipliers."""
-        none = np.zeros(self.touching.n)
+        none = np.zeros(self.contact_term.n)
         force, move = self.system.load_rate(z[: self.n])
         return np.concatenate([force, none]), np.concatenate([move, none])
 
     def advance(self, at: Along, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """Newton correction, and the change per unit of load factor with the same states."""
         n = self.n
-        asked = Asked(
+        right_sides = RightHandSides(
             np.stack([-at.at.residual, force[:n]], axis=1),
             np.stack([np.zeros(n), move[:n]], axis=1),
             np.array([1.0, 0.0]),
         )
-        x, _ = self._columns(at, asked, self._choose(at.touch))
+        x, _ = self._columns(at, right_sides, self._choose(at.contact_state))
         return x[:, 0], x[:, 1]
 
     def rate(self, at: Along, force: Floats, move: Floats) -> tuple[Floats, int]:
@@ -156,29 +161,29 @@ class TouchingPath(TouchingSystem):
         states: States,
         force: Floats,
         move: Floats,
-        senses: dict[tuple[int, int], float] | None = None,
+        slip_directions: dict[tuple[int, int], float] | None = None,
     ) -> tuple[Floats, int]:
         """The same with given states, and senses of slip of some (pair, constraint)."""
         self._loose = False
-        asked = Asked(force[: self.n, None], move[: self.n, None], np.zeros(1))
-        x, negative = self._columns(at, asked, states, senses)
+        right_sides = RightHandSides(force[: self.n, None], move[: self.n, None], np.zeros(1))
+        x, negative = self._columns(at, right_sides, states, slip_directions)
         return x[:, 0], negative
 
     def around(
         self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
     ) -> tuple[Point, Tangent] | None:
         """A point round the kinks that lie on the way, and the direction behind them."""
-        if self.touching.at is not None:
+        if self.contact_term.at is not None:
             self._base = None
-        found = go_round(self, base, tangent, metric, size, period)
+        found = predict_through_events(self, base, tangent, metric, size, period)
         if found is None:
             return None
         point, now, self._base = found
         return point, now
 
-    def solve_again(self, rhs: Floats) -> Floats:
+    def solve_with_last_factor(self, rhs: Floats) -> Floats:
         """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
-        return np.concatenate(self.border.again(rhs))
+        return np.concatenate(self.border.correct_with_last_factor(rhs))
 
     def ahead(self, at: Along, rate: Floats) -> float:
         """Whether what changed its state since the commit goes on to do so along a direction.
@@ -186,20 +191,20 @@ class TouchingPath(TouchingSystem):
         Where a constraint closed its pressure grows from zero; where one opened its gap does;
         so does the slip of what began to slip.
         """
-        if self.touching.at is None:
+        if self.contact_term.at is None:
             return 0.0
         gaps = self.gap_rates(at, rate)
         total = 0.0
         for k, (pair, (dp, _)) in enumerate(
-            zip(self.touching.pairs, self.touching.parts(rate[self.n :]), strict=True)
+            zip(self.contact_term.pairs, self.contact_term.parts(rate[self.n :]), strict=True)
         ):
-            before, now = self.touching.at.states[k], self._settled(at)[k]
-            area = np.maximum(at.touch.terms[k].area, pair.full)
+            before, now = self.contact_term.at.states[k], self._settled(at)[k]
+            area = np.maximum(at.contact_state.terms[k].area, pair.full)
             closed, opened = (before == OPEN) & (now != OPEN), (before != OPEN) & (now == OPEN)
             total += float((dp * area)[closed].sum())
             total += float((gaps[k][0] * pair.stiffness)[opened].sum())
             slid = (before == CLOSED) & (now == SLIPPING)
-            slip = at.touch.terms[k].slip
+            slip = at.contact_state.terms[k].slip
             total += float((np.sign(slip) * gaps[k][1] * pair.stiffness)[slid].sum())
         return total
 
@@ -208,7 +213,7 @@ class TouchingPath(TouchingSystem):
         assert self._now is not None
         z, at, step_time = self._now
         self.system.commit()
-        self.touch = at.touch
+        self.contact_state = at.contact_state
         self.notes += self.accept(z[: self.n], step_time)
         self._base, self._fresh = None, True
 
@@ -218,10 +223,12 @@ class TouchingPath(TouchingSystem):
         """States of a point: as the last correction left them, if one was made."""
         if at.states is None:
             corrected = self.last if self.corrections else None
-            before: Any = corrected or [None] * len(self.touching.pairs)
+            before: Any = corrected or [None] * len(self.contact_term.pairs)
             at.states = [
                 pair.states(terms, p, q, last)
-                for (pair, terms, (p, q)), last in zip(self._pairs(at.touch), before, strict=True)
+                for (pair, terms, (p, q)), last in zip(
+                    self._pairs(at.contact_state), before, strict=True
+                )
             ]
         return at.states
 
@@ -229,8 +236,8 @@ class TouchingPath(TouchingSystem):
         """Change of weighted gaps and slips of each pair along a direction."""
         moved = np.append(rate[: self.n], 0.0)
         out = []
-        for pair, terms in zip(self.touching.pairs, at.touch.terms, strict=True):
-            du = moved[self.touching.dofs(terms.variables)]
+        for pair, terms in zip(self.contact_term.pairs, at.contact_state.terms, strict=True):
+            du = moved[self.contact_term.dofs(terms.variables)]
             gap, slip = np.zeros(pair.n), np.zeros(pair.n)
             np.add.at(gap, terms.constraint, (terms.gap_gradient * du).sum(axis=1))
             np.add.at(slip, terms.constraint, (terms.slip_gradient * du).sum(axis=1))
@@ -238,23 +245,23 @@ class TouchingPath(TouchingSystem):
         return out
 
     def _held(
-        self, at: Touched, states: States, asked: Asked
+        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int, States]:
         """Correction for states as they are: on a path, what has no stiffness is critical.
 
         Only where a path begins are bodies that nothing holds brought into contact.
         """
         if self._loose:
-            return super()._held(at, states, asked)
-        return *self._solve(at, states, asked), states
+            return super()._held(at, states, right_sides)
+        return *self._solve(at, states, right_sides), states
 
     # A control bounds the correction that is made: none of its parts is one by itself.
 
-    def _far(self, du: Floats, asked: Asked) -> bool:
+    def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
         return False
 
-    def _let_slip(self, at: Any, states: States, asked: Asked, found: Any) -> Any:
+    def _let_slip(self, at: Any, states: States, right_sides: RightHandSides, found: Any) -> Any:
         return *found, states
 
 
-__all__ = ["SLIPS", "Along", "TouchingPath"]
+__all__ = ["SLIPS", "Along", "ContactPathEquations"]

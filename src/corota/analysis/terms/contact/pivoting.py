@@ -26,7 +26,11 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.equations import Asked, Touched, TouchingSystem
+    from corota.analysis.terms.contact.equations import (
+        ContactEquations,
+        ContactEvaluation,
+        RightHandSides,
+    )
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -71,9 +75,11 @@ class Pivoting:
         One right-hand side.
     """
 
-    def __init__(self, problem: TouchingSystem, at: Touched, asked: Asked) -> None:
-        self.problem, self.at, self.asked = problem, at, asked
-        self.pairs = list(problem._pairs(at.touch))
+    def __init__(
+        self, problem: ContactEquations, at: ContactEvaluation, right_sides: RightHandSides
+    ) -> None:
+        self.problem, self.at, self.right_sides = problem, at, right_sides
+        self.pairs = list(problem._pairs(at.contact_state))
 
     def solve(self, bases: list[States]) -> Found | None:
         """Correction of dofs and multipliers, its states and senses; None where none is found.
@@ -92,10 +98,10 @@ class Pivoting:
                     break
                 if found is None:
                     break
-                z, states, senses = found
+                z, states, slip_directions = found
                 more = self._violated(z, states, chosen)
                 if more is None:
-                    return z, states, senses
+                    return z, states, slip_directions
                 chosen = more
         return None
 
@@ -164,24 +170,24 @@ class Pivoting:
     def _with(self, base: States, chosen: list[Chosen]) -> Found | None:
         """Solution from one basis."""
         problem, n = self.problem, self.problem.n
-        senses = [
+        slip_directions = [
             np.where(q > 0.0, 1.0, -1.0) if pair.friction else np.ones(pair.n)
             for pair, _, (p, q) in self.pairs
         ]
         for k, (pair, terms, (_, q)) in enumerate(self.pairs):
             if pair.friction:
                 # What does not slip yet would slip against its trial traction.
-                own = pair.sense(terms, q)
-                senses[k] = np.where(base[k] == SLIPPING, senses[k], own)
+                own = pair.slip_direction(terms, q)
+                slip_directions[k] = np.where(base[k] == SLIPPING, slip_directions[k], own)
                 zero = (q == 0.0) & (base[k] == SLIPPING)
-                senses[k] = np.where(zero, own, senses[k])
-        force, rows = self._inputs(base, chosen, senses)
-        du, dp = responses(problem, self.at, base, senses, self.asked, force, rows)
-        values = [self._values(base, c, senses[c.k], du, dp) for c in chosen]
-        return self._pivoted(base, chosen, senses, values, du, dp, n)
+                slip_directions[k] = np.where(zero, own, slip_directions[k])
+        force, rows = self._inputs(base, chosen, slip_directions)
+        du, dp = responses(problem, self.at, base, slip_directions, self.right_sides, force, rows)
+        values = [self._values(base, c, slip_directions[c.k], du, dp) for c in chosen]
+        return self._pivoted(base, chosen, slip_directions, values, du, dp, n)
 
     def _inputs(
-        self, base: States, chosen: list[Chosen], senses: list[Floats]
+        self, base: States, chosen: list[Chosen], slip_directions: list[Floats]
     ) -> tuple[Floats, Floats]:
         """Two columns of forces and right-hand sides for each constraint.
 
@@ -190,19 +196,19 @@ class Pivoting:
         """
         problem = self.problem
         count = 2 * sum(len(c.rows) for c in chosen)
-        force, rows = np.zeros((problem.n + 1, count)), np.zeros((problem.touching.n, count))
+        force, rows = np.zeros((problem.n + 1, count)), np.zeros((problem.contact_term.n, count))
         at = 0
         for c in chosen:
             pair, terms, _ = self.pairs[c.k]
             column = np.full(pair.n, -1, np.int64)
             column[c.rows] = at + 2 * np.arange(len(c.rows))
-            state, sense = base[c.k], senses[c.k]
-            where = problem.touching.dofs(terms.variables)
+            state, slip_direction = base[c.k], slip_directions[c.k]
+            where = problem.contact_term.dofs(terms.variables)
             i = terms.constraint
             of_open = (column[i] >= 0) & (state[i] == OPEN)
             push = terms.gap_gradient
             if pair.two:
-                push = push + (pair.friction * sense)[i, None] * terms.slip_gradient
+                push = push + (pair.friction * slip_direction)[i, None] * terms.slip_gradient
             wide = where.shape[1]
             np.add.at(
                 force,
@@ -216,7 +222,7 @@ class Pivoting:
                 np.add.at(
                     force,
                     (where[less], np.repeat(column[i][less][:, None] + 1, wide, 1)),
-                    -problem.weight * sense[i[less], None] * terms.slip_gradient[less],
+                    -problem.weight * slip_direction[i[less], None] * terms.slip_gradient[less],
                 )
                 stuck = c.rows[state[c.rows] == CLOSED]
                 rows[pair.first + pair.n + stuck, column[stuck] + 1] = -1.0
@@ -224,7 +230,7 @@ class Pivoting:
         return force[:-1], rows
 
     def _values(
-        self, base: States, c: Chosen, sense: Floats, du: Floats, dp: Floats
+        self, base: States, c: Chosen, slip_direction: Floats, du: Floats, dp: Floats
     ) -> tuple[Floats, Floats, Floats, Floats]:
         """Pressure, gap, slip and traction as forces: values, then changes by inputs."""
         problem = self.problem
@@ -244,9 +250,15 @@ class Pivoting:
         return pressure * force, gap * stiff, slip * stiff, shear * force
 
     def _pivoted(
-        self, base: States, chosen: list[Chosen], senses: list[Floats], values: Any,
-        du: Floats, dp: Floats, n: int,
-    ) -> Found | None:  # fmt: skip
+        self,
+        base: States,
+        chosen: list[Chosen],
+        slip_directions: list[Floats],
+        values: Any,
+        du: Floats,
+        dp: Floats,
+        n: int,
+    ) -> Found | None:
         """Set up the complementarity problem, solve it, and go back to corrections."""
         blocks = []  # (table of y by columns, scale, column) of each complementary pair
         kinds: list[tuple[int, int, str]] = []
@@ -256,7 +268,7 @@ class Pivoting:
             pair = self.pairs[c.k][0]
             mu = pair.friction
             for j, i in enumerate(c.rows.tolist()):
-                state, sense = base[c.k][i], senses[c.k][i]
+                state, slip_direction = base[c.k][i], slip_directions[c.k][i]
                 first, second = at + 2 * j, at + 2 * j + 1
                 if state == OPEN:
                     blocks.append(gap[j])
@@ -281,9 +293,9 @@ class Pivoting:
                     bound[first] = c.force[j]
                 other = 2.0 * mu * bound
                 other[second] -= c.force[j]
-                blocks += [-sense * slip[j], other]
+                blocks += [-slip_direction * slip[j], other]
                 kinds += [(c.k, i, "along"), (c.k, i, "against")]
-                inputs += [(second, 1.0 / c.force[j]), (-1, float(sense))]
+                inputs += [(second, 1.0 / c.force[j]), (-1, float(slip_direction))]
             at += 2 * len(c.rows)
         if not kinds:
             return None
@@ -305,17 +317,25 @@ class Pivoting:
             if column >= 0 and x[a] != 0.0:
                 u += x[a] * factor * du[:, column]
                 traction += x[a] * factor * dp[:, column]
-        states, senses = self._read(base, chosen, senses, kinds, x, basic, inputs, traction)
-        return np.concatenate([u, traction]), states, senses
+        states, slip_directions = self._read(
+            base, chosen, slip_directions, kinds, x, basic, inputs, traction
+        )
+        return np.concatenate([u, traction]), states, slip_directions
 
     def _read(
-        self, base: States, chosen: list[Chosen], senses: list[Floats],
-        kinds: list[tuple[int, int, str]], x: Floats, basic: NDArray[np.bool_],
-        inputs: list[tuple[int, float]], traction: Floats,
-    ) -> tuple[States, list[Floats]]:  # fmt: skip
+        self,
+        base: States,
+        chosen: list[Chosen],
+        slip_directions: list[Floats],
+        kinds: list[tuple[int, int, str]],
+        x: Floats,
+        basic: NDArray[np.bool_],
+        inputs: list[tuple[int, float]],
+        traction: Floats,
+    ) -> tuple[States, list[Floats]]:
         """States of a solution; tractions of what slips or opens go into the correction."""
         out = [s.copy() for s in base]
-        sense = [s.copy() for s in senses]
+        slip_direction = [s.copy() for s in slip_directions]
         slack = {}
         for a, (k, i, kind) in enumerate(kinds):
             was, on = base[k][i], bool(basic[a])
@@ -329,14 +349,14 @@ class Pivoting:
             elif out[k][i] == OPEN:
                 continue
             elif kind == "forth" and on:
-                out[k][i], sense[k][i] = SLIPPING, -1.0
+                out[k][i], slip_direction[k][i] = SLIPPING, -1.0
             elif kind == "back" and on:
-                out[k][i], sense[k][i] = SLIPPING, 1.0
+                out[k][i], slip_direction[k][i] = SLIPPING, 1.0
             elif kind == "along":
                 slack[k, i] = x[a] * inputs[a][1]
                 out[k][i] = CLOSED if on else SLIPPING
             elif kind == "against" and on:
-                out[k][i], sense[k][i] = SLIPPING, -senses[k][i]
+                out[k][i], slip_direction[k][i] = SLIPPING, -slip_directions[k][i]
         for c in chosen:
             pair, _, (p, q) = self.pairs[c.k]
             for i in c.rows.tolist():
@@ -350,9 +370,9 @@ class Pivoting:
                 if state == OPEN:
                     traction[at] = -q[i]
                 elif state == SLIPPING:
-                    traction[at] = pair.friction * sense[c.k][i] * p1 - q[i]
+                    traction[at] = pair.friction * slip_direction[c.k][i] * p1 - q[i]
                 elif base[c.k][i] != CLOSED:
-                    s = senses[c.k][i]
+                    s = slip_directions[c.k][i]
                     traction[at] = s * (pair.friction * p1 - slack[c.k, i]) - q[i]
         for k, (pair, _, (p, q)) in enumerate(self.pairs):
             # Slipping tractions of constraints that were not chosen follow their pressure.
@@ -364,14 +384,18 @@ class Pivoting:
                     mine[c.rows] = False
             for i in np.flatnonzero(mine & (base[k] != CLOSED)).tolist():
                 p1 = p[i] + traction[pair.first + i]
-                follow = pair.friction * senses[k][i] * p1 if base[k][i] == SLIPPING else 0.0
+                follow = (
+                    pair.friction * slip_directions[k][i] * p1 if base[k][i] == SLIPPING else 0.0
+                )
                 traction[pair.first + pair.n + i] = follow - q[i]
-        return out, sense
+        return out, slip_direction
 
 
-def pivoted(problem: TouchingSystem, at: Touched, asked: Asked) -> Found | None:
+def pivoted(
+    problem: ContactEquations, at: ContactEvaluation, right_sides: RightHandSides
+) -> Found | None:
     """A correction with states from the whole linearised problem, None where there is none."""
-    pairs = list(problem._pairs(at.touch))
+    pairs = list(problem._pairs(at.contact_state))
     first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
     starts = [first] if problem.last is None else [problem.last, first]
     # With all that touches sticking, what holds by friction is held and the matrix symmetric.
@@ -380,41 +404,50 @@ def pivoted(problem: TouchingSystem, at: Touched, asked: Asked) -> Found | None:
     for base in bases:
         for s, (pair, terms, _) in zip(base, pairs, strict=True):
             s[terms.area <= COVERED * pair.full] = OPEN
-    return Pivoting(problem, at, asked).solve(bases)
+    return Pivoting(problem, at, right_sides).solve(bases)
 
 
-def _small(problem: TouchingSystem) -> float:
+def _small(problem: ContactEquations) -> float:
     """Force that is none."""
     scales = problem.system.scales
     return 1e-9 * max(scales.force, scales.nothing)
 
 
 def responses(
-    problem: TouchingSystem, at: Touched, states: States, senses: list[Floats], asked: Asked,
-    force: Floats, rows: Floats,
-) -> tuple[Floats, Floats]:  # fmt: skip
+    problem: ContactEquations,
+    at: ContactEvaluation,
+    states: States,
+    slip_directions: list[Floats],
+    right_sides: RightHandSides,
+    force: Floats,
+    rows: Floats,
+) -> tuple[Floats, Floats]:
     """Solutions for the first right-hand side asked for, and for forces and rows of inputs."""
     system = problem.system
-    problem.senses = {p.first: s for p, s in zip(problem.touching.pairs, senses, strict=True)}
-    coupling, own, _ = problem._coupling(at.touch, states)
-    columns = [asked.force[:, 0] + system.at_nodes(coupling.force)]
+    problem.slip_directions = {
+        p.first: s for p, s in zip(problem.contact_term.pairs, slip_directions, strict=True)
+    }
+    coupling, own, _ = problem._coupling(at.contact_state, states)
+    columns = [right_sides.force[:, 0] + system.at_nodes(coupling.force)]
     columns += [system.at_nodes(f) for f in force.T]
-    held = np.zeros((problem.n, len(columns)))
-    held[:, 0] = asked.held[:, 0]
-    both = np.column_stack([asked.own[0] * own, rows])
-    du, dp, _ = problem.border.solve(at.at, coupling, np.column_stack(columns), both, held)
+    constrained = np.zeros((problem.n, len(columns)))
+    constrained[:, 0] = right_sides.constrained[:, 0]
+    both = np.column_stack([right_sides.own[0] * own, rows])
+    du, dp, _ = problem.border.solve(at.at, coupling, np.column_stack(columns), both, constrained)
     return du, dp
 
 
-def rates_of(problem: TouchingSystem, at: Touched, du: Floats, only: int | None = None) -> Any:
+def rates_of(
+    problem: ContactEquations, at: ContactEvaluation, du: Floats, only: int | None = None
+) -> Any:
     """Changes of weighted gaps and slips of each pair, or one, with columns of displacements."""
     moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)
     moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])
     out = []
-    for k, (pair, terms, _) in enumerate(problem._pairs(at.touch)):
+    for k, (pair, terms, _) in enumerate(problem._pairs(at.contact_state)):
         if only is not None and k != only:
             continue
-        where, parts = problem.touching.dofs(terms.variables), []
+        where, parts = problem.contact_term.dofs(terms.variables), []
         for gradient in (terms.gap_gradient, terms.slip_gradient):
             change = np.zeros((pair.n, moved.shape[1]))
             np.add.at(change, terms.constraint, np.einsum("tv,tvc->tc", gradient, moved[where]))

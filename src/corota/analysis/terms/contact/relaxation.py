@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation, System
-    from corota.analysis.newton import Judgement, Settings
-    from corota.analysis.terms.contact.equations import Touched, TouchingSystem
+    from corota.analysis.newton import ResidualNorms, Settings
+    from corota.analysis.terms.contact.equations import ContactEquations, ContactEvaluation
 
     Floats = NDArray[np.float64]
 
@@ -47,48 +47,48 @@ def relax(
     prescribed: Floats,
     step_time: float,
     settings: Settings,
-    report: Callable[[int, Judgement, float, str], None] | None = None,
-) -> tuple[Outcome[Evaluation], TouchingSystem]:
+    report: Callable[[int, ResidualNorms, float, str], None] | None = None,
+) -> tuple[Outcome[Evaluation], ContactEquations]:
     """Find an equilibrium by a creep that fades.
 
     The parameters and results are those of
     :func:`corota.analysis.terms.contact.newton.newton_with_contact`.
     """
-    from corota.analysis.terms.contact.equations import TouchingSystem
+    from corota.analysis.terms.contact.equations import ContactEquations
 
-    problem = TouchingSystem(system, system)
+    problem = ContactEquations(system, system)
     problem.pivoting = problem.relaxing = True
     found = _creep(problem, system, u, prescribed, step_time, settings, report)
     return problem.settle(found), problem
 
 
 def _creep(
-    problem: TouchingSystem,
+    problem: ContactEquations,
     system: System,
     u: Floats,
     prescribed: Floats,
     step_time: float,
     settings: Settings,
-    report: Callable[[int, Judgement, float, str], None] | None,
-) -> Outcome[Touched]:
+    report: Callable[[int, ResidualNorms, float, str], None] | None,
+) -> Outcome[ContactEvaluation]:
     z = problem.start(u)
-    out: Outcome[Touched] = Outcome(False, z, None)
+    out: Outcome[ContactEvaluation] = Outcome(False, z, None)
     try:
         at = problem.evaluate(z, step_time)
     except ElementFailure as error:
         out.reason = str(error)
         return out
     brake = at.at.values.copy()
-    held = np.concatenate([prescribed, z[problem.n :]]) - z
-    edges = [float(p.slave.length.min()) for p in problem.touching.pairs]
+    constrained = np.concatenate([prescribed, z[problem.n :]]) - z
+    edges = [float(p.slave.length.min()) for p in problem.contact_term.pairs]
     farthest = FARTHEST * min(edges)
     share, failed, before = FIRST, 0, np.inf
-    out.sizes.append(problem.judge(at, z).size)
+    out.sizes.append(problem.residual_norms(at, z).size)
     for iteration in range(1, MOST + 1):
         plain = at.at.values
         at.at.values = plain + share * brake
         try:
-            dz, out.negative = problem.predict(at, held)
+            dz, out.negative = problem.predict(at, constrained)
         except (SingularError, GiveUp) as error:
             at.at.values = plain
             share, failed = max(2.0 * share, FIRST), failed + 1
@@ -111,19 +111,19 @@ def _creep(
             continue
         failed = 0
         z, at = there, next_at
-        held = (1.0 - length) * held
-        judged = problem.judge(at, z)
-        size = judged.size
+        constrained = (1.0 - length) * constrained
+        norms = problem.residual_norms(at, z)
+        size = norms.size
         out.u, out.at, out.iterations = z, at, iteration
         out.sizes.append(size)
         if report is not None:
-            report(iteration, judged, length * largest, f"relaxation, brake {share:.1g}")
+            report(iteration, norms, length * largest, f"relaxation, brake {share:.1g}")
         if not np.isfinite(size):
             out.reason = "the residual is not finite"
             return out
-        if not held.any() and (
+        if not constrained.any() and (
             size <= settings.tolerance
-            or (judged.rounding(settings.tolerance) and size >= 0.1 * before)
+            or (norms.rounding(settings.tolerance) and size >= 0.1 * before)
         ):
             out.converged = True
             out.note = f"relaxed to rest in {iteration} corrections"

@@ -53,9 +53,13 @@ class Surface:
     def take(self, rows: Ints) -> Surface:
         """Some of the edges."""
         return Surface(
-            self.name, self.edges[rows], self.nodes[rows], self.bulge[rows],
-            self.thickness[rows], self.length[rows],
-        )  # fmt: skip
+            self.name,
+            self.edges[rows],
+            self.nodes[rows],
+            self.bulge[rows],
+            self.thickness[rows],
+            self.length[rows],
+        )
 
     @property
     def node_list(self) -> Ints:
@@ -194,9 +198,15 @@ def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surfa
             elif reference is not None:
                 node = int(reference)
             core = _core.Contact.rigid(
-                x, slave.nodes, slave.bulge, slave.thickness, item.master.backward, node, point,
+                x,
+                slave.nodes,
+                slave.bulge,
+                slave.thickness,
+                item.master.backward,
+                node,
+                point,
                 **common,
-            )  # fmt: skip
+            )
         else:
             assert master is not None
             slave.thickness[:] = common_thickness(mesh.points, slave, master)
@@ -232,9 +242,17 @@ def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface, float]:
     reach = item.tolerance or 0.1 * longest
     try:
         core = _core.Contact.edges(
-            x, slave.nodes, slave.bulge, slave.thickness, master.nodes, master.bulge,
-            method="mortar", tie=True, reach=reach, margin=reach,
-        )  # fmt: skip
+            x,
+            slave.nodes,
+            slave.bulge,
+            slave.thickness,
+            master.nodes,
+            master.bulge,
+            method="mortar",
+            tie=True,
+            reach=reach,
+            margin=reach,
+        )
     except ValueError as error:
         raise ModelError(f"tie {item.name!r}: {error}", item.where) from None
     return core, slave, master, reach

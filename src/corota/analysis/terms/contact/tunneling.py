@@ -50,8 +50,8 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
     mean = drift.mean(axis=0)
     spread = np.hypot(*(drift - mean).T).max()
     nodes = pair.nodes
-    gone = np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach
-    chosen = np.flatnonzero(gone & (state != CLOSED) & (state != SLIPPING))
+    eliminated = np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach
+    chosen = np.flatnonzero(eliminated & (state != CLOSED) & (state != SLIPPING))
     hit = [k for k in chosen if _crosses(first, last, ends, old, new, int(nodes[k]))]
     return np.array(hit, np.int64)
 
@@ -68,9 +68,10 @@ def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, In
             return pieces, pieces, nodes
         at = pair.reference[int(reference)]
         return (
-            _carried(pieces, at, old[int(reference)]), _carried(pieces, at, new[int(reference)]),
+            _carried(pieces, at, old[int(reference)]),
+            _carried(pieces, at, new[int(reference)]),
             nodes,
-        )  # fmt: skip
+        )
     other = pair.slave if pair.master is None else pair.master
     nodes = other.nodes[:, :2]
     return old[nodes][:, :, :2], new[nodes][:, :, :2], nodes

@@ -62,18 +62,24 @@ class _Builder:
             return
         if isinstance(slave, RigidCurve):
             self.deck.row_error(
-                pair.card, pair.row, 0, f"{pair.slave} is a rigid profile and cannot be the slave",
+                pair.card,
+                pair.row,
+                0,
+                f"{pair.slave} is a rigid profile and cannot be the slave",
                 "name the deformable surface first, the rigid one second",
-            )  # fmt: skip
+            )
             return
         name = pair.name or f"{pair.slave}-{pair.master}"
         tied = pair.tied or (interaction is not None and interaction.law == "TIED")
         if tied:
             if isinstance(master, RigidCurve):
                 self.deck.row_error(
-                    pair.card, pair.row, 1, "nothing can be tied to a rigid profile",
+                    pair.card,
+                    pair.row,
+                    1,
+                    "nothing can be tied to a rigid profile",
                     "use *RIGID BODY, NSET=",
-                )  # fmt: skip
+                )
                 return
             self.model.ties.append(Tie(slave, master, pair.adjust, name, pair.row.where))
             return
@@ -113,9 +119,12 @@ class _Builder:
         if found is None:
             known = [view.prefix + s.name for view, s in self.sets.surfaces.values()]
             self.deck.row_error(
-                pair.card, pair.row, index, f"no surface named {numerals.shown(name)}",
+                pair.card,
+                pair.row,
+                index,
+                f"no surface named {numerals.shown(name)}",
                 nearest(name, known),
-            )  # fmt: skip
+            )
             return None
         view, surface = found
         if key(surface.card.value("TYPE")) == "SEGMENTS":
@@ -129,9 +138,12 @@ class _Builder:
         if not len(edges):
             if not self.deck.n_errors:
                 self.deck.row_error(
-                    pair.card, pair.row, index, f"surface {name} cannot touch: {what}",
+                    pair.card,
+                    pair.row,
+                    index,
+                    f"surface {name} cannot touch: {what}",
                     "contact acts on edges: give the surface by elements and faces",
-                )  # fmt: skip
+                )
             return None
         return edges if surface.nodes else full
 

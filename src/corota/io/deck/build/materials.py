@@ -55,8 +55,11 @@ def _law(draft: MaterialDraft) -> Material:
 def _common(draft: MaterialDraft) -> dict[str, Any]:
     """What a draft says that all materials have."""
     return {
-        "rho": draft.rho, "rayleigh": draft.damping, "name": draft.name, "where": draft.law_where,
-    }  # fmt: skip
+        "rho": draft.rho,
+        "rayleigh": draft.damping,
+        "name": draft.name,
+        "where": draft.law_where,
+    }
 
 
 def share_damping(deck: Deck) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic, Location
-from corota.io.deck.elements import COMPANIONS, ELEMENTS, LINES
+from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES
 from corota.io.deck.lexer import key
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
@@ -185,9 +185,11 @@ class MeshBuilder:
         differ = (xyz[second] != xyz[first]).any(axis=1)
         for at, before in zip(second[differ][:MAX_LISTED], first[differ], strict=False):
             self._fault(
-                _where(blocks, int(at)), f"node {labels[at]} is already defined with other "
-                f"coordinates ({_where(blocks, int(before))})", "*NODE",
-            )  # fmt: skip
+                _where(blocks, int(at)),
+                f"node {labels[at]} is already defined with other "
+                f"coordinates ({_where(blocks, int(before))})",
+                "*NODE",
+            )
         self._more(differ.sum(), "nodes are defined twice")
         if not differ.any():
             self.deck.note(f"{len(same)} nodes are given twice with the same coordinates")
@@ -231,8 +233,8 @@ class MeshBuilder:
                 good = self._known(block, nodes)
                 if repeated is not None:
                     good &= ~np.isin(block.labels, repeated)
-                if block.type in COMPANIONS:
-                    placed += self._companions(view, block, nodes, good)
+                if block.type in LINE_ELEMENTS:
+                    placed += self._line_elements(view, block, nodes, good)
                     continue
                 if block.type in LINES:
                     truss = good & np.isin(block.labels, trusses)
@@ -283,9 +285,11 @@ class MeshBuilder:
         still = np.zeros(int(rows.sum()), np.int64)
         return [Placed("line2", nodes[rows], block.labels[rows], still, view, block)]
 
-    def _companions(self, view: View, block: ElementBlock, nodes: Ints, good: Ints) -> list[Placed]:
+    def _line_elements(
+        self, view: View, block: ElementBlock, nodes: Ints, good: Ints
+    ) -> list[Placed]:
         """Cells of beams and springs; beams of three nodes become two."""
-        info = COMPANIONS[block.type]
+        info = LINE_ELEMENTS[block.type]
         if block.nodes.shape[1] > 1:
             good = good & self._distinct(block, nodes)
         nodes, labels = nodes[good], block.labels[good]

@@ -19,7 +19,7 @@ from corota.io.deck.cards.attachments import build_attachments
 from corota.io.deck.cards.lines import build_lines, truss_section
 from corota.io.deck.cards.thermal import build_initial, build_temperature
 from corota.io.deck.deck import nearest
-from corota.io.deck.elements import COMPANIONS, DRILLING, ELEMENTS, LINES
+from corota.io.deck.elements import DRILLING, ELEMENTS, LINE_ELEMENTS, LINES
 from corota.io.deck.lexer import key
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
 from corota.model.local_strain import LocalStrain
@@ -74,7 +74,7 @@ class ModelBuilder:
             step = self._step(draft)
             if step is not None:
                 model.steps.append(step)
-        self.sets.judge_missing(self._names_used())
+        self.sets.report_missing(self._names_used())
         model.time_points = deck.time_points
         model.title = " ".join(deck.heading)
         self._move_supports()
@@ -156,8 +156,8 @@ class ModelBuilder:
         if len(bare) and (drafts or self.deck.steps):
             label = self.mesh.cell_labels[bare[0]]
             more = f" and {len(bare) - 1} others have" if len(bare) > 1 else " has"
-            companion = COMPANIONS.get(self.meshes.types[self.meshes.cell_type[bare[0]]])
-            wanted = SECTION_CARDS[companion.role] if companion else "*SOLID SECTION"
+            line_element = LINE_ELEMENTS.get(self.meshes.types[self.meshes.cell_type[bare[0]]])
+            wanted = SECTION_CARDS[line_element.role] if line_element else "*SOLID SECTION"
             self.deck.error(None, None, f"element {label}{more} no {wanted}", hint="give it one")
 
     def _section(self, view: View, draft: SectionDraft, cells: Ints, material: Material) -> None:
@@ -186,8 +186,8 @@ class ModelBuilder:
                 truss = truss_section(deck, draft, cells[types == code], material)
                 self.model.sections += [truss] if truss else []
                 continue
-            if name in COMPANIONS:
-                wanted = SECTION_CARDS[COMPANIONS[name].role]
+            if name in LINE_ELEMENTS:
+                wanted = SECTION_CARDS[LINE_ELEMENTS[name].role]
                 deck.error(card, card.at("ELSET"), f"elements of type {name} take {wanted}")
                 continue
             info = ELEMENTS[name]
@@ -348,9 +348,12 @@ class ModelBuilder:
                 return None
             kind = draft.kind.split()[1]
             return EdgeLoad(
-                edges, cast("Literal['pressure', 'traction']", kind), draft.value, amplitude,
+                edges,
+                cast("Literal['pressure', 'traction']", kind),
+                draft.value,
+                amplitude,
                 where=where,
-            )  # fmt: skip
+            )
         return self._cell_load(draft, amplitude)
 
     def _cell_load(self, draft: Draft, amplitude: str | None) -> Load | None:
@@ -475,8 +478,10 @@ class ModelBuilder:
                 request.where = name
                 return
         what = {
-            "node print": "node set", "el print": "element set", "contact print": "contact pair",
-        }.get(kind, "set")  # fmt: skip
+            "node print": "node set",
+            "el print": "element set",
+            "contact print": "contact pair",
+        }.get(kind, "set")
         self.deck.error(
             None, request.source, f"no {what} named {where!r}", hint=nearest(where, tables)
         )

@@ -220,7 +220,7 @@ class Sets:
         )
         return None
 
-    def judge_missing(self, used: set[str]) -> None:
+    def report_missing(self, used: set[str]) -> None:
         """Refuse undefined nodes in sets that supports, loads or constraints use.
 
         Parameters

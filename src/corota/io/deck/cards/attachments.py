@@ -106,10 +106,11 @@ def _value(deck: Deck, card: Card, type_: str, what: str) -> None:
     if not mine:
         names = [d.name for d in deck.attached if d.type == type_]
         deck.error(
-            card, card.at("ELSET"),
+            card,
+            card.at("ELSET"),
             f"no *ELEMENT, TYPE={type_} with the set {name!r} before this card",
             hint=nearest(name, names),
-        )  # fmt: skip
+        )
 
 
 def build_attachments(deck: Deck, model: Model, find: Find) -> None:
@@ -117,9 +118,10 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
     for draft in deck.attached:
         if draft.value is None:
             deck.error(
-                draft.card, draft.card.at("ELSET"),
+                draft.card,
+                draft.card.at("ELSET"),
                 f"no *{CARDS[draft.type]}, ELSET={draft.name} gives these elements a value",
-            )  # fmt: skip
+            )
             continue
         for drafts in draft.nodes:
             found = [find(d) for d in drafts]

@@ -20,9 +20,13 @@ if TYPE_CHECKING:
 
 #: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
 TYPES = {
-    "NODETOSURFACE": "node_to_segment", "SURFACETOSURFACE": "mortar", "MORTAR": "mortar",
-    "LINMORTAR": "mortar", "PGLINMORTAR": "mortar", "PETROVGALERKINMORTAR": "mortar",
-}  # fmt: skip
+    "NODETOSURFACE": "node_to_segment",
+    "SURFACETOSURFACE": "mortar",
+    "MORTAR": "mortar",
+    "LINMORTAR": "mortar",
+    "PGLINMORTAR": "mortar",
+    "PETROVGALERKINMORTAR": "mortar",
+}
 #: Names of PRESSURE-OVERCLOSURE.
 LAWS = ("HARD", "LINEAR", "TABULAR", "EXPONENTIAL", "TIED")
 
@@ -240,8 +244,9 @@ def surface_behavior(deck: Deck, card: Card) -> None:
         elif law == "TABULAR":
             deck.extra_fields(card, row, 3)
             numbers = [
-                deck.real(card, row, 0, "the pressure"), deck.real(card, row, 1, "the overclosure")
-            ]  # fmt: skip
+                deck.real(card, row, 0, "the pressure"),
+                deck.real(card, row, 1, "the overclosure"),
+            ]
         else:
             deck.extra_fields(card, row, 3)
             numbers = [

@@ -117,9 +117,13 @@ def steady_state(deck: Deck, card: Card) -> None:
     else:
         now.make = SteadyState
         now.options = {
-            "lowest": low, "highest": high, "points": points, "rayleigh": deck.damping,
-            "ramp": False, "direct": card.has("DIRECT"),
-        }  # fmt: skip
+            "lowest": low,
+            "highest": high,
+            "points": points,
+            "rayleigh": deck.damping,
+            "ramp": False,
+            "direct": card.has("DIRECT"),
+        }
 
 
 def modal_damping(deck: Deck, card: Card) -> None:
@@ -129,10 +133,11 @@ def modal_damping(deck: Deck, card: Card) -> None:
         return
     if now.make not in (ModalDynamic, SteadyState):
         deck.error(
-            card, card.where,
+            card,
+            card.where,
             "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step",
             hint="*DAMPING, ALPHA=, BETA= damps the other procedures",
-        )  # fmt: skip
+        )
         return
     for row in card.rows():
         if card.has("RAYLEIGH"):
@@ -198,5 +203,7 @@ def _velocity(deck: Deck, card: Card) -> None:
 
 #: Readers of ``*INITIAL CONDITIONS`` by type.
 INITIAL = {
-    "VELOCITY": _velocity, "TEMPERATURE": initial_temperature, "STRESS": initial_stress,
-}  # fmt: skip
+    "VELOCITY": _velocity,
+    "TEMPERATURE": initial_temperature,
+    "STRESS": initial_stress,
+}

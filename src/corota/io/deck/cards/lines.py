@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.elements import COMPANIONS
+from corota.io.deck.elements import LINE_ELEMENTS
 from corota.io.deck.lexer import Row, key
 from corota.model.materials import Elastic
 from corota.model.sections import Section
@@ -78,8 +78,11 @@ def _out_of_plane(deck: Deck, card: Card, rows: list[Row]) -> bool | None:
 def _common(deck: Deck, card: Card, most: int) -> list[Row] | None:
     for name in ("OFFSET1", "OFFSET2"):
         if deck.parameter_number(card, name, 0.0, -math.inf) != 0.0:
-            deck.error(card, card.at(name), "beams lie on their nodes; a rigid link (*MPC, BEAM) "
-                       "carries one beside them")  # fmt: skip
+            deck.error(
+                card,
+                card.at(name),
+                "beams lie on their nodes; a rigid link (*MPC, BEAM) carries one beside them",
+            )
     rows = list(card.rows())
     if not rows:
         deck.error(card, card.where, "a data line is missing: the sizes of the cross-section")
@@ -104,9 +107,12 @@ def beam_section(deck: Deck, card: Card) -> None:
     row = rows[0]
     if kind == "CIRC" and not row.get(1):
         deck.row_error(
-            card, row, 0, "one number is the radius in Abaqus and the diameter in CalculiX",
+            card,
+            row,
+            0,
+            "one number is the radius in Abaqus and the diameter in CalculiX",
             "give both diameters: d, d",
-        )  # fmt: skip
+        )
         return
     names = {
         "RECT": ("the size along the first axis", "the size along the second axis"),
@@ -145,8 +151,11 @@ def beam_general_section(deck: Deck, card: Card) -> None:
     if rows is None:
         return
     if len(rows) < 3:
-        deck.error(card, card.where, "three lines are expected: area, I11, I12, I22, J; the first "
-                   "axis; E, G")  # fmt: skip
+        deck.error(
+            card,
+            card.where,
+            "three lines are expected: area, I11, I12, I22, J; the first axis; E, G",
+        )
         return
     normal = _out_of_plane(deck, card, rows)
     area = _numbers(deck, card, rows[0], ("the area",))
@@ -194,7 +203,7 @@ def build_lines(
             types = np.array([meshes.types[i] for i in meshes.cell_type[found.cells]], dtype=str)
             for name in np.unique(types):
                 cells = found.cells[types == name]
-                if name not in COMPANIONS or COMPANIONS[name].role != draft.role:
+                if name not in LINE_ELEMENTS or LINE_ELEMENTS[name].role != draft.role:
                     deck.error(
                         card, card.at("ELSET"), f"elements of type {name} take another section"
                     )
@@ -294,5 +303,11 @@ def _spring(deck: Deck, draft: LineDraft, type_: str, cells: Ints) -> Section | 
         return None
 
 
-__all__ = ["LineDraft", "beam_general_section", "beam_section", "build_lines", "spring",
-           "truss_section"]  # fmt: skip
+__all__ = [
+    "LineDraft",
+    "beam_general_section",
+    "beam_section",
+    "build_lines",
+    "spring",
+    "truss_section",
+]

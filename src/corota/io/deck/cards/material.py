@@ -19,12 +19,28 @@ ELASTIC_TYPES: dict[str, tuple[str, ...]] = {
     "ISOTROPIC": ("Young's modulus", "Poisson's ratio"),
     "LAMINA": ("E1", "E2", "nu12", "G12", "G13", "G23"),
     "ENGINEERINGCONSTANTS": (
-        "E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23",
+        "E1",
+        "E2",
+        "E3",
+        "nu12",
+        "nu13",
+        "nu23",
+        "G12",
+        "G13",
+        "G23",
     ),
     "ORTHOTROPIC": (
-        "D1111", "D1122", "D2222", "D1133", "D2233", "D3333", "D1212", "D1313", "D2323",
+        "D1111",
+        "D1122",
+        "D2222",
+        "D1133",
+        "D2233",
+        "D3333",
+        "D1212",
+        "D1313",
+        "D2323",
     ),
-}  # fmt: skip
+}
 _OPTIONAL = {"Poisson's ratio": 0.0, "G13": 0.0, "G23": 0.0, "D1313": 0.0, "D2323": 0.0}
 
 

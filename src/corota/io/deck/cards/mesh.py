@@ -23,7 +23,7 @@ from corota.io.deck.deck import (
     int_array,
     nearest,
 )
-from corota.io.deck.elements import COMPANIONS, ELEMENTS, LINES, UNSUPPORTED_ELEMENTS
+from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, UNSUPPORTED_ELEMENTS
 from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
 from corota.mesh.data import N_NODES
 
@@ -115,8 +115,8 @@ def element(deck: Deck, card: Card) -> None:
         size = N_NODES[ELEMENTS[type_].kind]
     elif type_ in LINES:
         size = LINES[type_]
-    elif type_ in COMPANIONS:
-        size = COMPANIONS[type_].n_nodes
+    elif type_ in LINE_ELEMENTS:
+        size = LINE_ELEMENTS[type_].n_nodes
     elif type_ in UNSUPPORTED_ELEMENTS:
         deck.error(
             card,
@@ -129,7 +129,7 @@ def element(deck: Deck, card: Card) -> None:
             card,
             card.at("TYPE"),
             f"unknown element type {numerals.shown(name)}",
-            hint=nearest(type_, [*ELEMENTS, *COMPANIONS]) or "known: " + ", ".join(ELEMENTS),
+            hint=nearest(type_, [*ELEMENTS, *LINE_ELEMENTS]) or "known: " + ", ".join(ELEMENTS),
         )
         return
     labels_of_card = []

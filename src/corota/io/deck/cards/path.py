@@ -57,8 +57,13 @@ def _riks(deck: Deck, card: Card) -> None:
     if rows:
         row = rows[0]
         deck.extra_fields(card, row, 8)
-        names = ("the first arc", "the scale of arcs", "the smallest arc", "the largest arc",
-                 "the load factor at the end")  # fmt: skip
+        names = (
+            "the first arc",
+            "the scale of arcs",
+            "the smallest arc",
+            "the largest arc",
+            "the load factor at the end",
+        )
         for index, name in enumerate(names):
             value = deck.real(card, row, index, name, 0.0)
             if value is None:

@@ -83,9 +83,11 @@ def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:
             values.append(value)
         if len(values) == wanted and number + 1 < len(rows):
             deck.row_error(
-                card, rows[number + 1], 0,
+                card,
+                rows[number + 1],
+                0,
                 "parameters that depend on temperature are not part of this version",
-            )  # fmt: skip
+            )
             return False
     if len(values) < wanted:
         deck.error(card, card.where, f"data are missing: {', '.join(names[len(values) :])}")
@@ -181,8 +183,11 @@ def build_mises(deck: Deck, draft: MaterialDraft) -> Mises | None:
         return None
     e, nu = draft.constants[:2]
     common: dict[str, Any] = {
-        "rho": draft.rho, "rayleigh": draft.damping, "name": draft.name, "where": p.card.where,
-    }  # fmt: skip
+        "rho": draft.rho,
+        "rayleigh": draft.damping,
+        "name": draft.name,
+        "where": p.card.where,
+    }
     if p.kind == "ISOTROPIC":
         return Mises(e, nu, yield_curve=p.curve, rows=p.rows, **common)
     # The check of the curve names the row.

@@ -22,16 +22,22 @@ if TYPE_CHECKING:
 
 #: Names of Abaqus for groups of degrees of freedom (numbers from 1).
 NAMED_SUPPORTS = {
-    "ENCASTRE": (1, 2, 3, 4, 5, 6), "PINNED": (1, 2, 3), "XSYMM": (1, 5, 6),
-    "YSYMM": (2, 4, 6), "ZSYMM": (3, 4, 5), "XASYMM": (2, 3, 4), "YASYMM": (1, 3, 5),
+    "ENCASTRE": (1, 2, 3, 4, 5, 6),
+    "PINNED": (1, 2, 3),
+    "XSYMM": (1, 5, 6),
+    "YSYMM": (2, 4, 6),
+    "ZSYMM": (3, 4, 5),
+    "XASYMM": (2, 3, 4),
+    "YASYMM": (1, 3, 5),
     "ZASYMM": (1, 2, 6),
-}  # fmt: skip
+}
 #: Cards that ``OP=NEW`` concerns together.
 _KINDS = {
-    "support": "supports (*BOUNDARY)", "force": "nodal forces (*CLOAD)",
+    "support": "supports (*BOUNDARY)",
+    "force": "nodal forces (*CLOAD)",
     "distributed": "distributed loads (*DLOAD, *DSLOAD)",
     "temperature": "temperatures (*TEMPERATURE)",
-}  # fmt: skip
+}
 _FACE = re.compile(r"P(\d{1,9})\Z", re.ASCII)
 
 
@@ -99,8 +105,7 @@ def step_times(deck: Deck, card: Card, now: StepDraft) -> None:
     if not rows:
         return
     deck.extra_fields(card, rows[0], 4)
-    names = ("the first increment", "the period", "the smallest increment",
-             "the largest increment")  # fmt: skip
+    names = ("the first increment", "the period", "the smallest increment", "the largest increment")
     values = [deck.real(card, rows[0], i, name, 0.0) for i, name in enumerate(names)]
     for index, value in enumerate(values):
         if value is None:
@@ -277,8 +282,13 @@ def _dof(deck: Deck, card: Card, row: Row, index: int) -> int | None:
     if dof is None:
         return None
     if dof == 11:
-        deck.row_error(card, row, index, "dof 11 belongs to heat conduction",
-                       "give temperatures by *TEMPERATURE")  # fmt: skip
+        deck.row_error(
+            card,
+            row,
+            index,
+            "dof 11 belongs to heat conduction",
+            "give temperatures by *TEMPERATURE",
+        )
         return None
     if not 1 <= dof <= 6:
         deck.row_error(
@@ -421,9 +431,12 @@ def dsload(deck: Deck, card: Card) -> None:
         size = math.hypot(x or 0.0, y or 0.0)
         if follower:
             deck.row_error(
-                card, row, 1, "a traction that follows the surface is not part of this version",
+                card,
+                row,
+                1,
+                "a traction that follows the surface is not part of this version",
                 "write *DSLOAD, FOLLOWER=NO",
-            )  # fmt: skip
+            )
         elif x is None or y is None:
             continue
         elif size == 0.0:

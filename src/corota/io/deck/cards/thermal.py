@@ -167,6 +167,10 @@ def build_temperature(draft: Draft, nodes: str | Ints, amplitude: str) -> Temper
 
 
 __all__ = [
-    "build_initial", "build_temperature", "expansion", "initial_stress", "initial_temperature",
+    "build_initial",
+    "build_temperature",
+    "expansion",
+    "initial_stress",
+    "initial_temperature",
     "temperature",
-]  # fmt: skip
+]

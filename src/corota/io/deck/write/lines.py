@@ -15,9 +15,14 @@ if TYPE_CHECKING:
 
 #: Element types of decks by our names.
 LINE_TYPES = {
-    "TRUSS": "T2D2", "BEAM": "B21", "SPRING": "SPRINGA", "SPRING1": "SPRING1",
-    "SPRING1R": "SPRING1", "SPRING2": "SPRING2", "SPRING2R": "SPRING2",
-}  # fmt: skip
+    "TRUSS": "T2D2",
+    "BEAM": "B21",
+    "SPRING": "SPRINGA",
+    "SPRING1": "SPRING1",
+    "SPRING1R": "SPRING1",
+    "SPRING2": "SPRING2",
+    "SPRING2R": "SPRING2",
+}
 _DOFS = {index: dof for dof, index in PLANAR.items()}
 
 

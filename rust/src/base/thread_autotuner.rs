@@ -9,11 +9,11 @@ use std::time::Instant;
 /// Runs after which the slower way gets another chance.
 const AGAIN: u32 = 24;
 /// A way that takes this many times as long is not tried again.
-const HOPELESS: f64 = 4.0;
+const MAX_SLOWDOWN: f64 = 4.0;
 
 /// Times of the same job on one thread and on several.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Race {
+pub struct ThreadAutotuner {
     /// Seconds alone and shared, smoothed; zero before the first run.
     seconds: [f64; 2],
     /// Whether a first run, which also pays for memory, is over.
@@ -22,7 +22,7 @@ pub struct Race {
     since: u32,
 }
 
-impl Race {
+impl ThreadAutotuner {
     /// Whether the next run should be shared.
     fn shared(&self) -> bool {
         let [alone, shared] = self.seconds;
@@ -34,7 +34,7 @@ impl Race {
         }
         let better = shared < alone;
         let (fast, slow) = if better { (shared, alone) } else { (alone, shared) };
-        better != (self.since >= AGAIN && slow < HOPELESS * fast)
+        better != (self.since >= AGAIN && slow < MAX_SLOWDOWN * fast)
     }
 
     /// Take in the time of a run.
@@ -66,11 +66,11 @@ mod tests {
 
     /// Share of 240 runs that were shared, given the seconds of both ways.
     fn shared_runs(seconds: impl Fn(bool, u32) -> f64) -> u32 {
-        let mut race = Race::default();
+        let mut tuner = ThreadAutotuner::default();
         let mut count = 0;
         for k in 0..240 {
-            let shared = race.shared();
-            race.tell(shared, seconds(shared, k));
+            let shared = tuner.shared();
+            tuner.tell(shared, seconds(shared, k));
             count += u32::from(shared);
         }
         count

@@ -169,25 +169,25 @@ def test_pin_and_tie_of_two_beams(tmp_path: Path, type_: str, turns: bool) -> No
             "must be > 0",
         ),
         (
-            cantilever(
-                "B21", RECT + "1., 1.\n1., 0., 1.\n"
-            ),
+            cantilever("B21", RECT + "1., 1.\n1., 0., 1.\n"),
             "first axis",
         ),
-        (cantilever("B21", "*BEAM SECTION, ELSET=beam, MATERIAL=stel, SECTION=RECT\n1., 1.\n"),
-         "no material named 'stel'"),
+        (
+            cantilever("B21", "*BEAM SECTION, ELSET=beam, MATERIAL=stel, SECTION=RECT\n1., 1.\n"),
+            "no material named 'stel'",
+        ),
         (cantilever("B21", RECT.replace("RECT", "CIRC") + "1.\n"), "radius in Abaqus"),
         (springs("SPRING1", "1, 2", "*SPRING, ELSET=s\n7\n10.\n"), "1 to 6"),
         (springs("SPRING1", "1, 2", "*SPRING, ELSET=s\n1\n"), "stiffness"),
         (springs("SPRINGA", "1, 1, 2", "*SPRING, ELSET=s, NONLINEAR\n1., 2.\n2., 1.\n"), "rising"),
     ],
-)  # fmt: skip
+)
 def test_faults_are_named(tmp_path: Path, text: str, said: str) -> None:
     assert said in fault(tmp_path, text)
 
 
 def test_lines_are_written_and_read_back(tmp_path: Path) -> None:
-    """Every kind of companion beside a plate: the deck gives the same answer."""
+    """Every kind of line element beside a plate: the deck gives the same answer."""
     plate = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
     n, c = plate.n_nodes, plate.n_cells
     points = np.vstack([plate.points, [[3.0, 1.0], [4.0, 1.0], [3.0, 2.0]]])
@@ -196,9 +196,12 @@ def test_lines_are_written_and_read_back(tmp_path: Path) -> None:
     lines = Cells("line2", ends, np.arange(c + 1, c + 6))
     ground = Cells("point1", np.array([[n + 1], [n + 2]]), np.arange(c + 6, c + 8))
     mesh = replace(
-        plate, points=points, cells=[*plate.cells, lines, ground],
-        node_labels=np.arange(1, len(points) + 1), cell_sets={},
-    )  # fmt: skip
+        plate,
+        points=points,
+        cells=[*plate.cells, lines, ground],
+        node_labels=np.arange(1, len(points) + 1),
+        cell_sets={},
+    )
     model = ct.Model(mesh)
     steel = ct.Elastic(1000.0, 0.25, expansion=1e-4)
     model.section("all", element="Q4D", material=steel)

@@ -1,19 +1,19 @@
-//! Held dofs: where their rows and columns lie in the matrix, found once for a set of supports.
+//! FixedDofs dofs: where their rows and columns lie in the matrix, found once for a set of supports.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::dofs::Dofs;
 
 /// Places of the rows and columns of held dofs in the upper triangle.
 #[derive(Clone, Debug, Default)]
-pub struct Held {
+pub struct FixedDofs {
     which: Vec<bool>,
-    /// Held dofs, rising.
+    /// FixedDofs dofs, rising.
     pub dofs: Vec<u32>,
     diagonal: Vec<u32>,
     beside: Vec<u32>,
 }
 
-impl Held {
+impl FixedDofs {
     /// Places for these dofs; kept as they are if the dofs are the same as before.
     pub fn set(&mut self, dofs: &Dofs, held: &[bool]) {
         if self.which == held {
@@ -58,7 +58,7 @@ mod tests {
         let dofs = Dofs::new(&[2, 1, 2], &[(&[0, 1, 2], 3)]);
         let n = dofs.n_dofs();
         let values: Vec<f64> = (0..dofs.indices.len()).map(|k| k as f64 - 6.0).collect();
-        let mut places = Held::default();
+        let mut places = FixedDofs::default();
         for held in [[false, true, false, true, false], [true, false, false, false, true]] {
             places.set(&dofs, &held);
             let mut masked = values.clone();

@@ -10,7 +10,7 @@ use crate::base::Real;
 use crate::base::small::Mat;
 
 #[derive(Clone, Debug)]
-pub struct Given {
+pub struct Tabulated {
     moduli: Mat<f64, 3>,
 }
 
@@ -22,7 +22,7 @@ const NORMAL: usize = 12;
 const ENERGY: usize = 14;
 const PLASTIC: usize = 15;
 
-impl Material for Given {
+impl Material for Tabulated {
     const NAME: &'static str = "given";
 
     fn new(parameters: &[f64], _: Plane) -> Result<Self, String> {

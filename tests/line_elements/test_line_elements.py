@@ -166,9 +166,16 @@ def test_rigid_motion_makes_no_force(element: str) -> None:
 
 @pytest.mark.parametrize(
     ("element", "zero"),
-    [("TRUSS", 3), ("BEAM", 3), ("SPRING", 3), ("SPRING1", 1), ("SPRING1R", 2), ("SPRING2", 3),
-     ("SPRING2R", 5)],
-)  # fmt: skip
+    [
+        ("TRUSS", 3),
+        ("BEAM", 3),
+        ("SPRING", 3),
+        ("SPRING1", 1),
+        ("SPRING1R", 2),
+        ("SPRING2", 3),
+        ("SPRING2R", 5),
+    ],
+)
 def test_zero_modes(element: str, zero: int) -> None:
     system = alone(element)
     k = stiffness(system, system.evaluate(np.zeros(system.n_dofs), 0.0).values)
@@ -219,8 +226,9 @@ def test_picture_of_the_model_shows_lines_masses_and_links(tmp_path) -> None:
 
     mesh = lines(
         [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (3.0, 0.0)],
-        ("line2", [[0, 1], [1, 2], [2, 3], [2, 4]]), ("point1", [[2], [1]]),
-    )  # fmt: skip
+        ("line2", [[0, 1], [1, 2], [2, 3], [2, 4]]),
+        ("point1", [[2], [1]]),
+    )
     model = ct.Model(mesh)
     model.beam([0], material=MATERIAL, area=1.0, inertia=0.1)
     model.truss([1], material=MATERIAL, area=1.0)

@@ -26,7 +26,7 @@ pub struct Child<'a> {
 }
 
 /// Square with columns that wait for the parent.
-pub struct Held {
+pub struct DelayedFront {
     pub equations: Vec<u32>,
     pub square: Vec<f64>,
 }
@@ -65,7 +65,7 @@ pub fn factorize(
     s: usize,
     values: &[f64],
     children: &[Child<'_>],
-) -> (Special, Held) {
+) -> (Special, DelayedFront) {
     let mut front = Dense::assemble(sym, s, values, children);
     let root = sym.fronts[s].parent == NONE;
     front.eliminate(root);
@@ -304,10 +304,10 @@ impl Dense {
         self.applied = k;
     }
 
-    fn finish(mut self, root: bool) -> (Special, Held) {
+    fn finish(mut self, root: bool) -> (Special, DelayedFront) {
         let (n, k) = (self.side, self.pivots);
         let left = self.candidates - k;
-        let mut held = Held { equations: Vec::new(), square: Vec::new() };
+        let mut held = DelayedFront { equations: Vec::new(), square: Vec::new() };
         if !root {
             held.equations = self.equations[k..self.candidates].to_vec();
             held.square.reserve((n - k) * (n - k));

@@ -1,0 +1,131 @@
+"""Refuse retired words: identifiers of Python and Rust, and phrases of documents and messages.
+
+`docs/glossary.md` has the words to use instead.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import io
+import re
+import subprocess
+import sys
+import tokenize
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+#: Retired identifier: the word to use.
+IDENTIFIERS = {
+    "Touching": "ContactTerm",
+    "Touch": "ContactState",
+    "Touched": "ContactEvaluation",
+    "TouchingSystem": "ContactEquations",
+    "touched": "contact_evaluation",
+    "go_round": "predict_through_events",
+    "lack": "complementarity or energy_error",
+    "Asked": "RightHandSides",
+    "Bordered": "SaddlePointSystem",
+    "turning": "nlgeom",
+    "Ties": "Constraints",
+    "du_held": "du_prescribed",
+    "room": "borrow_tangent",
+    "judge": "residual_norms",
+    "Judgement": "ResidualNorms",
+    "Given": "Tabulated",
+    "Race": "ThreadAutotuner",
+    "TwinFile": "AtomicFile",
+    "Silent": "BaseObserver",
+    "NOTHING": "the quantity",
+    "MORE": "the quantity",
+    "RETURNS": "the quantity",
+    "HOPELESS": "the quantity",
+    "ALIKE": "the quantity",
+    "SHARP": "the quantity",
+    "ASIDE": "the quantity",
+    "ENOUGH": "the quantity",
+    "COMPANIONS": "LINE_ELEMENTS",
+}
+#: Retired phrase of documents and messages: what to write.
+PHRASES = {
+    r"held by nothing": "unconstrained",
+    r"\bcompanions?\b": "line element",
+    r"laws of yours": "user-defined materials",
+    r"at rest and in motion": "static and dynamic",
+    r"skipped in silence": "silently ignored",
+    r"passed over": "ignored",
+    r"cells a side": "elements per side",
+    r"lacking energy": "energy-balance error",
+}
+
+
+def python_faults(text: str) -> list[tuple[int, str]]:
+    """Retired identifiers of Python code by line."""
+    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+    return [
+        (t.start[0], f"'{t.string}' is retired: {IDENTIFIERS[t.string]}")
+        for t in tokens
+        if t.type == tokenize.NAME and t.string in IDENTIFIERS
+    ]
+
+
+def rust_faults(text: str) -> list[tuple[int, str]]:
+    """Retired identifiers of Rust code by line; comments and strings may use English words."""
+    found = []
+    for number, line in enumerate(text.splitlines(), 1):
+        code = re.sub(r'"(\\.|[^"\\])*"', "", line.split("//", 1)[0])
+        for word in re.findall(r"[A-Za-z_]\w*", code):
+            if word in IDENTIFIERS:
+                found.append((number, f"'{word}' is retired: {IDENTIFIERS[word]}"))
+    return found
+
+
+def phrase_faults(text: str) -> list[tuple[int, str]]:
+    """Retired phrases by line."""
+    return [
+        (number, f"'{match.group(0)}' is retired: {better}")
+        for number, line in enumerate(text.splitlines(), 1)
+        for pattern, better in PHRASES.items()
+        if (match := re.search(pattern, line, re.IGNORECASE))
+    ]
+
+
+def faults(path: Path) -> list[tuple[int, str]]:
+    """List the retired words of one file.
+
+    Parameters
+    ----------
+    path : Path
+        Relative to the root.
+    """
+    text = (ROOT / path).read_text(encoding="utf-8")
+    if path.suffix == ".py":
+        found = python_faults(text)
+        return found + (phrase_faults(text) if path.parts[0] == "src" else [])
+    if path.suffix == ".rs":
+        return rust_faults(text) + phrase_faults(text)
+    return phrase_faults(text)
+
+
+def main() -> int:
+    """Print the faults; 1 if there are any."""
+    listing = subprocess.run(
+        ["git", "ls-files", "*.py", "*.rs", "*.md"],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.split()
+    paths = [Path(name) for name in listing]
+    skipped = {Path("scripts/check_words.py"), Path("docs/glossary.md"), Path("CHANGELOG.md")}
+    lines = [
+        f"{path}:{number}: {what}"
+        for path in paths
+        if path not in skipped and (ROOT / path).is_file()
+        for number, what in faults(path)
+    ]
+    print("\n".join(lines) if lines else "words: none is retired")
+    return 1 if lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
