@@ -1,0 +1,1128 @@
+"""Statics, plasticity, loads, constraints and output in combinations, against answers found apart.
+
+Every check names its claim; the comment says where its reference value comes from.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import corota as ct
+from corota.mesh.data import Cells
+from corota.model.loads import Fixed, Temperature
+
+CELL = {
+    "T3": "tri3",
+    "OPT": "tri3",
+    "T6": "tri6",
+    "Q4": "quad4",
+    "Q4I": "quad4",
+    "Q4R": "quad4",
+    "Q4S": "quad4",
+    "Q4D": "quad4",
+    "Q4DI": "quad4",
+    "Q8": "quad8",
+    "Q8R": "quad8",
+    "Q9": "quad9",
+}
+pytestmark = pytest.mark.filterwarnings("ignore:local strain reaches")
+
+DRILLING = ("OPT", "Q4D", "Q4DI")
+
+
+def rotation(angle: float) -> np.ndarray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+def boundary(mesh: Any) -> np.ndarray:
+    return np.unique(np.concatenate([mesh.nodes_of(s) for s in ("left", "right", "top", "bottom")]))
+
+
+def run(path: Path, text: str, **options: Any) -> Any:
+    """Run a deck and leave its files beside it."""
+    path.write_text(text)
+    model = ct.read(path, **options)
+    files = ct.JobFiles(path.parent, path.stem)
+    return ct.solve(model, observers=[files], threads=1)
+
+
+def deck_mesh(mesh: Any, kind: str) -> str:
+    """Nodes, elements and sets of a mesh as cards."""
+    lines = ["*NODE"]
+    for label, (x, y) in zip(mesh.node_labels, mesh.points, strict=True):
+        lines.append(f"{label}, {float(x)!r}, {float(y)!r}")
+    lines.append(f"*ELEMENT, TYPE={kind}, ELSET=all")
+    for label, nodes in zip(mesh.cells[0].labels, mesh.cells[0].nodes, strict=True):
+        lines.append(f"{label}, " + ", ".join(str(mesh.node_labels[n]) for n in nodes))
+    for name in ("left", "right", "top", "bottom"):
+        lines.append(f"*NSET, NSET={name}")
+        lines += [str(mesh.node_labels[n]) for n in mesh.nodes_of(name)]
+    return "\n".join(lines) + "\n"
+
+
+def tables(path: Path) -> dict[str, list[np.ndarray]]:
+    """Read the tables of a .dat file: rows of numbers below each heading, by its first word."""
+    found: dict[str, list[np.ndarray]] = {}
+    rows: list[list[float]] = []
+    head = ""
+    for line in [*path.read_text().splitlines(), "end"]:
+        words = line.split()
+        if not words:
+            continue
+        try:
+            rows.append([float(w) for w in words])
+        except ValueError:
+            if rows:
+                found.setdefault(head, []).append(np.array(rows))
+            rows, head = [], line.strip().split(" for ")[0].split(" (")[0]
+    return found
+
+
+# --- Homogeneous states: a reference program of a single point ---
+
+
+def strain_of(stretch: np.ndarray) -> np.ndarray:
+    """Hencky strain from the right Cauchy-Green tensor."""
+    values, vectors = np.linalg.eigh(stretch)
+    return vectors @ np.diag(0.5 * np.log(values)) @ vectors.T
+
+
+class Point:
+    """J2 plasticity in three dimensions, radial return, linear hardenings.
+
+    The stress through the thickness is made zero by a scalar equation for the thickness strain.
+    """
+
+    def __init__(self, E: float, nu: float, sy: float, H: float, K: float, plane: str) -> None:
+        self.G, self.bulk = E / (2 + 2 * nu), E / (3 - 6 * nu)
+        self.sy, self.H, self.K, self.plane = sy, H, K, plane
+        self.ep, self.beta, self.p = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
+        self.ezz = 0.0
+
+    def trial(self, e2: np.ndarray, ezz: float) -> tuple[Any, ...]:
+        e = np.zeros((3, 3))
+        e[:2, :2], e[2, 2] = e2, ezz
+        ee = e - self.ep
+        mean = np.trace(ee) / 3
+        s = 2 * self.G * (ee - mean * np.eye(3))
+        xi = s - self.beta
+        q = math.sqrt(1.5) * np.linalg.norm(xi)
+        dp = max(0.0, (q - self.sy - self.H * self.p) / (3 * self.G + self.H + self.K))
+        flow = 1.5 * xi / q if q > 0 else xi
+        stress = s - 2 * self.G * dp * flow + 3 * self.bulk * mean * np.eye(3)
+        return stress, self.ep + dp * flow, self.beta + 2 / 3 * self.K * dp * flow, self.p + dp
+
+    def move(self, e2: np.ndarray) -> np.ndarray:
+        ezz = 0.0
+        if self.plane == "stress":
+            ezz = brentq(lambda z: self.trial(e2, z)[0][2, 2], -2.0, 2.0, xtol=1e-15, rtol=1e-14)
+        stress, self.ep, self.beta, self.p = self.trial(e2, ezz)
+        self.ezz = ezz
+        return stress
+
+
+def hencky_cauchy(point: Point, F: np.ndarray) -> np.ndarray:
+    """Cauchy stress xx, yy, zz, xy; the stress conjugate to ln U by differences of dE/dC."""
+    C = F.T @ F
+    T = point.move(strain_of(C))
+    S = np.zeros((2, 2))
+    for i in range(2):
+        for j in range(i, 2):
+            dC = np.zeros((2, 2))
+            dC[i, j] = dC[j, i] = 1.0
+            h = 1e-5
+            dE = (strain_of(C + h * dC) - strain_of(C - h * dC)) / (2 * h)
+            S[i, j] = S[j, i] = 2 * np.sum(T[:2, :2] * dE) / (1 if i == j else 2)
+    J = np.linalg.det(F) * math.exp(point.ezz)
+    sigma = F @ S @ F.T / J
+    return np.array([sigma[0, 0], sigma[1, 1], T[2, 2] / J, sigma[0, 1]])
+
+
+def frame_angle(X: np.ndarray, F: np.ndarray) -> float:
+    """Rotation that fits the nodes of one element best."""
+    X = X - X.mean(axis=0)
+    x = X @ F.T
+    return math.atan2(np.sum(X[:, 0] * x[:, 1] - X[:, 1] * x[:, 0]), np.sum(X * x))
+
+
+def linear_cauchy(point: Point, F: np.ndarray, X: np.ndarray) -> np.ndarray:
+    """Stress of the linear local strain, turned with the frame."""
+    R = rotation(frame_angle(X, F))
+    H = R.T @ F - np.eye(2)
+    T = point.move((H + H.T) / 2)
+    sigma = R @ T[:2, :2] @ R.T
+    return np.array([sigma[0, 0], sigma[1, 1], T[2, 2], sigma[0, 1]])
+
+
+def drive(
+    element: str, material: Any, plane: str, strain: str, path: list[np.ndarray], **section: Any
+) -> Any:
+    """Prescribe homogeneous deformations at the boundary of 2 x 2 equal cells, a step each."""
+    mesh = ct.mesh.rectangle(2.0, 1.6, nx=2, ny=2, cell=CELL[element])
+    model = ct.Model(mesh)
+    section = {"thickness": 0.7} | section
+    model.section(
+        "all", element=element, material=material, plane=plane, local_strain=strain, **section
+    )
+    nodes = boundary(mesh)
+    steps = []
+    turn = 0.0
+    for F in path:
+        u = mesh.points @ (F - np.eye(2)).T
+        supports = [Fixed([int(n)], d, float(u[n, d])) for n in nodes for d in (0, 1)]
+        if element in DRILLING:  # the rotation of the field, or the sides would bulge
+            angle = frame_angle(mesh.points[mesh.cells[0].nodes[0]], F)
+            turn += (angle - turn + math.pi) % (2 * math.pi) - math.pi
+            local = rotation(turn).T @ F
+            spin = turn + 0.5 * (local[1, 0] - local[0, 1])
+            supports += [Fixed([int(n)], 2, spin) for n in nodes]
+        steps.append(ct.Static(supports=supports, increments=1, tolerance=1e-11))
+    return ct.solve(model, steps, threads=1)
+
+
+PATH = [
+    np.array([[1.004, 0.0], [0.0, 1.0]]),
+    rotation(1.1) @ np.array([[1.03, 0.02], [0.0, 0.99]]),
+    rotation(1.9) @ np.array([[1.005, -0.01], [0.01, 1.0]]),
+    rotation(2.6) @ np.array([[0.97, 0.0], [0.03, 1.01]]),
+    rotation(3.3) @ np.array([[1.0, 0.0], [0.0, 1.0]]),
+]
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("strain", ["linear", "logarithmic"])
+@pytest.mark.parametrize("element", CELL)
+def test_yield_unload_reverse_while_turning(element: str, strain: str, plane: str) -> None:
+    """Combined hardening in states that stretch, unload and reverse while the body turns.
+
+    Reference: the point program above, one implicit increment a step as the element makes it.
+    Under `linear` the frame is the best fit to the nodes of a cell.
+    """
+    steel = ct.Mises(E=2000.0, nu=0.3, yield_stress=10.0, isotropic=60.0, kinematic=90.0)
+    results = drive(element, steel, plane, strain, PATH)
+    last = {f.step: f for f in results.frames}
+    point = Point(2000.0, 0.3, 10.0, 60.0, 90.0, plane)
+    mesh = results.mesh
+    cell = mesh.points[mesh.cells[0].nodes[0]]
+    for k, F in enumerate(PATH):
+        want = linear_cauchy(point, F, cell) if strain == "linear" else hencky_cauchy(point, F)
+        got = last[k + 1].fields[0].values["S"]
+        assert np.abs(got - want).max() < 2e-6 * np.abs(want).max() + 1e-6, (k, got[0, 0], want)
+        peeq = last[k + 1].fields[0].values["PEEQ"]
+        assert np.abs(peeq - point.p).max() < 1e-8
+
+
+def svk_cauchy(F: np.ndarray, E: float, nu: float, plane: str) -> np.ndarray:
+    """St. Venant-Kirchhoff; in plane stress the thickness follows from S33 = 0."""
+    e = (F.T @ F - np.eye(2)) / 2
+    e33 = -nu / (1 - nu) * np.trace(e) if plane == "stress" else 0.0
+    lam, mu = E * nu / (1 + nu) / (1 - 2 * nu), E / (2 + 2 * nu)
+    S = lam * (np.trace(e) + e33) * np.eye(2) + 2 * mu * e
+    S33 = lam * (np.trace(e) + e33) + 2 * mu * e33
+    third = math.sqrt(1 + 2 * e33)
+    J = np.linalg.det(F) * third
+    sigma = F @ S @ F.T / J
+    return np.array([sigma[0, 0], sigma[1, 1], S33 * third**2 / J, sigma[0, 1]])
+
+
+BIG = [
+    rotation(2.5 * k / 4) @ (np.eye(2) + k / 4 * np.array([[0.4, 0.3], [0.1, -0.2]]))
+    for k in range(1, 5)
+] + [rotation(0.8) @ np.array([[0.7, -0.2], [0.0, 1.2]])]
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("strain", ["green_lagrange", "logarithmic"])
+@pytest.mark.parametrize("element", CELL)
+def test_large_elastic_strain_is_cauchy_stress(element: str, strain: str, plane: str) -> None:
+    """Elastic strain of tens of per cent with rotation: closed forms of both hyperelastic laws.
+
+    The Hencky law: S = 2 T : dE/dC and Cauchy by the push-forward, thickness stretch exp(E33).
+    """
+    results = drive(element, ct.Elastic(E=100.0, nu=0.25), plane, strain, BIG)
+    last = {f.step: f for f in results.frames}
+    for k, F in enumerate(BIG):
+        point = Point(100.0, 0.25, 1e9, 0.0, 0.0, plane)
+        want = (
+            hencky_cauchy(point, F)
+            if strain == "logarithmic"
+            else svk_cauchy(F, 100.0, 0.25, plane)
+        )
+        got = last[k + 1].fields[0].values["S"]
+        assert np.abs(got - want).max() < 2e-6 * np.abs(want).max(), (k, got[0, 0], want)
+
+
+# --- Plasticity, temperature, initial stress ---
+
+
+@pytest.mark.parametrize("kind", ["CPS4I", "CPS8R", "Q4D", "CPS8", "Q4S"])
+def test_bar_between_walls_heated_beyond_yield_and_cooled(tmp_path: Path, kind: str) -> None:
+    """Residual stress, reaction and every energy of a bar at 30 degrees, heated and cooled.
+
+    One dimension: 0 = s/E + ep + alpha T; isotropic hardening, yield again in tension. Plastic
+    work is sy p + H p^2/2; work of heat is -s alpha dT summed over both ways.
+    """
+    E, sy, H, alpha, T, t, L, h = 1000.0, 2.0, 100.0, 1e-5, 500.0, 2.5, 4.0, 1.0
+    cell = {"CPS8R": "quad8", "CPS8": "quad8"}.get(kind, "quad4")
+    mesh = ct.mesh.move(ct.mesh.rectangle(L, h, nx=4, ny=2, cell=cell), angle=30.0)
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    hold = "left, 6, 6\nright, 6, 6\n" if kind == "Q4D" else ""
+    deck = (
+        deck_mesh(mesh, kind)
+        + f"""*NSET, NSET=every, ELSET=all
+*TRANSFORM, NSET=every, TYPE=R
+{c}, {s}, 0., {-s}, {c}, 0.
+*MATERIAL, NAME=m
+*ELASTIC
+{E}, 0.3
+*PLASTIC
+{sy}, 0.
+{sy + H}, 1.
+*EXPANSION
+{alpha}
+*SOLID SECTION, ELSET=all, MATERIAL=m
+{t}
+*BOUNDARY
+left, 1, 1
+right, 1, 1
+{mesh.node_labels[mesh.nodes_of("left")[0]]}, 2, 2
+{hold}*STEP, NLGEOM, INC=400
+*STATIC, DIRECT
+0.005, 1.
+*TEMPERATURE
+every, {T}
+*END STEP
+*STEP, NLGEOM, INC=400
+*STATIC, DIRECT
+0.005, 1.
+*TEMPERATURE, OP=NEW
+*END STEP
+"""
+    )
+    results = run(tmp_path / "bar.inp", deck)
+    heat = E * alpha * T
+    p1 = (heat - sy) / (E + H)
+    s1 = -(sy + H * p1)
+    trial = s1 + heat
+    dp = max(0.0, (trial - sy - H * p1) / (E + H))
+    s2 = trial - E * dp
+    turn = rotation(math.pi / 6)
+    V = L * h * t
+    for step, stress, p in ((1, s1, p1), (2, s2, p1 + dp)):
+        frame = [f for f in results.frames if f.step == step][-1]
+        got = frame.fields[0].values
+        want = stress * np.outer(turn[:, 0], turn[:, 0])
+        assert np.allclose(got["S"][..., 0], want[0, 0], rtol=1e-5, atol=1e-6)
+        assert np.allclose(got["S"][..., 3], want[0, 1], rtol=1e-5, atol=1e-6)
+        assert np.allclose(got["PEEQ"], p, rtol=1e-5)
+        force = frame.RF[mesh.nodes_of("right"), :2].sum(axis=0)
+        assert np.allclose(force, stress * h * t * turn[:, 0], rtol=2e-5)
+        assert frame.scalars["ALLSE"] == pytest.approx(stress**2 / (2 * E) * V, rel=1e-5)
+        assert frame.scalars["ALLPD"] == pytest.approx((sy * p + H * p**2 / 2) * V, rel=1e-3)
+        assert abs(frame.scalars["ALLWK"]) < 1e-9 * V
+        assert frame.scalars["ALLTH"] == pytest.approx(
+            frame.scalars["ALLSE"] + frame.scalars["ALLPD"], rel=3e-3
+        )
+    # First way, by hand: elastic part then hardening line, against ALLTH at its end.
+    Te = sy / (E * alpha)
+    by_hand = (0.5 * sy * alpha * Te + 0.5 * (sy - s1) * alpha * (T - Te)) * V
+    first = [f for f in results.frames if f.step == 1][-1]
+    assert first.scalars["ALLTH"] == pytest.approx(by_hand, rel=2e-4)
+
+
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "T3"])
+def test_cyclic_chaboche_with_voce(element: str) -> None:
+    """Uniaxial cycles with recall and saturating hardening, plane stress.
+
+    One-dimensional backward Euler with the same increments: b = (b0 + C dp s)/(1 + gamma dp).
+    """
+    E, sy, Q, bv, C, g = 200e3, 250.0, 80.0, 30.0, [60e3, 4e3], [400.0, 10.0]
+    material = ct.Mises(
+        E=E,
+        nu=0.3,
+        yield_stress=sy,
+        isotropic=ct.Voce(Q=Q, b=bv),
+        chaboche=list(zip(C, g, strict=True)),
+    )
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=material, thickness=3.0)
+    model.fix("left", y=None)
+    model.fix([0], x=None)
+    ends = [0.01, -0.008, 0.012]
+    steps = [
+        ct.Static(
+            nlgeom=False,
+            supports=[Fixed("right", 0, 2.0 * e)],
+            increments=20,
+            fixed_increments=True,
+        )
+        for e in ends
+    ]
+    results = ct.solve(model, steps, threads=1)
+    eps, ep, p, b = 0.0, 0.0, 0.0, np.zeros(2)
+    frames = [f for f in results.frames if f.increment > 0]
+    k = 0
+    for start, end in zip([0.0, *ends], ends, strict=False):
+        for j in range(1, 21):
+            eps = start + (end - start) * j / 20
+            sign = math.copysign(1.0, E * (eps - ep) - b.sum())
+
+            def residual(
+                dp: float,
+                eps: float = eps,
+                ep: float = ep,
+                p: float = p,
+                b: np.ndarray = b,
+                sign: float = sign,
+            ) -> float:
+                back = sum((b[i] + C[i] * dp * sign) / (1 + g[i] * dp) for i in range(2))
+                size = sy + Q * (1 - math.exp(-bv * (p + dp)))
+                return sign * (E * (eps - ep - sign * dp) - back) - size
+
+            dp = brentq(residual, 0.0, 1.0, xtol=1e-16) if residual(0.0) > 0 else 0.0
+            b = np.array([(b[i] + C[i] * dp * sign) / (1 + g[i] * dp) for i in range(2)])
+            ep, p = ep + sign * dp, p + dp
+            stress = E * (eps - ep)
+            got = frames[k].fields[0].values["S"][..., 0]
+            assert np.abs(got - stress).max() < 1e-5 * abs(stress) + 1e-4, (k, got[0, 0], stress)
+            assert frames[k].RF[mesh.nodes_of("right"), 0].sum() == pytest.approx(
+                3.0 * stress, rel=1e-5, abs=1e-3
+            )
+            k += 1
+
+
+@pytest.mark.parametrize("element", ["Q4I", "Q4S", "Q8R", "Q9", "T6"])
+def test_necking_load_of_a_hardening_bar(element: str) -> None:
+    """Arc length finds the largest dead load of a bar under logarithmic strain.
+
+    Considere: nominal stress tau exp(-e) is largest where d tau/d e = tau, with
+    d tau/d e = EH/(E + H) beyond yield; e = tau/E + (tau - sy)/H there.
+    """
+    E, sy, H, t = 1000.0, 10.0, 30.0, 0.5
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=1, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    steel = ct.Mises(E=E, nu=0.3, yield_stress=sy, isotropic=H)
+    model.section("all", element=element, material=steel, thickness=t, local_strain="logarithmic")
+    model.fix("left", y=None)
+    model.fix("bottom", x=None)
+    model.traction("right", x=60.0)
+    results = ct.solve(
+        model, ct.Static(path=ct.ArcLength(stop_at_limit=True), max_increments=300), threads=1
+    )
+    tau = E * H / (E + H)
+    e = tau / E + (tau - sy) / H
+    largest = tau * math.exp(-e)
+    point = next(c for c in results.critical_points if c.kind == "limit")
+    assert point.factor * 60.0 == pytest.approx(largest, rel=1e-6)
+    assert results.frames[-1].U[mesh.nodes_of("right")[0], 0] == pytest.approx(
+        2.0 * (math.exp(e) - 1), rel=1e-4
+    )
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+def test_fully_plastic_moment_through_a_rigid_end(plane: str) -> None:
+    """Pure bending by a turned rigid end to half a turn: M = Mp (1 - (k_e/k)^2/3), then unloading.
+
+    Mp = s t h^2/4 with s = sy in plane stress, 2 sy/sqrt(3) in plane strain (nu near 1/2, where
+    the yield points of both kinds of flow agree). The first unloading takes E'I k off.
+    """
+    E, sy, t, h, L = 1000.0, 2.0, 1.5, 1.0, 20.0
+    mesh = ct.mesh.rectangle(L, h, nx=10, ny=8, cell="quad8")
+    end = ct.mesh.add_node(mesh, L, h / 2, "ref")
+    model = ct.Model(mesh)
+    nu = 0.0 if plane == "stress" else 0.49
+    steel = ct.Mises(E=E, nu=nu, yield_stress=sy)
+    model.section("all", element="Q8R", material=steel, thickness=t, plane=plane)
+    middle = int(np.argmin(np.hypot(mesh.points[:-1, 0], mesh.points[:-1, 1] - h / 2)))
+    model.fix("left", y=None)
+    model.fix([middle], x=None)
+    model.rigid("right", end)
+    turn = 0.8
+    steps = [
+        ct.Static(supports=[Fixed([end], 2, turn)], increments=10),
+        ct.Static(supports=[Fixed([end], 2, turn - 0.02)], increments=1),
+    ]
+    results = ct.solve(model, steps, threads=1)
+    moment = [[f for f in results.frames if f.step == k][-1].RF[end, 2] for k in (1, 2)]
+    first = E / (1 - nu**2)
+    limit = sy if plane == "stress" else 2 / math.sqrt(3) * sy
+    ke = 2 * limit / (first * h)
+    k = turn / L
+    want = limit * t * h**2 / 4 * (1 - (ke / k) ** 2 / 3)
+    assert moment[0] == pytest.approx(want, rel=8e-3)
+    EI = first * t * h**3 / 12
+    assert moment[1] - moment[0] == pytest.approx(-EI * 0.02 / L, rel=1e-2)
+
+
+@pytest.mark.parametrize("element", CELL)
+def test_initial_stress_turns_with_the_body(element: str) -> None:
+    """A held block with initial stress and heat, turned by 100 degrees: R s R^T of the sum.
+
+    Plane stress, nothing deforms, so heat adds -E alpha dT/(1 - nu) to both normal stresses; the
+    thickness grows, and Cauchy stress is force per current area.
+    """
+    mesh = ct.mesh.rectangle(2.0, 1.6, nx=2, ny=2, cell=CELL[element])
+    model = ct.Model(mesh)
+    elastic = ct.Elastic(E=100.0, nu=0.25, expansion=1e-4)
+    model.section(
+        "all", element=element, material=elastic, thickness=0.3, local_strain="logarithmic"
+    )
+    model.initial_stress(xx=0.5, yy=-0.2, xy=0.3)
+    model.initial_temperature(20.0)
+    nodes = boundary(mesh)
+    angle = math.radians(100.0)
+    steps = []
+    for a in np.linspace(0.0, angle, 5)[1:]:
+        u = mesh.points @ (rotation(a) - np.eye(2)).T
+        supports = [Fixed([int(n)], d, float(u[n, d])) for n in nodes for d in (0, 1)]
+        if element in DRILLING:
+            supports += [Fixed([int(n)], 2, float(a)) for n in nodes]
+        loads = [Temperature("", 20.0 + 30.0 * a / angle)]
+        steps.append(ct.Static(supports=supports, loads=loads, increments=1))
+    frame = ct.solve(model, steps, threads=1).frames[-1]
+    local = np.array([[0.5, 0.3], [0.3, -0.2]]) - 100.0 * 1e-4 * 30.0 / 0.75 * np.eye(2)
+    thicker = 1e-4 * 30.0 + 0.25 / 100.0 * 2 * 0.4  # heat, and the added stress, by Hencky's law
+    want = rotation(angle) @ local @ rotation(angle).T * math.exp(-thicker)
+    got = frame.fields[0].values["S"]
+    assert np.allclose(got[..., 0], want[0, 0], atol=1e-9)
+    assert np.allclose(got[..., 1], want[1, 1], atol=1e-9)
+    assert np.allclose(got[..., 3], want[0, 1], atol=1e-9)
+    assert np.allclose(got[..., 2], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4I", "Q8", "Q9"])
+def test_orthotropic_heat_in_plane_strain(element: str) -> None:
+    """Free expansion of an orthotropic body in plane strain, material axes at 25 degrees.
+
+    From the full compliance: s33 = -E3 a3 dT with all else free; strains a dT - nu s33/E.
+    """
+    E1, E2, E3, n12, n13, n23 = 120.0, 40.0, 60.0, 0.2, 0.3, 0.25
+    a1, a2, a3, dT, angle = 1e-4, 3e-4, -2e-4, 40.0, math.radians(25.0)
+    mesh = ct.mesh.distort(ct.mesh.rectangle(3.0, 2.0, nx=3, ny=2, cell=CELL[element]), 0.2)
+    model = ct.Model(mesh)
+    material = ct.Orthotropic(E1, E2, E3, n12, n13, n23, 30.0, expansion=(a1, a2, a3))
+    model.section(
+        "all", element=element, material=material, plane="strain", orientation=angle, thickness=2.0
+    )
+    model.fix([0])
+    corner = int(np.argmax(mesh.points[:, 0] - mesh.points[:, 1]))
+    model.fix([corner], x=None)
+    model.initial_temperature(-10.0)
+    model.temperature(-10.0 + dT)
+    frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+    s33 = -E3 * a3 * dT
+    e1 = a1 * dT - n13 / E1 * s33
+    e2 = a2 * dT - n23 / E2 * s33
+    R = rotation(angle)
+    want = R @ np.diag([e1, e2]) @ R.T
+    E = frame.fields[0].values["E"]
+    assert np.allclose(E[..., 0], want[0, 0], rtol=1e-9)
+    assert np.allclose(E[..., 1], want[1, 1], rtol=1e-9)
+    assert np.allclose(E[..., 3], 2 * want[0, 1], rtol=1e-9)
+    S = frame.fields[0].values["S"]
+    assert np.allclose(S[..., 2], s33, rtol=1e-9)
+    assert np.abs(S[..., [0, 1, 3]]).max() < 1e-9 * abs(s33) * 100
+
+
+def test_expansion_table_with_start_and_zero(tmp_path: Path) -> None:
+    """Mean coefficients from a zero of 20, start at 60, end at 140, beyond the table's last row.
+
+    alpha(T)(T - 20) - alpha(60) 40, straight between rows and constant outside.
+    """
+    text = """*NODE
+1, 0., 0.
+2, 3., 0.
+*ELEMENT, TYPE=T2D2, ELSET=all
+1, 1, 2
+*MATERIAL, NAME=m
+*ELASTIC
+100., 0.
+*EXPANSION, ZERO=20.
+1e-4, 0.
+2e-4, 100.
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.2
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+1, 60.
+2, 60.
+*BOUNDARY
+1, 1, 2
+2, 2, 2
+*STEP
+*STATIC
+0.5, 1., 0.5, 0.5
+*TEMPERATURE
+1, 140.
+2, 140.
+*END STEP
+"""
+    results = run(tmp_path / "t.inp", text)
+    start = 1.6e-4 * 40.0
+    assert results.frames[-1].U[1, 0] == pytest.approx(3 * (2e-4 * 120 - start), rel=1e-12)
+    assert results.frames[1].U[1, 0] == pytest.approx(3 * (2e-4 * 80 - start), rel=1e-12)
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+def test_bimetal_strip_of_two_thicknesses(plane: str) -> None:
+    """Curvature of two layers of unequal depth, stiffness and thickness, turned far.
+
+    Timoshenko 1925: force and moment balance of two beams, widths b1 and b2; in plane strain
+    E/(1-nu^2) and (1+nu) alpha.
+    """
+    E = [100.0, 250.0]
+    b = [2.0, 0.8]
+    a = [0.4, 0.6]
+    alpha = [2e-4, 5e-5]
+    dT, L = 25.0, 60.0
+    low = ct.mesh.rectangle(L, a[0], nx=40, ny=2, cell="quad8")
+    top = ct.mesh.rectangle(L, a[1], nx=40, ny=2, cell="quad8", origin=(0.0, a[0]))
+    low.cell_sets["low"] = np.arange(low.n_cells)
+    top.cell_sets["high"] = np.arange(top.n_cells)
+    mesh = ct.mesh.merge(low, top)
+    model = ct.Model(mesh)
+    nu = 0.0 if plane == "stress" else 0.3
+    for k, name in enumerate(("low", "high")):
+        material = ct.Elastic(E=E[k], nu=nu, expansion=alpha[k])
+        model.section(name, element="Q8R", material=material, thickness=b[k], plane=plane)
+    left = mesh.nodes_of("left")
+    model.fix(left, y=None)
+    model.fix([int(left[np.argmin(mesh.points[left, 1])])], x=None)
+    model.temperature(dT)
+    frame = ct.solve(model, ct.Static(increments=5), threads=1).frames[-1]
+    Ep = [e / (1 - nu**2) if plane == "strain" else e for e in E]
+    ap = [x * (1 + nu) if plane == "strain" else x for x in alpha]
+    A = [b[k] * a[k] for k in range(2)]
+    EI = sum(Ep[k] * b[k] * a[k] ** 3 / 12 for k in range(2))
+    d = (a[0] + a[1]) / 2
+    # Layers share the strain at the joint (N in the lower layer, curvature k).
+    compliance = 1 / (Ep[0] * A[0]) + 1 / (Ep[1] * A[1]) + d**2 / EI
+    N = -(ap[0] - ap[1]) * dT / compliance
+    curvature = -N * d / EI
+
+    # angle between two sections, by the chords of their end nodes
+    def angle(x: float) -> float:
+        on = np.flatnonzero(np.abs(mesh.points[:, 0] - x) < 1e-9)
+        on = on[np.argsort(mesh.points[on, 1])]
+        v = (mesh.points + frame.U)[on[-1]] - (mesh.points + frame.U)[on[0]]
+        return math.atan2(v[1], v[0])
+
+    got = angle(40.5) - angle(19.5)
+    assert got / 21.0 == pytest.approx(curvature, rel=5e-3)
+
+
+# --- Loads, steps and amplitudes ---
+
+BARS = """*NODE
+1, 0., 0.
+2, 2., 0.
+3, 4., 0.
+*ELEMENT, TYPE=T2D2, ELSET=all
+1, 1, 2
+2, 2, 3
+*NSET, NSET=ends
+1
+*MATERIAL, NAME=m
+*ELASTIC
+100., 0.
+*DENSITY
+0.5
+*EXPANSION
+1e-3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.2
+*AMPLITUDE, NAME=tri
+0., 0., 0.5, 1., 1., 0.4
+*AMPLITUDE, NAME=tot, TIME=TOTAL TIME
+0., 0., 1., 1., 3., -1.
+*BOUNDARY
+1, 1, 2
+2, 2, 2
+3, 2, 2
+"""
+
+
+def test_amplitudes_over_three_steps(tmp_path: Path) -> None:
+    """A force by step time, one by total time and one without amplitude on one chain of bars.
+
+    Tables read by hand at quarters: step time ends with its last value, total time runs on until
+    OP=NEW; what OP=NEW takes goes linearly to zero; a new value starts from the old one.
+    """
+    text = (
+        BARS
+        + """*STEP
+*STATIC, DIRECT
+0.25, 1.
+*CLOAD, AMPLITUDE=tri
+3, 1, 2.
+*CLOAD, AMPLITUDE=tot
+2, 1, 4.
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.25, 1.
+*CLOAD
+3, 1, -1.
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.25, 1.
+*CLOAD, OP=NEW
+3, 1, 3.
+*END STEP
+"""
+    )
+    results = run(tmp_path / "a.inp", text)
+    k = 100.0 * 0.2 / 2.0
+    end = [0.0, 1.0, 2.0, 1.4, 0.8, *np.linspace(0.8, -1.0, 5)[1:], *np.linspace(-1, 3, 5)[1:]]
+    total = np.interp(np.linspace(0, 2, 9), [0, 1, 3], [0, 1, -1]) * 4
+    middle = [*total, *(total[-1] * np.array([0.75, 0.5, 0.25, 0.0]))]
+    frames = [f for f in results.frames if f.increment > 0 or f.step == 1]
+    for f, a, b in zip(frames, end, middle, strict=True):
+        assert f.U[1, 0] == pytest.approx((a + b) / k, abs=1e-12)
+        assert f.U[2, 0] == pytest.approx((a + b) / k + a / k, abs=1e-12)
+        assert f.RF[0, 0] == pytest.approx(-(a + b), abs=1e-10)
+
+
+def test_temperature_and_support_amplitudes(tmp_path: Path) -> None:
+    """An amplitude of temperature multiplies the temperature itself; a support follows its table.
+
+    Bar held at both ends that starts at 20 degrees: force -EA(alpha (T - 20) - u/L).
+    """
+    text = (
+        BARS.replace("*BOUNDARY\n", "*BOUNDARY\n3, 1, 1\n")
+        + """*NSET, NSET=every, ELSET=all
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+every, 20.
+*STEP
+*STATIC, DIRECT
+0.25, 1.
+*TEMPERATURE, AMPLITUDE=tri
+every, 50.
+*BOUNDARY, AMPLITUDE=tot
+3, 1, 1, 0.1
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.25, 1.
+*TEMPERATURE
+every, 30.
+*END STEP
+"""
+    )
+    results = run(tmp_path / "b.inp", text)
+    temperatures = [0.0, 25.0, 50.0, 35.0, 20.0, *np.linspace(20.0, 30.0, 5)[1:]]
+    moves = np.interp(np.linspace(0, 2, 9), [0, 1, 3], [0, 1, -1]) * 0.1
+    frames = [f for f in results.frames if f.increment > 0]
+    for f, T, u in zip(frames, temperatures[1:], moves[1:], strict=True):
+        force = 100.0 * 0.2 * (u / 4.0 - 1e-3 * (T - 20.0))
+        assert f.RF[2, 0] == pytest.approx(force, abs=1e-10)
+
+
+def test_order_of_conservative_loads_does_not_matter() -> None:
+    """Heat, gravity, a held end that turns, dead and closed pressure loads, in three orders.
+
+    Elastic and conservative: the state depends on the final loads only.
+    """
+    from corota.model.loads import BodyForce, EdgeLoad, NodalForce
+
+    mesh = ct.mesh.rectangle(6.0, 1.0, nx=12, ny=2, cell="quad8")
+    end = ct.mesh.add_node(mesh, 6.0, 0.5, "ref")
+    loads = [
+        Temperature("", 40.0),
+        BodyForce("", "gravity", (0.0, -0.05)),
+        NodalForce([end], 1, 0.4),
+        EdgeLoad("bottom", "traction", (0.02, 0.03)),
+    ]
+    ends = []
+    for order in ([[0, 1, 2, 3]], [[0], [1], [2], [3]], [[3], [2, 1], [0]]):
+        model = ct.Model(mesh)
+        model.section(
+            "all",
+            element="Q8",
+            material=ct.Elastic(E=200.0, nu=0.3, rho=2.0, expansion=2e-4),
+            thickness=0.6,
+            plane="strain",
+            local_strain="logarithmic",
+        )
+        model.fix("left")
+        model.rigid("right", end)
+        steps = [
+            ct.Static(loads=[loads[i] for i in one], supports=[Fixed([end], 2, 1.2)], increments=4)
+            for one in order
+        ]
+        ends.append(ct.solve(model, steps, threads=1).frames[-1])
+    for f in ends[1:]:
+        assert np.abs(f.U - ends[0].U).max() < 1e-7 * np.abs(ends[0].U).max()
+        assert np.abs(f.RF - ends[0].RF).max() < 1e-6 * np.abs(ends[0].RF).max()
+
+
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "Q9", "T6", "OPT", "Q4D", "Q4DI"])
+def test_pressure_has_the_resultant_of_its_chord(element: str) -> None:
+    """Follower pressure on a curved edge of a bent strip: force p t times the chord turned.
+
+    The normal integrates to the difference of the end points, whatever lies between.
+    """
+    sides = [
+        lambda t: (6 * t, 0.4 * np.sin(3 * t)),
+        lambda t: (6 + 0 * t, 0.4 * np.sin(3.0) + t),
+        lambda t: (6 * t, 1 + 0.4 * np.sin(3 * t)),
+        lambda t: (0 * t, t),
+    ]
+    mesh = ct.mesh.mapped(sides, nx=10, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=900.0, nu=0.3), thickness=1.7)
+    model.fix("left", rotation=True if element in DRILLING else None)
+    model.pressure("top", 0.6)
+    results = ct.solve(model, ct.Static(increments=10), threads=1)
+    frame = results.frames[-1]
+    top = mesh.nodes_of("top")
+    top = top[np.argsort(mesh.points[top, 0])]
+    a, b = (mesh.points + frame.U)[top[[0, -1]]]
+    chord = b - a
+    want = 0.6 * 1.7 * np.array([chord[1], -chord[0]])
+    assert np.allclose(frame.F[:, :2].sum(axis=0), want, rtol=1e-9)
+    assert np.allclose(frame.RF[:, :2].sum(axis=0), -want, rtol=1e-7)
+    assert abs(frame.U[top[-1], 1]) > 1.0
+
+
+@pytest.mark.parametrize("element", CELL)
+def test_moment_balance_of_weight_pressure_and_spin(element: str) -> None:
+    """Reactions of a cantilever far bent: forces and moments of loads about the current points.
+
+    Weight t h L rho g in total; all external forces and moments balance the clamp's, RM included.
+    """
+    mesh = ct.mesh.rectangle(8.0, 1.0, nx=8, ny=2, cell=CELL[element])
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=2000.0, nu=0.3, rho=1.5)
+    model.section("all", element=element, material=material, thickness=0.4)
+    model.fix("left", rotation=True if element in DRILLING else None)
+    model.gravity(0.3, -0.9)
+    model.pressure("right", 0.7)
+    model.centrifugal(0.25, about=(-1.0, 0.0))
+    frame = ct.solve(model, ct.Static(increments=8), threads=1).frames[-1]
+    x = mesh.points + frame.U
+
+    def moment(force: np.ndarray) -> float:
+        return float(np.sum(x[:, 0] * force[:, 1] - x[:, 1] * force[:, 0] + force[:, 2]))
+
+    scale = np.abs(frame.F).max()
+    assert np.abs((frame.F + frame.RF)[:, :2].sum(axis=0)).max() < 1e-6 * scale
+    assert abs(moment(frame.F + frame.RF)) < 1e-5 * scale
+    only = ct.Model(mesh)
+    only.section("all", element=element, material=material, thickness=0.4)
+    only.fix("left", rotation=True if element in DRILLING else None)
+    only.gravity(0.3, -0.9)
+    weight = ct.solve(only, ct.Static(increments=8), threads=1).frames[-1]
+    assert np.allclose(
+        weight.RF[:, :2].sum(axis=0), -8.0 * 0.4 * 1.5 * np.array([0.3, -0.9]), rtol=1e-7
+    )
+
+
+@pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4I", "Q8", "Q9", "Q4D", "Q4DI", "OPT"])
+def test_spinning_bar_under_large_strain(element: str) -> None:
+    """Radial bar under centrifugal load, Biot strain, nu = 0: x = sin(k X)/(k cos k L).
+
+    From E u'' + rho w^2 (X + u) = 0 and u'(L) = 0, k^2 = rho w^2/E; the reaction is -E t h u'(0).
+    """
+    E, rho, w, L, t, h = 50.0, 2.0, 1.1, 2.0, 0.3, 0.2
+    mesh = ct.mesh.rectangle(L, h, nx=40, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=E, nu=0.0, rho=rho), thickness=t)
+    model.fix("left", y=None)
+    model.fix("bottom", x=None, rotation=True if element in DRILLING else None)
+    model.fix("top", x=None, y=None, rotation=True if element in DRILLING else None)
+    model.centrifugal(w)
+    frame = ct.solve(model, ct.Static(increments=2), threads=1).frames[-1]
+    k = math.sqrt(rho * w**2 / E)
+    bottom = mesh.nodes_of("bottom")
+    X = mesh.points[bottom, 0]
+    want = np.sin(k * X) / (k * math.cos(k * L)) - X
+    # The frame of a slender triangle turns by a second-order angle under pure stretch.
+    tolerance = 3e-3 if element in ("T3", "T6", "OPT") else 5e-4
+    assert np.abs(frame.U[bottom, 0] - want).max() < tolerance * want.max()
+    force = E * t * h * (1 / math.cos(k * L) - 1)
+    left = mesh.nodes_of("left")
+    assert frame.RF[left, 0].sum() == pytest.approx(-force, rel=1e-3)
+
+
+def test_dload_and_dsload_and_python_agree(tmp_path: Path) -> None:
+    """One follower pressure by element faces, by a surface, by an edge set, and half and half.
+
+    Clockwise elements in one deck: turned on reading, their faces keep the deck's numbers.
+    """
+    mesh = ct.mesh.rectangle(5.0, 1.0, nx=5, ny=1, cell="quad8")
+    nodes = deck_mesh(mesh, "CPE8")
+    body = """*MATERIAL, NAME=m
+*ELASTIC
+300., 0.3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.8
+*SURFACE, NAME=roof
+1, {face}
+2, {face}
+3, {face}
+4, {face}
+5, {face}
+*BOUNDARY
+left, 1, 2
+*STEP, NLGEOM
+*STATIC
+0.25, 1., 0.25, 0.25
+{load}
+*END STEP
+"""
+    clockwise = []
+    for line in nodes.splitlines():
+        clockwise.append(line)
+    start = clockwise.index("*ELEMENT, TYPE=CPE8, ELSET=all") + 1
+    for i in range(start, start + 5):
+        e, *n = clockwise[i].split(", ")
+        clockwise[i] = ", ".join([e, n[0], n[3], n[2], n[1], n[7], n[6], n[5], n[4]])
+    # counter-clockwise: bottom, right, top, left are 1 to 4; clockwise: left, top, right, bottom
+    decks = {
+        "dload": nodes + body.format(face="S3", load="*DLOAD\nall, P3, 0.4"),
+        "dsload": nodes + body.format(face="S3", load="*DSLOAD\nroof, P, 0.4"),
+        "both": nodes + body.format(face="S3", load="*DLOAD\nall, P3, 0.3\n*DSLOAD\nroof, P, 0.1"),
+        "clockwise": "\n".join(clockwise)
+        + "\n"
+        + body.format(face="S2", load="*DLOAD\nall, P2, 0.1\n*DSLOAD\nroof, P, 0.3"),
+    }
+    model = ct.Model(mesh)
+    model.section(
+        "all", element="Q8", material=ct.Elastic(E=300.0, nu=0.3), thickness=0.8, plane="strain"
+    )
+    model.fix("left")
+    model.pressure("top", 0.4)
+    want = ct.solve(model, ct.Static(increments=4), threads=1).frames[-1]
+    for name, text in decks.items():
+        got = run(tmp_path / f"{name}.inp", text).frames[-1]
+        assert np.allclose(got.U, want.U, atol=1e-8), name
+        assert np.allclose(got.RF, want.RF, atol=1e-7), name
+
+
+def test_linear_step_before_a_nonlinear_one(tmp_path: Path) -> None:
+    """An elastic structure ends where one nonlinear step ends, whatever a linear step did before.
+
+    The load of the linear step stays (dead), and the second step adds; hyperelastic equilibrium
+    depends on the final loads only.
+    """
+    mesh = ct.mesh.rectangle(6.0, 1.0, nx=6, ny=1)
+    head = (
+        deck_mesh(mesh, "Q4I")
+        + """*MATERIAL, NAME=m
+*ELASTIC
+500., 0.3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.5
+*BOUNDARY
+left, 1, 2
+"""
+    )
+    two = """*STEP
+*STATIC
+*CLOAD
+right, 2, 0.1
+*END STEP
+*STEP, NLGEOM
+*STATIC
+*CLOAD
+right, 1, -0.2
+*END STEP
+"""
+    one = """*STEP, NLGEOM
+*STATIC
+0.25, 1.
+*CLOAD
+right, 2, 0.1
+right, 1, -0.2
+*END STEP
+"""
+    a = run(tmp_path / "two.inp", head + two).frames[-1]
+    b = run(tmp_path / "one.inp", head + one).frames[-1]
+    assert np.allclose(a.U, b.U, atol=1e-8)
+    assert np.allclose(a.RF, b.RF, atol=1e-7)
+
+
+# --- Constraints ---
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "Q9", "Q4DI", "Q4S"])
+def test_full_circle_by_a_moment_on_a_rigid_end(element: str, plane: str) -> None:
+    """A strip rolled up by M = 2 pi E' I/L at a reference node; the clamp reacts -M; work M pi.
+
+    E' is E/(1 - nu^2) in plane strain. Linear moment-curvature law, so strain energy is M 2 pi/2.
+    """
+    E, nu, t, L, h = 1.2e6, 0.3, 0.8, 10.0, 0.05
+    if plane == "stress":
+        nu = 0.0
+    mesh = ct.mesh.rectangle(L, h, nx=40, ny=1, cell=CELL[element])
+    end = ct.mesh.add_node(mesh, L, h / 2, "ref")
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=E, nu=nu), thickness=t, plane=plane)
+    middle = mesh.nodes_of("left")
+    model.fix("left", y=None, rotation=True if element in DRILLING else None)
+    model.fix([int(middle[0])])
+    model.rigid("right", end)
+    Ep = E / (1 - nu**2)
+    M = 2 * math.pi * Ep * t * h**3 / 12 / L
+    model.force([end], moment=M)
+    frame = ct.solve(model, ct.Static(increments=16), threads=1).frames[-1]
+    assert frame.UR[end] == pytest.approx(2 * math.pi, rel=2e-2)
+    left = mesh.nodes_of("left")
+    x = mesh.points + frame.U
+    clamp = np.sum(
+        x[left, 0] * frame.RF[left, 1] - x[left, 1] * frame.RF[left, 0] + frame.RF[left, 2]
+    )
+    assert clamp == pytest.approx(-M, rel=1e-6)
+    assert frame.scalars["ALLSE"] + frame.scalars["ALLAE"] == pytest.approx(
+        0.5 * M * frame.UR[end], rel=1e-2
+    )
+    assert frame.scalars["ALLWK"] == pytest.approx(0.5 * M * frame.UR[end], rel=1e-2)
+
+
+def test_distributing_coupling_spreads_by_weights() -> None:
+    """Force and moment on a distributing node, read from springs to the ground at its nodes.
+
+    Equal weights: each node takes P/n and M (-y, x)/sum r^2 about the centroid.
+    """
+    y = np.array([0.0, 1.0, 2.5, 4.0])
+    points = np.vstack([np.column_stack([np.zeros(4), y]), [[3.0, 1.0]]])
+    cells = [Cells("line2", np.array([[0, 1], [1, 2], [2, 3]]), np.array([1, 2, 3]))]
+    cells.append(Cells("point1", np.arange(4).reshape(-1, 1), np.arange(4, 8)))
+    from corota.mesh import Mesh
+
+    mesh = Mesh(points, cells, np.arange(1, 6))
+    model = ct.Model(mesh)
+    model.truss([0, 1, 2], material=ct.Elastic(E=1e-3), area=1e-6)
+    model.spring([3, 4, 5, 6], 50.0, "x")
+    model.couple([0, 1, 2, 3], 4, kind="distributing")
+    for n in range(4):
+        model.fix([n], x=None)
+    model.force([4], x=2.0, moment=1.5)
+    model.fix([4], x=None, y=None)
+    frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+    r = y - y.mean()
+    # The force acts at the reference node, whose arm about the centroid adds -2 (1 - mean).
+    M = 1.5 - 2.0 * (1.0 - y.mean())
+    force = 2.0 / 4 - M * r / np.sum(r**2)
+    assert np.allclose(50.0 * frame.U[:4, 0], force, rtol=1e-6)
+
+
+def test_equation_with_right_side_in_turned_axes(tmp_path: Path) -> None:
+    """u1' - 2 v1' = 0.3 in axes at 40 degrees on springs: two equations by hand.
+
+    Along the constraint the springs' force is normal to the free direction.
+    """
+    c, s = math.cos(math.radians(40)), math.sin(math.radians(40))
+    text = f"""*NODE
+1, 0., 0.
+2, 5., 0.
+*ELEMENT, TYPE=SPRING1, ELSET=kx
+1, 1
+*ELEMENT, TYPE=SPRING1, ELSET=ky
+2, 1
+*SPRING, ELSET=kx
+1
+10.
+*SPRING, ELSET=ky
+2
+25.
+*TRANSFORM, NSET=turned, TYPE=R
+{c}, {s}, 0., {-s}, {c}, 0.
+*NSET, NSET=turned
+1
+*EQUATION
+3
+1, 1, 1., 1, 2, -2., 2, 1, -0.3
+*BOUNDARY
+2, 1, 1, 1.
+*STEP, NLGEOM
+*STATIC
+*CLOAD
+1, 1, 4.
+1, 2, -1.
+*END STEP
+"""
+    frame = run(tmp_path / "e.inp", text).frames[-1]
+    R = np.array([[c, -s], [s, c]])  # columns are the local axes
+    K = R.T @ np.diag([10.0, 25.0]) @ R
+    a = np.array([1.0, -2.0])
+    A = np.block([[K, a[:, None]], [a[None, :], np.zeros((1, 1))]])
+    local = np.linalg.solve(A, [4.0, -1.0, 0.3])[:2]
+    assert np.allclose(frame.U[0], R @ local, atol=1e-10)
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "T6", "Q9", "Q4I", "Q4D", "OPT"])
+def test_sector_of_a_tube_on_inclined_planes(tmp_path: Path, kind: str) -> None:
+    """Lame's tube as a sector from 20 to 80 degrees, its sides held by *TRANSFORM, TYPE=C.
+
+    Radial displacement and hoop stress in plane strain with heat: thickness 0.6, pressure inside.
+    """
+    a, b, p, E, nu, alpha, T = 1.0, 2.0, 5.0, 1000.0, 0.3, 1e-4, 10.0
+    cell = {"T6": "tri6", "Q9": "quad9", "Q4I": "quad4", "Q4D": "quad4", "OPT": "tri3"}
+    coarse = cell.get(kind, "quad8")
+    n = 24 if coarse in ("quad4", "tri3") else 8
+    mesh = ct.mesh.annulus(a, b, n, n, angle=60.0, start=20.0, cell=coarse)
+    plane = "" if kind.startswith("C") else ", PLANE=STRAIN"
+    lines = ["*NODE"]
+    lines += [
+        f"{m}, {float(x)!r}, {float(y)!r}"
+        for m, (x, y) in zip(mesh.node_labels, mesh.points, strict=True)
+    ]
+    lines.append(f"*ELEMENT, TYPE={kind}, ELSET=all")
+    for label, nodes in zip(mesh.cells[0].labels, mesh.cells[0].nodes, strict=True):
+        lines.append(f"{label}, " + ", ".join(str(mesh.node_labels[i]) for i in nodes))
+    for name in ("start", "end", "inner"):
+        lines.append(f"*NSET, NSET={name}")
+        lines += [str(mesh.node_labels[i]) for i in mesh.nodes_of(name)]
+    lines.append("*SURFACE, NAME=bore")
+    for c, e in mesh.edge_sets["inner"]:
+        lines.append(f"{mesh.cells[0].labels[c]}, S{e + 1}")
+    text = "\n".join(lines) + (
+        f"""
+*NSET, NSET=every, ELSET=all
+*TRANSFORM, NSET=every, TYPE=C
+0., 0., 0., 0., 0., 1.
+*MATERIAL, NAME=m
+*ELASTIC
+{E}, {nu}
+*EXPANSION
+{alpha}
+*SOLID SECTION, ELSET=all, MATERIAL=m{plane}
+0.6
+*BOUNDARY
+start, 2, 2
+end, 2, 2
+"""
+        + ("start, 6, 6\nend, 6, 6\n" if kind in DRILLING else "")
+        + f"""*STEP
+*STATIC
+*DSLOAD
+bore, P, {p}
+*TEMPERATURE
+every, {T}
+*END STEP
+"""
+    )
+    results = run(tmp_path / "tube.inp", text)
+    u = np.hypot(*(mesh.points + results.frames[-1].U).T) - np.hypot(*mesh.points.T)
+    r = np.hypot(*mesh.points.T)
+    C = p * a**2 / (b**2 - a**2)
+    want = (1 + nu) / E * C * ((1 - 2 * nu) * r + b**2 / r) + (1 + nu) * alpha * T * r
+    tolerance = 4e-3 if coarse in ("quad4", "tri3") else 2e-4
+    assert np.abs(u - want).max() < tolerance * want.max()
+    hold = mesh.nodes_of("end")
+    force = results.frames[-1].RF[hold, :2].sum(axis=0)
+    out = np.array([-math.sin(math.radians(80)), math.cos(math.radians(80))])
+    # Hoop stresses of a sector balance the pressure: p a t in all, whatever the material.
+    assert force @ out == pytest.approx(p * a * 0.6, rel=1e-9)
