@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks of motion, modes, buckling and paths against answers derived outside the program.
 
 Reference values are closed forms, integrations by SciPy, small programs written here, or numbers
@@ -783,7 +784,8 @@ def test_rotating_cantilever_beam():
 
 
 def test_compressed_beam_and_its_buckling_load():
-    # Pinned beam under the dead force P: w^2 = w0^2 (1 - P/Pcr), w0 = pi^2 sqrt(EI/(rho A L^4)).
+    # Pinned beam under a dead force P: w^2 = w0^2 (1 - P/Pcr), w0 = pi^2 sqrt(EI/(rho A L^4)). The
+    # chords of 64 beams leave (pi/64)^2/12 of P/Pcr, which 1 - P/Pcr magnifies.
     n, length, area, inertia, young, rho = 64, 2.0, 1.0, 1e-6, 2e5, 0.03
     critical = math.pi**2 * young * inertia / length**2
     for share in (-1.0, 0.5, 0.9):
@@ -799,7 +801,7 @@ def test_compressed_beam_and_its_buckling_load():
         found = ct.solve(model, [ct.Static(), ct.Frequency(modes=1)]).modes[-1]
         first = math.pi**2 * math.sqrt(young * inertia / (rho * area * length**4))
         np.testing.assert_allclose(
-            2 * np.pi * found.factors[0], first * math.sqrt(1 - share), rtol=1e-3
+            2 * np.pi * found.factors[0], first * math.sqrt(1 - share), rtol=1.5e-3
         )
 
 
