@@ -208,6 +208,7 @@ class Instance:
     shift: tuple[float, float] = (0.0, 0.0)
     angle: float = 0.0
     centre: tuple[float, float] = (0.0, 0.0)
+    scope: Scope = field(default_factory=lambda: Scope())
 
 
 @dataclass(slots=True)
@@ -223,6 +224,20 @@ class Scope:
     sections: list[SectionDraft] = field(default_factory=list)
     lines: list[LineDraft] = field(default_factory=list)
     orientations: dict[str, float] = field(default_factory=dict)
+
+    def joined(self, own: Scope) -> Scope:
+        """The data of a part with those that one of its instances adds."""
+        return Scope(
+            self.name,
+            self.nodes + own.nodes,
+            self.elements + own.elements,
+            {**self.nsets, **own.nsets},
+            {**self.elsets, **own.elsets},
+            {**self.surfaces, **own.surfaces},
+            self.sections + own.sections,
+            self.lines + own.lines,
+            {**self.orientations, **own.orientations},
+        )
 
 
 @dataclass
@@ -311,7 +326,9 @@ class Deck:
             text = text[:157] + "..." if not where or where.column <= 157 else ""
         name = numerals.clipped(card.spelled, 60) if card else ""
         message, hint = numerals.clipped(message), numerals.clipped(hint)
-        self.diagnostics.append(Diagnostic(severity, message, where, name, text, hint))
+        found = Diagnostic(severity, message, where, name, text, hint)
+        if found not in self.diagnostics:  # a part with several instances has its faults once
+            self.diagnostics.append(found)
 
     def row_error(self, card: Card, row: Row, index: int, message: str, hint: str = "") -> None:
         """Record an error at a field of a data line."""

@@ -196,6 +196,42 @@ IGNORED: dict[str, str] = {
     "PRINT": "it controls the message file",
     "FILEFORMAT": "it controls the result file of another program",
     "USERSUBROUTINE": "no user subroutine is called",
+    **dict.fromkeys(
+        (
+            "CONDUCTIVITY",
+            "SPECIFICHEAT",
+            "LATENTHEAT",
+            "PHYSICALCONSTANTS",
+            "INELASTICHEATFRACTION",
+            "JOULEHEATFRACTION",
+            "ELECTRICALCONDUCTIVITY",
+        ),
+        "it says nothing of stresses; temperatures are given by *TEMPERATURE",
+    ),
+    **dict.fromkeys(
+        (
+            "SECTIONPRINT",
+            "SECTIONFILE",
+            "INTEGRATEDOUTPUT",
+            "INTEGRATEDOUTPUTSECTION",
+            "INCREMENTATIONOUTPUT",
+            "SURFACEOUTPUT",
+            "MODALOUTPUT",
+            "MODALFILE",
+            "MODALPRINT",
+            "RADIATIONOUTPUT",
+            "FILTER",
+            "FILEOUTPUT",
+            "NODALENERGYRATE",
+        ),
+        "this output is not written; forces on a section are the sum of RF on its nodes",
+    ),
+    "DIAGNOSTICS": "progress and the events of the run tell it",
+    "PRINTLEVEL": "it controls the message file",
+    "CONTACTDIAGNOSTICS": "progress and the events of the run tell it",
+    "BULKVISCOSITY": "explicit dynamics has no artificial viscosity here",
+    "HOURGLASSSTIFFNESS": "the hourglass is stabilized by the elements themselves",
+    "DISPLAYBODY": "it is a picture only",
 }
 
 _CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
@@ -236,16 +272,18 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "CONDUCTIVITY",
-            "SPECIFICHEAT",
             "HEATTRANSFER",
             "CFLUX",
             "DFLUX",
+            "DSFLUX",
             "FILM",
+            "SFILM",
             "RADIATE",
+            "SRADIATE",
             "COUPLEDTEMPERATURE-DISPLACEMENT",
-            "PHYSICALCONSTANTS",
             "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
+            "COUPLEDTHERMAL-ELECTRICAL",
+            "HEATGENERATION",
         ),
         _HEAT,
     ),
@@ -288,7 +326,6 @@ UNSUPPORTED: dict[str, str] = {
     "NODALTHICKNESS": "give the thickness by *SOLID SECTION",
     "SUBMODEL": "submodels are not part of this version",
     "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
-    "SECTIONPRINT": "section forces are not part of this version; print RF on a node set",
     "CHANGESOLIDSECTION": "sections cannot change between steps",
     "CHANGEMATERIAL": "materials cannot change between steps",
     "DISTRIBUTION": "values given by element are not part of this version",
@@ -352,6 +389,9 @@ def interpret(deck: Deck, card: Card) -> None:
         return
     known = set(entry.parameters.split())
     ignored = set(entry.ignored.split())
+    refused = {name for keyword, name in REFUSED_PARAMETERS if keyword == card.keyword}
+    card.scope = deck.scope
+    _spell_out(card, known | ignored | refused)
     for name, parameter in card.parameters.items():
         if name in known:
             continue
@@ -375,18 +415,22 @@ def interpret(deck: Deck, card: Card) -> None:
             hint="model data stand before the first *STEP",
         )
         return
-    if deck.instance is not None and card.keyword != "ENDINSTANCE":
-        deck.error(
-            card,
-            card.where,
-            f"{card.spelled} inside an instance",
-            hint="put the data into the part; sections and sets stand there too",
-        )
-        return
     entry.function(deck, card)
 
 
+def _spell_out(card: Card, words: set[str]) -> None:
+    """Give abbreviated parameters (``GEN``, ``FREQ``) their full names, where one fits."""
+    for name in [n for n in card.parameters if n not in words and len(n) > 2]:
+        fits = sorted((w for w in words if w.startswith(name)), key=len)
+        if fits and all(w.startswith(fits[0]) for w in fits) and fits[0] not in card.parameters:
+            card.parameters[fits[0]] = card.parameters.pop(name)
+
+
 def _unknown(deck: Deck, card: Card) -> None:
+    if card.keyword.startswith("HEADING"):
+        deck.heading.append(card.text.strip()[len("*HEADING") :].strip())
+        heading(deck, card)
+        return
     if card.keyword in IGNORED:
         deck.note(f"{card.where}: {card.spelled} is ignored: {IGNORED[card.keyword]}")
         return

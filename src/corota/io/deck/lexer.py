@@ -25,6 +25,7 @@ MAX_BYTES = 8 << 30
 READ = 8.0
 
 _QUOTED = re.compile(r'^"(.*)"$')
+_BLANK = re.compile(r'[\s"]+')
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +102,8 @@ class Card:
         As in the file: ``*Solid Section``.
     parameters : dict of str to Parameter
         By name, upper case without blanks.
+    scope : object
+        Part, instance or assembly in which it stands; set where cards are interpreted.
     """
 
     keyword: str
@@ -109,6 +112,7 @@ class Card:
     where: Location
     text: str
     chunks: list[Chunk] = field(default_factory=list)
+    scope: object = None
 
     def rows(self) -> Iterator[Row]:
         """Iterate over the data lines, without comments and empty ones."""
@@ -149,14 +153,13 @@ def decode(data: bytes) -> str:
 
 def key(name: str) -> str:
     """Form in which names are compared: upper case, no blanks, no quotes."""
-    match = _QUOTED.match(name.strip())
-    return re.sub(r"\s+", "", match.group(1) if match else name).upper()
+    return _BLANK.sub("", name).upper()
 
 
 def split_row(text: str, where: Location) -> Row:
     """Cut a data line at its commas; one trailing comma adds no field."""
     fields, columns, column = [], [], 1
-    for part in text.split(","):
+    for part in _split_keyword(text) if '"' in text else text.split(","):
         body = part.strip()
         fields.append(body)
         columns.append(column + len(part) - len(part.lstrip()) if body else column)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from corota.errors import DeckError, Diagnostic, InputError
 from corota.io.deck.build.model import ModelBuilder
+from corota.io.deck.cards.assembly import close_part
 from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.keywords import interpret
@@ -80,8 +81,11 @@ def read_deck(
 def _open_ends(deck: Deck) -> None:
     if deck.step is not None:
         deck.error(deck.step.card, deck.step.card.where, "the step has no *END STEP")
-    if deck.scope is not deck.root:
-        deck.error(None, None, f"part {deck.scope.name} has no *END PART")
+    if deck.instance is not None:
+        where = deck.instance.card.where
+        deck.error(deck.instance.card, where, "the instance has no *END INSTANCE")
+    elif deck.scope is not deck.root:
+        close_part(deck)
     elif deck.in_assembly:
         deck.error(None, None, "the assembly has no *END ASSEMBLY")
 

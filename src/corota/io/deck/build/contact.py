@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck import numerals
-from corota.io.deck.build.mesh import placed
+from corota.io.deck.build.mesh import placed, views_in
 from corota.io.deck.build.ties import single_node
 from corota.io.deck.cards.contact import interaction_of
 from corota.io.deck.deck import nearest
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.cards.contact import InteractionDraft, PairDraft
     from corota.io.deck.deck import Deck, Draft, Surface
+    from corota.io.deck.lexer import Card
     from corota.mesh.data import Floats, Ints, Mesh
     from corota.model.model import Model
 
@@ -50,7 +51,10 @@ class _Builder:
         self.deck, self.model, self.sets = deck, model, sets
         self.find, self.rotating = find, rotating
         self.curves: dict[str, RigidCurve] = {}
-        self.used: set[str] = set()
+        self.carriers = {
+            self._full(card, shown) or key(shown): (card, draft)
+            for shown, (card, draft) in deck.carriers.items()
+        }
 
     def add(self, pair: PairDraft) -> None:
         """Build one pair; faults go to the deck."""
@@ -114,7 +118,8 @@ class _Builder:
     def _surface(self, pair: PairDraft, index: int) -> str | Ints | RigidCurve | None:
         """A surface of a pair: name of edges, edges, or a rigid curve; ``None`` after an error."""
         name = (pair.slave, pair.master)[index]
-        found = self.sets.surfaces.get(key(name))
+        full = self._full(pair.card, name)
+        found = self.sets.surfaces.get(full)
         index = min(index, len(pair.row) - 1)
         if found is None:
             known = [view.prefix + s.name for view, s in self.sets.surfaces.values()]
@@ -128,7 +133,7 @@ class _Builder:
             return None
         view, surface = found
         if key(surface.card.value("TYPE")) == "SEGMENTS":
-            return self._curve(name, surface)
+            return self._curve(full, surface)
         full = view.prefix + surface.name
         if surface.nodes:
             edges = _edges_of_nodes(self.model.mesh, self.model.mesh.node_sets[full])
@@ -147,35 +152,39 @@ class _Builder:
             return None
         return edges if surface.nodes else full
 
+    def _full(self, card: Card, name: str) -> str:
+        """Key of a surface that a card names."""
+        view = views_in(self.sets.views, self.deck, card.scope)[0]
+        return self.sets.full_name(self.sets.surfaces, view, name)
+
     def _curve(self, name: str, surface: Surface) -> RigidCurve | None:
         if surface.profile is None:
             return None  # its faults are told already
-        self.used.add(key(name))
-        if key(name) in self.curves:
-            return self.curves[key(name)]
-        view = self.sets.surfaces[key(name)][0]
+        if name in self.curves:
+            return self.curves[name]
+        view = self.sets.surfaces[name][0]
         rows = surface.profile.copy()
         for columns in (slice(0, 2), slice(2, 4), slice(4, 6)):
             rows[:, columns] = placed(rows[:, columns], view.instance)
         reference: int | None = None
-        if key(name) in self.deck.carriers:
-            _, draft = self.deck.carriers[key(name)]
-            reference = single_node(self.deck, self.find, draft)
+        if name in self.carriers:
+            _, draft = self.carriers[name]
+            reference = single_node(self.deck, self.find, draft, self.model)
             if reference is None:
                 return None
             self.rotating[reference] = True
         else:
             self.deck.note(
-                f"{surface.card.where}: rigid profile {name} has no *RIGID BODY, so it stays "
-                "where it is"
+                f"{surface.card.where}: rigid profile {surface.name} has no *RIGID BODY, so it "
+                "stays where it is"
             )
-        self.curves[key(name)] = curve = _made(rows, surface.fillet, reference)
-        curve.name = name
+        self.curves[name] = curve = _made(rows, surface.fillet, reference)
+        curve.name = view.prefix + surface.name
         return curve
 
     def unused(self) -> None:
         """Tell of rigid bodies of profiles that do not exist, and of what nothing uses."""
-        for name, (card, _) in self.deck.carriers.items():
+        for name, (card, _) in self.carriers.items():
             if name not in self.sets.surfaces:
                 shown = card.value("ANALYTICALSURFACE")
                 names = [s.name for _, s in self.sets.surfaces.values()]

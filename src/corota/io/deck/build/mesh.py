@@ -102,8 +102,8 @@ class MeshBuilder:
         self.deck = deck
         self.views = [View(deck.root)]
         for instance in deck.instances.values():
-            view = View(deck.parts[instance.part], instance.name + ".", instance)
-            self.views.append(view)
+            scope = deck.parts[instance.part].joined(instance.scope)
+            self.views.append(View(scope, instance.name + ".", instance))
         self.types: list[str] = []
         self.cell_type: Ints = np.zeros(0, np.int64)
         self.turned = np.zeros(0, bool)
@@ -385,6 +385,18 @@ class MeshBuilder:
     def _more(self, count: int, text: str) -> None:
         if count > MAX_LISTED:
             self.deck.error(None, None, f"{count} {text}; the first {MAX_LISTED} are listed")
+
+
+def views_in(views: list[View], deck: Deck, scope: object) -> list[View]:
+    """Views that a card speaks of: that of its instance, those of its part, or the assembly."""
+    if scope is None or scope is deck.root:
+        return views[:1]
+    return [
+        view
+        for view in views[1:]
+        if view.instance
+        and (view.instance.scope is scope or deck.parts[view.instance.part] is scope)
+    ]
 
 
 def _truss_labels(scope: Scope) -> Ints:

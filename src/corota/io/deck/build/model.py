@@ -12,9 +12,9 @@ from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.build.contact import build_contacts
 from corota.io.deck.build.materials import build_material, share_damping
-from corota.io.deck.build.mesh import MeshBuilder, View, view_of
+from corota.io.deck.build.mesh import MeshBuilder, View, view_of, views_in
 from corota.io.deck.build.sets import Elements, Sets
-from corota.io.deck.build.ties import build_ties
+from corota.io.deck.build.ties import build_tie
 from corota.io.deck.cards.attachments import build_attachments
 from corota.io.deck.cards.lines import build_lines, truss_section
 from corota.io.deck.cards.thermal import build_initial, build_temperature
@@ -50,6 +50,8 @@ class ModelBuilder:
         self.model = Model(self.meshes.build(), name)
         self.mesh = self.model.mesh
         self.sets = Sets(self.meshes, self.mesh)
+        #: Part or assembly whose names come first.
+        self.at = self.meshes.views[0]
         self.rotating = np.zeros(self.mesh.n_nodes, bool)
 
     def build(self) -> Model:
@@ -58,7 +60,13 @@ class ModelBuilder:
         share_damping(self.deck)
         self._sections()
         model, deck = self.model, self.deck
-        build_ties(deck, model, self._nodes, self._tied, self.rotating)
+        for tie in deck.ties:
+            for view in views_in(self.meshes.views, deck, tie.card.scope):
+                self.at = view
+                build_tie(
+                    deck, model, self._nodes, self._tied, self._surface_name, self.rotating, tie
+                )
+        self.at = self.meshes.views[0]
         build_contacts(deck, model, self.sets, self._nodes, self.rotating)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
         model.supports = self._supports(deck.supports)
@@ -83,13 +91,17 @@ class ModelBuilder:
         return model
 
     def _tied(self, tie: TieDraft) -> Elements | None:
-        view, card = self.meshes.views[0], tie.card
-        return self.sets.elements(view, tie.elset, card.at("ELSET"), card)
+        card = tie.card
+        return self.sets.elements(self.at, tie.elset, card.at("ELSET"), card)
+
+    def _surface_name(self, table: Mapping[str, object], name: str) -> str:
+        return self.sets.mesh_name(table, self.at, name)
 
     def _cells_of(self, draft: Draft) -> Elements | None:
-        return self.sets.elements(
-            self.meshes.views[0], draft.target, draft.row.at(0), draft.card, draft.row.text
-        )
+        view = self.meshes.views[0]
+        if numerals.is_integer(draft.target):
+            view = self._numbering(view, draft.target, "cells")
+        return self.sets.elements(view, draft.target, draft.row.at(0), draft.card, draft.row.text)
 
     def _names_used(self) -> set[str]:
         """Keys of the names that supports, loads and constraints use."""
@@ -251,19 +263,17 @@ class ModelBuilder:
         target, row = draft.target, draft.row
         found: tuple[View, str] | None
         if numerals.is_integer(target):
-            found = (self.meshes.views[0], target)
-            if not self.deck.root.nodes and len(self.meshes.views) == 2:
-                found = (self.meshes.views[1], target)
+            found = (self._numbering(self.at, target, "nodes"), target)
         else:
-            full = self.sets.full_name(self.sets.nsets, self.meshes.views[0], target)
+            full = self.sets.full_name(self.sets.nsets, self.at, target)
             if full:
                 if not len(self.mesh.node_sets.get(self.sets.spelled(self.sets.nsets, full), ())):
                     self.deck.row_error(draft.card, row, 0, f"node set {target} is empty")
                     return None
                 return self.sets.spelled(self.sets.nsets, full)
-            for name in self.mesh.node_sets:
-                if key(name) == key(target):
-                    return name
+            name = self.sets.mesh_name(self.mesh.node_sets, self.at, target)
+            if name:
+                return name
             found = view_of(self.meshes.views, target)
         if found and numerals.is_integer(found[1]) and len(found[1]) < 19:
             node = found[0].nodes(np.array([int(found[1])]))
@@ -279,6 +289,14 @@ class ModelBuilder:
             nearest(target, self.mesh.node_sets),
         )
         return None
+
+    def _numbering(self, view: View, number: str, what: Literal["nodes", "cells"]) -> View:
+        """View whose numbers are meant: the assembly's own, else those of the only instance."""
+        views = self.meshes.views
+        if view is not views[0] or len(views) != 2 or len(number) > 18:
+            return view
+        own = view.nodes if what == "nodes" else view.cells
+        return view if own(np.array([int(number)]))[0] >= 0 else views[1]
 
     def _amplitude(self, draft: Draft) -> str | None:
         if not draft.amplitude:
@@ -360,8 +378,8 @@ class ModelBuilder:
         where, root = draft.row.where, self.meshes.views[0]
         if not draft.target and draft.kind != "pressure":
             return None if amplitude is None else self._body(draft, "", amplitude)
-        if not self.deck.root.elements and len(self.meshes.views) == 2:
-            root = self.meshes.views[1] if numerals.is_integer(draft.target) else root
+        if numerals.is_integer(draft.target):
+            root = self._numbering(root, draft.target, "cells")
         found = self.sets.elements(root, draft.target, draft.row.at(0), draft.card, draft.row.text)
         if found is None or amplitude is None:
             return None
@@ -390,12 +408,12 @@ class ModelBuilder:
         return BodyForce(cells, kind, draft.value, amplitude, draft.row.where)
 
     def _edge_set(self, draft: Draft) -> str | None:
-        for name, edges in self.mesh.edge_sets.items():
-            if key(name) == key(draft.target):
-                if len(edges):
-                    return name
-                self.deck.row_error(draft.card, draft.row, 0, f"surface {name} has no edges")
-                return None
+        name = self.sets.mesh_name(self.mesh.edge_sets, self.at, draft.target)
+        if name:
+            if len(self.mesh.edge_sets[name]):
+                return name
+            self.deck.row_error(draft.card, draft.row, 0, f"surface {name} has no edges")
+            return None
         self.deck.row_error(
             draft.card,
             draft.row,
@@ -473,10 +491,10 @@ class ModelBuilder:
         request = next(o for o in draft.outputs if o.kind == kind and o.where == where)
         if not where:
             return
-        for name in tables:
-            if key(name) == key(where):
-                request.where = name
-                return
+        name = self.sets.mesh_name(tables, self.meshes.views[0], where)
+        if name:
+            request.where = name
+            return
         what = {
             "node print": "node set",
             "el print": "element set",

@@ -16,6 +16,8 @@ from corota.io.deck.lexer import key
 from corota.mesh.data import EDGES
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from corota.errors import Location
     from corota.io.deck.build.mesh import MeshBuilder, View
     from corota.io.deck.deck import NamedSet, Surface, SurfaceRow
@@ -101,12 +103,23 @@ class Sets:
         view, named = table[full]
         return view.prefix + named.name
 
-    def full_name(self, table: dict[str, tuple[View, NamedSet]], view: View, name: str) -> str:
-        """Key of a set seen from a view, empty if there is none."""
+    def full_name(self, table: Mapping[str, object], view: View, name: str) -> str:
+        """Key of a set seen from a view, empty if there is none.
+
+        A name that the view does not know is that of the only instance that has it.
+        """
         for candidate in (key(view.prefix) + key(name), key(name)):
             if candidate in table:
                 return candidate
-        return ""
+        return _only(key(name), table)
+
+    def mesh_name(self, table: Mapping[str, object], view: View, name: str) -> str:
+        """Name of a set or surface of the mesh seen from a view, empty if there is none."""
+        keys = {key(spelled): spelled for spelled in table}
+        for candidate in (key(view.prefix) + key(name), key(name)):
+            if candidate in keys:
+                return keys[candidate]
+        return keys.get(_only(key(name), keys), "")
 
     def node_set(self, full: str) -> Ints | None:
         """Node indices of a set; ``None`` after an error."""
@@ -312,6 +325,12 @@ class Sets:
         """Cell edges on line elements; a line without a cell is left out."""
         edges = self.mesh.edges_between([self.line_nodes[i][:2] for i in lines])
         return np.asarray(edges[edges[:, 0] >= 0])
+
+
+def _only(name: str, names: Iterable[str]) -> str:
+    """The one name of the form ``INSTANCE.name``, or an empty text."""
+    found = [full for full in names if full.endswith("." + name)]
+    return found[0] if len(found) == 1 else ""
 
 
 def _unique(values: Ints) -> Ints:

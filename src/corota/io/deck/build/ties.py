@@ -9,11 +9,10 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck.deck import nearest
-from corota.io.deck.lexer import key
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from typing import Literal
 
     from numpy.typing import NDArray
@@ -26,22 +25,29 @@ if TYPE_CHECKING:
 
     Find = Callable[[Draft], str | Ints | None]
     FindCells = Callable[[TieDraft], Elements | None]
+    FindName = Callable[[Mapping[str, object], str], str]
 
 
-def build_ties(
-    deck: Deck, model: Model, find: Find, cells: FindCells, rotating: NDArray[np.bool_]
+def build_tie(
+    deck: Deck,
+    model: Model,
+    find: Find,
+    cells: FindCells,
+    name: FindName,
+    rotating: NDArray[np.bool_],
+    tie: TieDraft,
 ) -> None:
-    """Add the deck's constraints to the model; reference nodes get a rotation."""
-    for tie in deck.ties:
-        if not tie.ready:
-            deck.error(
-                tie.card, tie.where, "*KINEMATIC or *DISTRIBUTING is missing after this card"
-            )
-            continue
-        try:
-            _build(deck, model, find, cells, rotating, tie)
-        except InputError as error:
-            deck.error(tie.card, tie.where, error.message)
+    """Add one of the deck's constraints to the model; reference nodes get a rotation.
+
+    ``find`` and ``cells`` look up nodes and elements, ``name`` a name in a table of the mesh.
+    """
+    if not tie.ready:
+        deck.error(tie.card, tie.where, "*KINEMATIC or *DISTRIBUTING is missing after this card")
+        return
+    try:
+        _build(deck, model, find, cells, name, rotating, tie)
+    except InputError as error:
+        deck.error(tie.card, tie.where, error.message)
 
 
 def _build(
@@ -49,6 +55,7 @@ def _build(
     model: Model,
     find: Find,
     cells: FindCells,
+    name: FindName,
     rotating: NDArray[np.bool_],
     tie: TieDraft,
 ) -> None:
@@ -64,7 +71,7 @@ def _build(
     if tie.kind == "same":
         _same(model, find, rotating, tie)
         return
-    single = [single_node(deck, find, term) for term in tie.terms]
+    single = [single_node(deck, find, term, model) for term in tie.terms]
     if None in single:
         return
     numbers = cast("list[int]", single)
@@ -76,7 +83,7 @@ def _build(
     weights: Floats | None = None
     chosen: str | Ints | None
     if tie.surface:
-        chosen, weights = _surface(deck, model, tie)
+        chosen, weights = _surface(deck, model, name, tie)
     elif tie.elset:
         found = cells(tie)
         chosen = None if found is None else _nodes_of(model, found.cells)
@@ -88,8 +95,8 @@ def _build(
     if tie.kind == "kinematic":
         weights = None
     kind = cast("Literal['kinematic', 'distributing']", tie.kind)
-    name = "rigid body" if not tie.surface else ""
-    model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, name, tie.where))
+    title = "rigid body" if not tie.surface else ""
+    model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, title, tie.where))
     rotating[reference] = True
 
 
@@ -128,13 +135,17 @@ def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) 
                 model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
-def single_node(deck: Deck, find: Find, draft: Draft) -> int | None:
-    """Index of the one node that a draft names; ``None`` after an error."""
-    nodes = find(draft)
-    if nodes is None:
+def single_node(deck: Deck, find: Find, draft: Draft, model: Model) -> int | None:
+    """Index of the one node that a draft names, by number or set; ``None`` after an error."""
+    found = find(draft)
+    if found is None:
         return None
-    if isinstance(nodes, str) or len(nodes) != 1:
-        deck.row_error(draft.card, draft.row, 0, f"one node is expected, not the set {nodes}")
+    nodes = model.mesh.nodes_of(found) if isinstance(found, str) else found
+    if len(nodes) != 1:
+        deck.row_error(
+            draft.card, draft.row, 0,
+            f"one node is expected; the set {draft.target} has {len(nodes)}",
+        )  # fmt: skip
         return None
     return int(nodes[0])
 
@@ -147,10 +158,12 @@ def _nodes_of(model: Model, cells: Ints) -> Ints:
     return np.unique(np.concatenate(parts))
 
 
-def _surface(deck: Deck, model: Model, tie: TieDraft) -> tuple[Ints | None, Floats | None]:
+def _surface(
+    deck: Deck, model: Model, find_name: FindName, tie: TieDraft
+) -> tuple[Ints | None, Floats | None]:
     """Nodes of a surface, and their shares of its length."""
     mesh = model.mesh
-    name = next((n for n in mesh.edge_sets if key(n) == key(tie.surface)), "")
+    name = find_name(mesh.edge_sets, tie.surface)
     if name:
         share = np.zeros(mesh.n_nodes)
         for ends in mesh.edge_nodes(mesh.edge_sets[name]):
@@ -161,7 +174,7 @@ def _surface(deck: Deck, model: Model, tie: TieDraft) -> tuple[Ints | None, Floa
                 share[ends] += np.array([1.0, 1.0, 4.0]) / 6.0 * length
         nodes = np.flatnonzero(share)
         return nodes, share[nodes]
-    name = next((n for n in mesh.node_sets if key(n) == key(tie.surface)), "")
+    name = find_name(mesh.node_sets, tie.surface)
     if name:
         return np.asarray(mesh.node_sets[name], np.int64), None
     deck.error(

@@ -18,9 +18,10 @@ def part(deck: Deck, card: Card) -> None:
     """``*PART, NAME=``: a name space of its own until ``*END PART``."""
     name = deck.required(card, "NAME")
     deck.no_rows(card)
-    if deck.scope is not deck.root or deck.in_assembly:
-        deck.error(card, card.where, "a part cannot stand inside a part or the assembly")
+    if deck.in_assembly:
+        deck.error(card, card.where, "a part cannot stand inside the assembly")
         return
+    close_part(deck)
     if key(name) in deck.parts:
         deck.error(card, card.at("NAME"), f"part {name} is already defined")
     deck.scope = deck.parts.setdefault(key(name), Scope(name))
@@ -35,12 +36,17 @@ def end_part(deck: Deck, card: Card) -> None:
     deck.scope = deck.root
 
 
+def close_part(deck: Deck) -> None:
+    """End an open part that has no ``*END PART``, with a note."""
+    if deck.scope is not deck.root and deck.instance is None:
+        deck.note(f"part {deck.scope.name} has no *END PART; it ends where the next block begins")
+        deck.scope = deck.root
+
+
 def assembly(deck: Deck, card: Card) -> None:
     """``*ASSEMBLY, NAME=``."""
     deck.no_rows(card)
-    if deck.scope is not deck.root:
-        deck.error(card, card.where, f"part {deck.scope.name} has no *END PART before this")
-        deck.scope = deck.root
+    close_part(deck)
     if deck.in_assembly:
         deck.error(card, card.where, "there is an open *ASSEMBLY already")
     deck.in_assembly = True
@@ -55,7 +61,10 @@ def end_assembly(deck: Deck, card: Card) -> None:
 
 
 def instance(deck: Deck, card: Card) -> None:
-    """``*INSTANCE, NAME=, PART=``: shift, then a turn about an axis normal to the plane."""
+    """``*INSTANCE, NAME=, PART=``: shift, then a turn about an axis normal to the plane.
+
+    What stands before ``*END INSTANCE`` (mesh, sets, sections) belongs to this instance only.
+    """
     name = deck.required(card, "NAME")
     source = deck.required(card, "PART")
     if not deck.in_assembly or deck.instance is not None:
@@ -100,6 +109,7 @@ def instance(deck: Deck, card: Card) -> None:
         break
     deck.instances[key(name)] = found
     deck.instance = found
+    deck.scope = found.scope
 
 
 def end_instance(deck: Deck, card: Card) -> None:
@@ -107,4 +117,5 @@ def end_instance(deck: Deck, card: Card) -> None:
     deck.no_rows(card)
     if deck.instance is None:
         deck.error(card, card.where, "there is no open *INSTANCE")
-    deck.instance = None
+        return
+    deck.instance, deck.scope = None, deck.root

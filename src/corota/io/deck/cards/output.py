@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, cast
 
+from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.model.steps import Output
@@ -23,86 +24,15 @@ WRITTEN = {
 }
 #: Names of Abaqus for the same.
 ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
-#: Known to CalculiX or Abaqus, not written here.
-KNOWN = {
-    "node": (
-        "NT",
-        "V",
-        "A",
-        "CF",
-        "TF",
-        "UT",
-        "COORD",
-        "PU",
-        "MAXU",
-        "RFL",
-        "KEQ",
-        "POT",
-        "TSF",
-        "TTF",
-        "TM",
-        "RM",
-    ),
-    "el": (
-        "ME",
-        "PE",
-        "EMAS",
-        "COORD",
-        "SDV",
-        "ERR",
-        "ZZS",
-        "NOE",
-        "LE",
-        "EE",
-        "MISES",
-        "SP",
-        "EP",
-        "HFL",
-        "HER",
-        "MAXS",
-        "MAXE",
-        "PHS",
-        "SF",
-        "SVF",
-        "PEMAG",
-        "SENER",
-        "ELEN",
-        "STH",
-        "NE",
-        "THE",
-        "CEEQ",
-        "DG",
-        "CENT",
-    ),
-    "contact": (
-        "PCON",
-        "CSTATUS",
-        "CAREA",
-        "CNAREA",
-        "CENER",
-        "CTRQ",
-        "CFNM",
-        "CFSM",
-        "CFTM",
-        "CFT",
-        "CM",
-        "PPRESS",
-        "CSTRESSETOS",
-        "HFL",
-        "HFLA",
-    ),
-}
 
 
 def node_print(deck: Deck, card: Card) -> None:
-    """``*NODE PRINT, NSET=``: table of nodal values in ``<job>.dat``."""
-    deck.required(card, "NSET")
+    """``*NODE PRINT[, NSET=]``: table of nodal values in ``<job>.dat``; else of all nodes."""
     _request(deck, card, "node print", card.value("NSET"))
 
 
 def el_print(deck: Deck, card: Card) -> None:
-    """``*EL PRINT, ELSET=``: table of values at integration points in ``<job>.dat``."""
-    deck.required(card, "ELSET")
+    """``*EL PRINT[, ELSET=]``: table of values at integration points in ``<job>.dat``."""
     _request(deck, card, "el print", card.value("ELSET"))
 
 
@@ -154,25 +84,26 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
         return
     place = kind.split()[0]
     variables: list[str] = []
+    left_out: dict[str, str] = {}
     for row in card.rows():
-        for index, text in enumerate(row.fields):
+        for text in row.fields:
             name = key(text)
             name = ALIASES.get(name, name) if place == "contact" else name
             if not name:
                 continue
+            if name not in WRITTEN[place] and name.rstrip("0123456789") in WRITTEN[place]:
+                name = name.rstrip("0123456789")  # a component: all of them are written
             if name in WRITTEN[place]:
                 if name not in variables:
                     variables.append(name)
-            elif name in KNOWN[place] or (name[:1] in "SEUR" and name[1:].isdigit()):
-                deck.note(f"{row.at(index)}: {card.spelled}: {name} is not written")
             else:
-                deck.row_error(
-                    card,
-                    row,
-                    index,
-                    f"unknown variable {text!r}; written are: {', '.join(WRITTEN[place])}",
-                    nearest(name, (*WRITTEN[place], *KNOWN[place])),
-                )
+                left_out.setdefault(name, numerals.clipped(name, 30))
+    if left_out:
+        shown = ", ".join(left_out.values())
+        deck.note(
+            f"{card.where}: {card.spelled}: {shown} is not written; there are "
+            f"{', '.join(WRITTEN[place])}"
+        )
     totals = deck.choice(card, "TOTALS", ("NO", "YES", "ONLY"), "NO").lower()
     frequency = _frequency(deck, card)
     points = card.value("TIMEPOINTS")
