@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 import corota as ct
 from corota.mesh import Mesh
 from corota.mesh.data import Cells
-from corota.model.loads import Amplitude, Fixed, NodalForce
+from corota.model.loads import Amplitude, BodyForce, Fixed, NodalForce
 
 IMPLICIT = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
 pytestmark = pytest.mark.filterwarnings("ignore:central differences took")
@@ -844,3 +844,648 @@ def test_free_ring(element):
     assert np.all(w[:3] < 0.05)
     np.testing.assert_allclose(w[3:8:2], exact, rtol=1e-2)
     np.testing.assert_allclose(w[3:8:2], w[4:9:2], rtol=1e-6)
+
+
+# --- modal procedures ---------------------------------------------------------------------------
+
+
+def without_first_support(model):
+    """A chain whose support is left to the steps."""
+    model.supports = [f for f in model.supports if not (f.dof == 0 and list(f.nodes) == [0])]
+    return model
+
+
+def modal_damping(k, m, share):
+    squares, modes = linalg.eigh(k, m)
+    return m @ modes @ np.diag(2 * share * np.sqrt(squares)) @ modes.T @ m
+
+
+def linear_motion(k, m, c, load, end, breaks, start=None):
+    n = len(m)
+
+    def rate(t, z):
+        return np.r_[z[n:], np.linalg.solve(m, load(t) - k @ z[:n] - c @ z[n:])]
+
+    return integrate(rate, np.zeros(2 * n) if start is None else start, end, breaks)
+
+
+STIFFNESS, MASSES = [100.0, 200.0, 50.0], [1.0, 2.0, 0.5]
+CORNERS, SHIFTS = [0.0, 0.25, 0.5, 1.0, 2.0], [0.0, 0.1, 0.1, -0.2, 0.0]
+
+
+@pytest.mark.parametrize("damping", ["modal", "rayleigh", "dashpot"])
+def test_modal_dynamics_of_a_base_moved_by_a_table_with_corners(damping):
+    # Velocity jumps at every corner. Modal shares damp the motion relative to the base, Rayleigh's
+    # per mass the absolute one, a dashpot between support and first particle their approach.
+    k, m, to_base = chain_matrices(STIFFNESS, MASSES)
+    model = without_first_support(chain(STIFFNESS, MASSES))
+    table(model, "base", CORNERS, SHIFTS)
+    slopes = np.diff(SHIFTS) / np.diff(CORNERS)
+    options = {}
+    if damping == "modal":
+        c, options = modal_damping(k, m, 0.03), {"damping": 0.03}
+        moved = c.sum(axis=1)
+    elif damping == "rayleigh":
+        c, options = 0.4 * m + 0.002 * k, {"rayleigh": (0.4, 0.002)}
+        moved = 0.002 * to_base
+    else:
+        c = np.diag([3.0, 0.0, 0.0])
+        model.dashpot(0, 1, c=3.0)
+        moved = np.array([3.0, 0.0, 0.0])
+
+    def load(t):
+        piece = min(max(np.searchsorted(CORNERS, t, side="left") - 1, 0), 3)
+        return to_base * np.interp(t, CORNERS, SHIFTS) + moved * slopes[piece]
+
+    exact = linear_motion(k, m, c, load, 2.0, CORNERS)
+    steps = [
+        ct.Frequency(modes=3, supports=[Fixed([0], 0)]),
+        ct.ModalDynamic(
+            period=2.0, increments=40, supports=[Fixed([0], 0, 1.0, "base")], **options
+        ),
+    ]
+    frame = ct.solve(model, steps).frames[-1]
+    np.testing.assert_allclose(frame.U[1:, 0], exact[:3], rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(frame.V[1:, 0], exact[3:], rtol=1e-6, atol=1e-8)
+
+
+def test_modal_dynamics_goes_on_from_direct_integration():
+    # Half a second by the trapezoidal rule under a force, then by modes without it: free vibration
+    # from the state reached, by the matrix exponential.
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    model = chain(STIFFNESS, MASSES)
+    first = ct.Dynamic(
+        nlgeom=False, period=0.5, increments=400, scheme="newmark", loads=[NodalForce([3], 0, 2.0)]
+    )
+    second = ct.ModalDynamic(nlgeom=False, period=1.0, increments=10, new_loads=True)
+    results = ct.solve(model, [first, ct.Frequency(modes=3, nlgeom=False), second])
+    reached = [f for f in results.frames if f.step == 1][-1]
+    matrix = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.linalg.solve(m, k), np.zeros((3, 3))]])
+    start = np.r_[reached.U[1:, 0], reached.V[1:, 0]]
+    exact = linalg.expm(matrix) @ start
+    last = results.frames[-1]
+    np.testing.assert_allclose(last.U[1:, 0], exact[:3], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(last.V[1:, 0], exact[3:], rtol=1e-6, atol=1e-9)
+
+
+def test_modal_dynamics_about_a_taut_string():
+    # The middle of a taut string of five particles is plucked by a force that is let go over one
+    # increment: modes about the taut state, with the linear stiffness T/a.
+    n, k, m, a, tension = 5, 1e4, 0.2, 0.5, 30.0
+    model = network([[i * a, 0.0] for i in range(n + 2)], [[i, i + 1] for i in range(n + 1)])
+    bars(model, list(range(n + 1)), k, a)
+    model.point_mass(list(range(1, n + 1)), m)
+    model.initial_stress(xx=tension)
+    model.fix([0, n + 1])
+    table(model, "pluck", [0.0, 0.1, 0.105], [1.0, 1.0, 0.0])
+    steps = [
+        ct.Static(),
+        ct.Frequency(modes=2 * n),
+        ct.ModalDynamic(period=0.4, increments=80, loads=[NodalForce([3], 1, 0.05, "pluck")]),
+    ]
+    frame = ct.solve(model, steps).frames[-1]
+    matrix = tension / a * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+
+    def load(t):
+        return np.array([0.0, 0.0, 0.05, 0.0, 0.0]) * np.interp(t, [0.1, 0.105], [1.0, 0.0])
+
+    exact = linear_motion(matrix, m * np.eye(n), np.zeros((n, n)), load, 0.4, [0.1, 0.105])
+    np.testing.assert_allclose(frame.U[1:-1, 1], exact[:n], atol=1e-5 * abs(exact[:n]).max())
+
+
+@pytest.mark.parametrize("direct", [False, True])
+def test_harmonic_response_to_forces_out_of_phase_with_dashpots(direct):
+    # (K - w^2 M + i w C) u = f1 + i f2, with a dashpot that couples modes; a frame holds Re u in U
+    # and -w Im u in V. Through resonance, modal and direct.
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    c = 0.2 * m + np.diag([0.0, 0.0, 1.5])
+    model = chain(STIFFNESS, MASSES)
+    model.dashpot(3, x=1.5)
+    steady = ct.SteadyState(
+        lowest=0.5,
+        highest=3.0,
+        points=7,
+        direct=direct,
+        rayleigh=(0.2, 0.0),
+        loads=[NodalForce([1], 0, 2.0)],
+        imaginary_loads=[NodalForce([3], 0, -1.0)],
+    )
+    results = ct.solve(model, [ct.Frequency(modes=3), steady])
+    frames = [f for f in results.frames if f.step == 2]
+    assert len(frames) == 19
+    for frame in frames:
+        w = 2 * np.pi * frame.time
+        exact = np.linalg.solve(k - w**2 * m + 1j * w * c, [2.0, 0.0, -1j])
+        size = np.abs(exact).max()
+        np.testing.assert_allclose(frame.U[1:, 0], exact.real, atol=1e-6 * size)
+        np.testing.assert_allclose(frame.V[1:, 0], -w * exact.imag, atol=1e-6 * w * size)
+
+
+@pytest.mark.parametrize("direct", [False, True])
+def test_harmonic_motion_of_a_base_in_two_phases(direct):
+    # The base moves by Re (1 + 0.5 i) b exp(i w t); Rayleigh damping per stiffness acts on the
+    # approach to the base. Reaction of the base: k1 (1 + i w beta) (ub - u1).
+    k, m, to_base = chain_matrices(STIFFNESS, MASSES)
+    beta, move = 0.003, 0.01
+    model = without_first_support(chain(STIFFNESS, MASSES))
+    steady = ct.SteadyState(
+        lowest=0.6,
+        highest=2.5,
+        points=5,
+        direct=direct,
+        rayleigh=(0.0, beta),
+        supports=[Fixed([0], 0, move)],
+        imaginary_supports=[Fixed([0], 0, 0.5 * move)],
+    )
+    steps = [ct.Frequency(modes=3, supports=[Fixed([0], 0)]), steady]
+    frames = [f for f in ct.solve(model, steps).frames if f.step == 2]
+    for frame in frames:
+        w = 2 * np.pi * frame.time
+        complex_k = 1 + 1j * w * beta
+        base = (1 + 0.5j) * move
+        exact = np.linalg.solve(complex_k * k - w**2 * m, complex_k * to_base * base)
+        size = np.abs(exact).max()
+        np.testing.assert_allclose(frame.U[1:, 0], exact.real, atol=1e-6 * size)
+        np.testing.assert_allclose(frame.V[1:, 0], -w * exact.imag, atol=1e-6 * w * size)
+        reaction = complex_k * 100.0 * (base - exact[0])
+        np.testing.assert_allclose(frame.RF[0, 0], reaction.real, atol=1e-5 * abs(reaction))
+
+
+def test_shares_of_damping_by_ranges_of_modes():
+    # Modes 1 and 3 have their own shares, mode 2 none: decay of each from its own start, u =
+    # shape (cos wd t + z w/wd sin wd t) exp(-z w t), started by a static force K phi.
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    squares, modes = linalg.eigh(k, m)
+    shares = [0.1, 0.0, 0.02]
+    for i in range(3):
+        model = chain(STIFFNESS, MASSES)
+        force = k @ modes[:, i] * 1e-3
+        steps = [
+            ct.Static(nlgeom=False, loads=[NodalForce([j + 1], 0, force[j]) for j in range(3)]),
+            ct.Frequency(modes=3, nlgeom=False),
+            ct.ModalDynamic(
+                nlgeom=False,
+                period=0.7,
+                increments=7,
+                damping=[(1, 1, shares[0]), (3, 3, shares[2])],
+                new_loads=True,
+            ),
+        ]
+        frame = ct.solve(model, steps).frames[-1]
+        w, z = math.sqrt(squares[i]), shares[i]
+        wd = w * math.sqrt(1 - z**2)
+        q = (math.cos(wd * 0.7) + z * w / wd * math.sin(wd * 0.7)) * math.exp(-z * w * 0.7)
+        np.testing.assert_allclose(frame.U[1:, 0], 1e-3 * q * modes[:, i], atol=1e-9)
+
+
+def test_one_mode_with_residual_modes_is_static_at_rest():
+    # A force that grows slowly from zero: one mode alone misses the static answer, with residual
+    # modes it is K^-1 f.
+    k, _, _ = chain_matrices(STIFFNESS, MASSES)
+    model = chain(STIFFNESS, MASSES)
+    table(model, "slow", [0.0, 50.0], [0.0, 1.0])
+    steps = [
+        ct.Frequency(modes=1),
+        ct.ModalDynamic(
+            period=50.0,
+            increments=500,
+            damping=0.3,
+            residual=True,
+            loads=[NodalForce([1], 0, 3.0, "slow")],
+        ),
+    ]
+    frame = ct.solve(model, steps).frames[-1]
+    np.testing.assert_allclose(frame.U[1:, 0], np.linalg.solve(k, [3.0, 0.0, 0.0]), rtol=5e-3)
+
+
+# --- steps, energies and tables -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_motion_rest_motion(scheme):
+    # A particle swings for a while, a static step brings it to equilibrium under a force, which
+    # the last step takes away: it swings about the origin with that amplitude from rest. ETOTAL
+    # loses the kinetic energy of the first motion and nothing else.
+    k, m, force = 50.0, 2.0, 5.0
+    model = chain([k], [m])
+    model.velocity([1], x=1.0)
+    steps = [
+        ct.Dynamic(period=0.37, increments=100, scheme=scheme),
+        ct.Static(loads=[NodalForce([1], 0, force)], increments=50),
+        ct.Dynamic(period=0.9, increments=300, scheme=scheme, new_loads=True),
+    ]
+    results = ct.solve(model, steps)
+    w = math.sqrt(k / m)
+    ends = [[f for f in results.frames if f.step == i][-1] for i in (1, 2, 3)]
+    np.testing.assert_allclose(ends[0].U[1, 0], math.sin(w * 0.37) / w, rtol=1e-3)
+    np.testing.assert_allclose(ends[1].U[1, 0], force / k, rtol=1e-9)
+    np.testing.assert_allclose(ends[2].U[1, 0], force / k * math.cos(w * 0.9), atol=5e-4)
+    np.testing.assert_allclose(
+        ends[2].scalars["ALLKE"] + ends[2].scalars["ALLSE"], force**2 / k / 2, rtol=2e-3
+    )
+    assert abs(ends[2].scalars["energy balance error"]) < 5e-3
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_table_of_total_time_over_two_dynamic_steps(scheme):
+    # A force that grows over 1.5 by total time goes on in the second step, in which the motion is
+    # continued: m x'' + k x = f t.
+    k, m, rate = 50.0, 2.0, 4.0
+    model = chain([k], [m])
+    table(model, "grow", [0.0, 10.0], [0.0, 10.0], total_time=True)
+    steps = [
+        ct.Dynamic(
+            period=0.7, increments=140, scheme=scheme, loads=[NodalForce([1], 0, rate, "grow")]
+        ),
+        ct.Dynamic(period=0.8, increments=160, scheme=scheme),
+    ]
+    frame = ct.solve(model, steps).frames[-1]
+    w, t = math.sqrt(k / m), 1.5
+    np.testing.assert_allclose(frame.time, t)
+    exact = [rate / k * (t - math.sin(w * t) / w), rate / k * (1 - math.cos(w * t))]
+    np.testing.assert_allclose([frame.U[1, 0], frame.V[1, 0]], exact, rtol=3e-3)
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q8", "Q9", "T6", "OPT", "Q4D"])
+@pytest.mark.parametrize("mass", ["consistent", "lumped"])
+def test_spinning_preload_is_a_steady_spin(element, mass):
+    # A static step under the centrifugal load of W stretches a free ring (held against turning by
+    # one point); released with the spin W it must go on turning without vibration: the radius of
+    # every node stays within 1e-4 of its growth, over a tenth of a turn, in N-mm-t-s.
+    mesh = ct.mesh.annulus(40.0, 50.0, n_radial=1, n_around=24, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=70000.0, nu=0.3, rho=2.7e-9), thickness=2.0
+    )
+    omega = 2 * math.pi * 400.0
+    model.velocity(spin=omega)
+    pole = int(np.argmin(np.hypot(mesh.points[:, 0] - 50.0, mesh.points[:, 1])))
+    other = int(np.argmin(np.hypot(mesh.points[:, 0] + 50.0, mesh.points[:, 1])))
+    spin = BodyForce("", "centrifugal", (omega**2, 0.0, 0.0))
+    holds = [Fixed([pole], 1), Fixed([other], 1)]
+    top = int(np.argmin(np.hypot(mesh.points[:, 0], mesh.points[:, 1] - 50.0)))
+    holds.append(Fixed([top], 0))
+    period = 0.1 / 400.0
+    steps = [
+        ct.Static(loads=[spin], supports=holds),
+        ct.Dynamic(
+            period=period,
+            increments=40,
+            scheme="energy_momentum",
+            mass=mass,
+            new_loads=True,
+            new_supports=True,
+        ),
+    ]
+    frames = ct.solve(model, steps, fields=False).frames
+    still = [f for f in frames if f.step == 1][-1]
+    r0 = np.hypot(*(mesh.points + still.U).T)
+    growth = (r0 - np.hypot(*mesh.points.T)).max()
+    assert growth > 5e-3
+    for frame in frames:
+        if frame.step == 2:
+            r = np.hypot(*(mesh.points + frame.U).T)
+            assert np.abs(r - r0).max() < 2e-3 * growth
+
+
+# --- paths and buckling -------------------------------------------------------------------------
+
+
+def toggle(height, half, stiffness=1000.0, sway=False):
+    """Two bars over the span 2 b; the apex is node 1."""
+    model = network([[-half, 0.0], [0.0, height], [half, 0.0]], [[0, 1], [1, 2]])
+    length = math.hypot(half, height)
+    bars(model, [0, 1], stiffness, length)
+    model.fix([0, 2])
+    if not sway:
+        model.fix([1], y=None)
+    return model, length
+
+
+def toggle_load(drop, height, half, stiffness, length):
+    rise = height - drop
+    now = np.hypot(half, rise)
+    return 2 * stiffness * (length - now) * rise / now
+
+
+@pytest.mark.parametrize("shape", ["cylindrical", "spherical"])
+def test_toggle_through_both_limit_points(shape):
+    # P = 2 k (L - l)(h - v)/l; turning points at l^3 = L b^2, of equal and opposite load.
+    height, half, k = 0.6, 1.0, 1000.0
+    model, length = toggle(height, half, k)
+    model.force([1], y=-1.0)
+    now = (length * half**2) ** (1 / 3)
+    limit = 2 * k * (length - now) * math.sqrt(now**2 - half**2) / now
+    path = ct.ArcLength(displacement=([1], "y", -2.4 * height), shape=shape)
+    results = ct.solve(model, ct.Static(path=path, max_increments=400))
+    points = [p for p in results.critical_points if p.kind == "limit"]
+    np.testing.assert_allclose([p.factor for p in points], [limit, -limit], rtol=1e-6)
+    for frame in results.frames[1:]:
+        exact = toggle_load(-frame.U[1, 1], height, half, k, length)
+        np.testing.assert_allclose(frame.factor, exact, atol=1e-6 * limit)
+    np.testing.assert_allclose(results.frames[-1].U[1, 1], -2.4 * height, rtol=1e-6)
+
+
+def test_toggle_under_a_soft_spring_snaps_back():
+    # The load acts through a spring in series that is softer than the steepest descent of the
+    # toggle: the load point's displacement v + P/ks turns back. Every state lies on the curve.
+    height, half, k, soft = 0.5, 1.0, 1000.0, 60.0
+    points = [[-half, 0.0], [0.0, height], [half, 0.0], [0.0, height + 3.0]]
+    model = network(points, [[0, 1], [1, 2], [1, 3]])
+    length = math.hypot(half, height)
+    bars(model, [0, 1], k, length)
+    model.spring([2], soft, "y y")
+    model.fix([0, 2])
+    model.fix([1, 3], y=None)
+    model.force([3], y=-1.0)
+    control = ct.DisplacementControl([3], "y", -1.3, increments=20)
+    results = ct.solve(model, ct.Static(path=control, max_increments=500))
+    now = (length * half**2) ** (1 / 3)
+    limit = 2 * k * (length - now) * math.sqrt(now**2 - half**2) / now
+    factors = [p.factor for p in results.critical_points if p.kind == "limit"]
+    np.testing.assert_allclose(factors, [limit, -limit], rtol=1e-6)
+    back = np.diff([f.U[3, 1] for f in results.frames])
+    assert (back > 0).any()
+    for frame in results.frames[1:]:
+        exact = toggle_load(-frame.U[1, 1], height, half, k, length)
+        np.testing.assert_allclose(frame.factor, exact, atol=1e-6 * limit)
+        np.testing.assert_allclose(frame.U[3, 1], frame.U[1, 1] - exact / soft, atol=1e-6)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_steep_toggle_sways_before_its_limit(side):
+    # The sideways stiffness 2 k (b^2/l^2 - (L-l)/l (h-v)^2/l^2) vanishes first. On the branch the
+    # bars have forces that balance the load in any sway: both components are checked.
+    height, half, k = 3.0, 1.0, 1000.0
+    model, length = toggle(height, half, k, sway=True)
+    model.force([1], y=-1.0)
+
+    def stiffness(drop):
+        rise = height - drop
+        now = math.hypot(half, rise)
+        return half**2 - (length - now) / now * rise**2
+
+    low, high = 0.0, height / 2
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stiffness(middle) > 0 else (low, middle)
+    critical = toggle_load(low, height, half, k, length)
+    path = ct.ArcLength(displacement=([1], "y", -1.2), switch=True, side=side)
+    results = ct.solve(model, ct.Static(path=path, max_increments=300))
+    first = results.critical_points[0]
+    assert first.kind == "bifurcation"
+    np.testing.assert_allclose(first.factor, critical, rtol=1e-6)
+    last = results.frames[-1]
+    assert abs(last.U[1, 0]) > 0.1
+    for frame in results.frames[1:]:
+        apex = np.array([0.0, height]) + frame.U[1]
+        force = np.zeros(2)
+        for foot in (-half, half):
+            d = apex - [foot, 0.0]
+            r = math.hypot(*d)
+            force += k * (r - length) * d / r
+        np.testing.assert_allclose(force, [0.0, -frame.factor], atol=1e-6 * critical)
+
+
+def link(spring):
+    """A rigid link of length 1 that stands on its pivot, node 0, with its top at node 1."""
+    model = network([[0.0, 0.0], [0.0, 1.0], [5.0, 1.0]], [[1, 2]], [spring[0]])
+    bars(model, [0], LIGHT, 5.0)
+    model.fix([0])
+    model.fix([2])
+    model.rigid([1], 0)
+    model.spring([1], spring[1], spring[2])
+    return model
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_rigid_link_with_a_torsion_spring_beyond_its_load(side):
+    # P L = k phi / sin phi, a stable symmetric bifurcation at k/L.
+    model = link((0, 12.0, "theta"))
+    model.force([1], y=-1.0)
+    path = ct.ArcLength(factor=20.0, switch=True, side=side)
+    results = ct.solve(model, ct.Static(path=path, max_increments=300))
+    first = results.critical_points[0]
+    assert first.kind == "bifurcation"
+    np.testing.assert_allclose(first.factor, 12.0, rtol=1e-6)
+    last = results.frames[-1]
+    phi = abs(last.UR[0])
+    np.testing.assert_allclose(phi / math.sin(phi), 20.0 / 12.0, rtol=1e-6)
+    assert last.scalars["stable"] == 1.0
+    np.testing.assert_allclose(abs(last.U[1, 0]), math.sin(phi), rtol=1e-8)
+
+
+def test_rigid_link_with_a_sideways_spring_beyond_its_load():
+    # P = k L cos phi, an unstable symmetric bifurcation at k L: the load falls on the branch.
+    model = link((1, 12.0, "x"))
+    model.force([1], y=-1.0)
+    path = ct.ArcLength(displacement=([1], "y", -0.3), switch=True)
+    results = ct.solve(model, ct.Static(path=path, max_increments=300))
+    np.testing.assert_allclose(results.critical_points[0].factor, 12.0, rtol=1e-6)
+    last = results.frames[-1]
+    np.testing.assert_allclose(last.factor, 12.0 * math.cos(last.UR[0]), rtol=1e-6)
+    np.testing.assert_allclose(last.factor, 12.0 * 0.7, rtol=1e-6)
+    assert last.scalars["stable"] == 0.0
+
+
+def test_two_rigid_links_buckle_at_the_golden_section():
+    # Links of length 1 on torsion springs k: P = k (3 -+ sqrt 5)/2. The second link hangs on the
+    # end of the first by equations, so constraints depend on constraints. The frequencies without
+    # load, with particles at both ends, are those of M = [[2,1],[1,1]] m, K = [[2,-1],[-1,1]] k.
+    k, m = 8.0, 1.5
+    points = [[0, 0], [0, 1], [0, 1], [0, 2], [9, 2], [9, 1]]
+    model = network(points, [[3, 4], [1, 5], [0, 2]], [0, 0])
+    bars(model, [0, 1], LIGHT, 9.0)
+    model.fix([0], y=None)
+    model.spring([4], 1e6, "y")
+    model.fix([4, 5])
+    model.rigid([1], 0)
+    model.rigid([3], 2)
+    model.equation((2, "x", 1.0), (1, "x", -1.0))
+    model.equation((2, "y", 1.0), (1, "y", -1.0))
+    model.spring([2], k, "theta theta")
+    model.spring([3], k, "theta")
+    model.point_mass([1, 3], m)
+    model.force([3], y=-1.0)
+    buckle = ct.Buckle(modes=2)
+    found = ct.solve(model, [ct.Frequency(modes=2), buckle])
+    exact = k * (3 + math.sqrt(5) * np.array([-1.0, 1.0])) / 2
+    np.testing.assert_allclose(found.modes[-1].factors, exact, rtol=1e-5)
+    squares = linalg.eigvalsh(
+        k * np.array([[2.0, -1.0], [-1.0, 1.0]]), m * np.array([[2.0, 1.0], [1.0, 1.0]])
+    )
+    np.testing.assert_allclose(2 * np.pi * found.modes[0].factors, np.sqrt(squares), rtol=1e-7)
+
+
+def column(n, length, young, inertia, area=1.0, rho=1.0):
+    model = network([[i * length / n, 0.0] for i in range(n + 1)], [[i, i + 1] for i in range(n)])
+    model.beam(list(range(n)), material=ct.Elastic(E=young, rho=rho), area=area, inertia=inertia)
+    return model
+
+
+@pytest.mark.parametrize("preload", [-0.6, 0.4])
+def test_buckling_factor_beyond_a_dead_preload(preload):
+    # Pinned column, preload N0 (tension negative): N0 + factor N1 = pi^2 EI/L^2.
+    n, length, young, inertia = 40, 2.0, 2e5, 1e-6
+    critical = math.pi**2 * young * inertia / length**2
+    model = column(n, length, young, inertia)
+    model.fix([0])
+    model.fix([n], x=None)
+    steps = [
+        ct.Static(loads=[NodalForce([n], 0, -preload * critical)]),
+        ct.Buckle(modes=1, loads=[NodalForce([n], 0, -0.25 * critical)]),
+    ]
+    found = ct.solve(model, steps).modes[-1]
+    np.testing.assert_allclose(found.factors[0], (1 - preload) / 0.25, rtol=2e-3)
+
+
+def test_column_on_an_elastic_foundation():
+    # P_m = EI (m pi/L)^2 + beta (L/(m pi))^2 with springs beta h at the nodes: the third mode is
+    # the first here, then the fourth and second.
+    n, length, young, inertia = 60, 3.0, 1e5, 1e-6
+    ei = young * inertia
+    beta = ei * (3.2 * math.pi / length) ** 4
+    points = [[i * length / n, 0.0] for i in range(n + 1)]
+    model = network(points, [[i, i + 1] for i in range(n)], list(range(1, n)))
+    model.beam(list(range(n)), material=ct.Elastic(E=young), area=1.0, inertia=inertia)
+    model.spring(list(range(n, 2 * n - 1)), beta * length / n, "y")
+    model.fix([0])
+    model.fix([n], x=None)
+    model.force([n], x=-1.0)
+    found = ct.solve(model, ct.Buckle(modes=4)).modes[-1]
+    m = np.arange(1, 9) * math.pi / length
+    exact = ei * m**2 + beta / m**2
+    order = np.argsort(exact)[:4]
+    assert order[0] == 2
+    np.testing.assert_allclose(found.factors, exact[order], rtol=8e-3)
+    for shape, mode in zip(found.shapes, order, strict=True):
+        wave = np.sin((mode + 1) * math.pi * np.linspace(0, 1, n + 1))
+        cosine = abs(shape[:, 1] @ wave) / np.linalg.norm(shape[:, 1]) / np.linalg.norm(wave)
+        assert cosine > 0.9999
+
+
+def test_swaying_portal_frame():
+    # Hinged feet, a force on each column: kL tan kL = 6 (Ib/b)/(Ic/L) for sway (Timoshenko and
+    # Gere, Theory of Elastic Stability). Axially stiff; N and mm.
+    n, height, span, young = 20, 3000.0, 5000.0, 2.1e5
+    ic, ib = 4e6, 9e6
+    left = [[0.0, i * height / n] for i in range(n + 1)]
+    beam = [[i * span / n, height] for i in range(1, n)]
+    right = [[span, height - i * height / n] for i in range(n + 1)]
+    points = left + beam + right
+    last = len(points) - 1
+    model = network(points, [[i, i + 1] for i in range(last)])
+    steel = ct.Elastic(E=young, nu=0.3)
+    model.beam(list(range(n)), material=steel, area=1e7, inertia=ic)
+    model.beam(list(range(n, 2 * n)), material=steel, area=1e7, inertia=ib)
+    model.beam(list(range(2 * n, last)), material=steel, area=1e7, inertia=ic)
+    model.fix([0, last])
+    model.force([n, 2 * n], y=-1000.0)
+    ratio = 6 * (ib / span) / (ic / height)
+    low, high = 1e-6, math.pi / 2 - 1e-9
+    for _ in range(200):
+        x = 0.5 * (low + high)
+        low, high = (x, high) if x * math.tan(x) < ratio else (low, x)
+    exact = low**2 * young * ic / height**2 / 1000.0
+    found = ct.solve(model, ct.Buckle(modes=1)).modes[-1]
+    np.testing.assert_allclose(found.factors[0], exact, rtol=2e-3)
+
+
+@pytest.mark.parametrize("element", ["Q8", "Q9"])
+def test_ring_under_pressure_that_follows(element):
+    # Plane strain tube under external pressure p R^3/(E' I) = 3, twice (any direction of the oval);
+    # h/R = 1/50, thickness 2.
+    h = 0.02
+    mesh = ct.mesh.annulus(1 - h / 2, 1 + h / 2, n_radial=1, n_around=96, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=1e6, nu=0.3), thickness=2.0, plane="strain"
+    )
+    for x, y, dof in ((1.0, 0.0, 1), (-1.0, 0.0, 1), (0.0, 1.0, 0)):
+        r = 1 + h / 2
+        at = int(np.argmin(np.hypot(mesh.points[:, 0] - r * x, mesh.points[:, 1] - r * y)))
+        model.supports.append(Fixed([at], dof))
+    model.pressure("outer", 1.0)
+    exact = 3 * 1e6 / (1 - 0.09) * h**3 / 12
+    found = ct.solve(model, ct.Buckle(modes=2)).modes[-1]
+    np.testing.assert_allclose(found.factors, exact, rtol=2.5e-2)
+    np.testing.assert_allclose(found.factors[0], found.factors[1], rtol=1e-4)
+
+
+def test_ring_under_loads_of_fixed_direction():
+    # Dead radial forces on a ring of beams: q R^3/(EI) = 4 (forces keep their direction). A quarter
+    # with its symmetries held; the whole ring would turn first.
+    n, ei = 48, 50.0
+    angle = np.linspace(0.0, math.pi / 2, n + 1)
+    points = np.c_[np.cos(angle), np.sin(angle)]
+    model = network(points, [[i, i + 1] for i in range(n)])
+    model.beam(list(range(n)), material=ct.Elastic(E=1e6), area=10.0, inertia=ei / 1e6)
+    for i in range(n + 1):
+        side = math.pi / 2 / n * (0.5 if i in (0, n) else 1.0)
+        model.force([i], x=-side * points[i, 0], y=-side * points[i, 1])
+    model.fix([0], x=None, rotation=True)
+    model.fix([n], y=None, rotation=True)
+    found = ct.solve(model, ct.Buckle(modes=1)).modes[-1]
+    np.testing.assert_allclose(found.factors[0], 4 * ei, rtol=5e-3)
+
+
+@pytest.mark.parametrize("load", [0.3, 0.6, 0.9])
+def test_frequency_on_the_way_to_the_limit_point(load):
+    # m w^2 = dP/dv of the toggle at the state that the load has reached.
+    height, half, k, m = 0.6, 1.0, 1000.0, 2.0
+    model, length = toggle(height, half, k)
+    now = (length * half**2) ** (1 / 3)
+    limit = 2 * k * (length - now) * math.sqrt(now**2 - half**2) / now
+    model.point_mass([1], m)
+    model.force([1], y=-load * limit)
+    results = ct.solve(model, [ct.Static(increments=4), ct.Frequency(modes=1)])
+    drop = -[f for f in results.frames if f.step == 1][-1].U[1, 1]
+    rise = height - drop
+    r = math.hypot(half, rise)
+    slope = 2 * k * (rise**2 / r**2 - (length - r) / r * half**2 / r**2)
+    np.testing.assert_allclose(
+        2 * np.pi * results.modes[-1].factors[0], math.sqrt(slope / m), rtol=1e-6
+    )
+
+
+@pytest.mark.parametrize("scheme", [*IMPLICIT, "central_difference"])
+def test_toggle_snaps_through_under_a_sudden_load(scheme):
+    # m v'' = P - P(v): a load below the static limit that carries it through at once.
+    height, half, k, m = 0.4, 1.0, 1000.0, 2.0
+    model, length = toggle(height, half, k)
+    now = (length * half**2) ** (1 / 3)
+    limit = 2 * k * (length - now) * math.sqrt(now**2 - half**2) / now
+    load, end = 0.9 * limit, 0.6
+    model.point_mass([1], m)
+    model.force([1], y=-load)
+
+    def rate(_, z):
+        return [z[1], (load - toggle_load(z[0], height, half, k, length)) / m]
+
+    exact = integrate(rate, [0.0, 0.0], end)
+
+    def run(n):
+        step = ct.Dynamic(period=end, increments=n, scheme=scheme)
+        frame = ct.solve(model, step, fields=False).frames[-1]
+        return np.array([-frame.U[1, 1], -frame.V[1, 1]])
+
+    assert exact[0] > height
+    np.testing.assert_allclose(extrapolated(run, 200), exact, rtol=0, atol=5e-3)
+
+
+def test_path_after_a_preload_by_a_prescribed_support():
+    # A bar of the toggle is shortened first by moving its foot; the path of the vertical load then
+    # starts from that state: the same curve with feet at -b and b - d.
+    height, half, k, move = 0.6, 1.0, 1000.0, 0.05
+    model, length = toggle(height, half, k, sway=True)
+    first = ct.Static(supports=[Fixed([2], 0, -move)])
+    path = ct.ArcLength(displacement=([1], "y", -2.0 * height))
+    second = ct.Static(path=path, loads=[NodalForce([1], 1, -1.0)], max_increments=300)
+    results = ct.solve(model, [first, second])
+    near = half - move / 2
+    frames = [f for f in results.frames if f.step == 2]
+    for frame in frames:
+        np.testing.assert_allclose(frame.U[1, 0], -move / 2, atol=1e-9)
+        rise = height + frame.U[1, 1]
+        now = math.hypot(near, rise)
+        np.testing.assert_allclose(frame.factor, 2 * k * (length - now) * rise / now, atol=1e-4)
