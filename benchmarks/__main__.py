@@ -17,6 +17,8 @@ HELPERS = {
     "problems",
     "decks",
     "bench_figures",
+    "before_after",
+    "before_after_worker",
     "fault_readers",
     "fault_runs",
     "fault_world",
