@@ -87,3 +87,29 @@ def test_block_rests_on_a_wall_after_a_static_step():
     force = np.array([f.scalars["wall: force y"] for f in moving])
     assert force == pytest.approx(2.0, rel=1e-6)
     assert max(f.scalars["kinetic energy"] for f in moving) < 1e-12
+
+
+@pytest.mark.parametrize(("scheme", "increments"), [("newmark", 200), ("hht", 100)])
+def test_energy_that_an_impact_makes_is_warned_of_with_the_way_out(scheme, increments):
+    """An elastic ring without friction: Newmark's rule had made energy, and only a note said so."""
+    with pytest.warns(UserWarning, match="is gained .* use scheme='energy_momentum'"):
+        results = ring.run("Q4I", 48, scheme=scheme, increments=increments, period=0.4, speed=1.0)
+    assert max(f.scalars["energy balance error"] for f in results.frames[1:]) > 0.03
+    assert any("is gained" in note for note in results.notes)
+
+
+def test_energy_that_an_impact_loses_is_noted_and_the_conserving_scheme_keeps_it():
+    for scheme in ("hht", "energy_momentum"):
+        results = ring.run("Q4I", 48, scheme=scheme, increments=200, period=0.4, speed=1.0)
+        frames = results.frames[1:]
+        first = frames[0].scalars["ALLKE"] + frames[0].scalars["ALLIE"]
+        energy = np.array([f.scalars["ALLKE"] + f.scalars["ALLIE"] for f in frames])
+        lost = 1.0 - energy[-1] / first
+        reported = -frames[-1].scalars["energy balance error"]
+        if scheme == "hht":
+            assert lost > 0.05
+            assert reported == pytest.approx(lost, abs=0.02)
+            assert any("lost" in n and "energy_momentum" in n for n in results.notes)
+        else:
+            assert abs(lost) < 1e-3
+            assert not any("energy balance" in n for n in results.notes)

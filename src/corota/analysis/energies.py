@@ -165,6 +165,12 @@ class Energies:
         scalars["energy balance"] = missing
         scalars["energy balance error"] = error
 
+    @property
+    def made_by_contact(self) -> bool:
+        """Whether impacts have made more energy than rounding and increments explain."""
+        implicit = self.scheme in ("newmark", "hht", "generalized_alpha")
+        return implicit and self.system.contact_term is not None and self.error > LARGE_ERROR
+
     def remark(self) -> str:
         """What to say of the largest error, empty where it is small."""
         if abs(self.error) <= LARGE_ERROR:
@@ -177,16 +183,22 @@ class Energies:
         contact_term = self.system.contact_term is not None
         if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not contact_term):
             return text + "use smaller increments"
-        if self.scheme == "newmark":
-            return text + (
-                "the trapezoidal rule does not conserve energy when contact opens and closes; "
-                "use scheme='energy_momentum', or smaller increments"
-            )
-        if self.scheme in ("hht", "generalized_alpha"):
-            return text + (
-                f"numerical dissipation of {self.scheme} and of contact that opens and closes; "
-                "use smaller increments, or scheme='energy_momentum', which has none"
-            )
+        if self.scheme in ("newmark", "hht", "generalized_alpha"):
+            if contact_term and self.error > 0.0:
+                return text + (
+                    f"{self.scheme} does not conserve energy where contact opens and closes; use "
+                    "scheme='energy_momentum', which does, or smaller increments"
+                )
+            cause = "" if self.scheme == "newmark" else f"numerical dissipation of {self.scheme}"
+            if contact_term:
+                cause += (
+                    f"{' and ' if cause else ''}contact that opens and closes within increments"
+                )
+            if self.error < 0.0:
+                return text + (
+                    f"{cause}; use smaller increments, or scheme='energy_momentum', which has none"
+                )
+            return text + "use smaller increments, or scheme='energy_momentum'"
         return text + "the work of the loads is summed over the increments: use smaller ones"
 
 

@@ -198,6 +198,8 @@ class Analysis:
             self.energies = state.energies
             if remark := state.energies.remark():
                 results.notes.append(remark)
+                if state.energies.made_by_contact:
+                    warnings.warn(remark, stacklevel=3)
         except CorotaError as caught:
             error = caught
             if hasattr(caught, "results"):
