@@ -5,7 +5,8 @@ spread over its length, Ziegler's pendulum (two rigid bars on torsion springs, m
 at its end. None of these forces has a potential: two frequencies meet and become complex (flutter),
 while statics sees no other equilibrium. Under a dead force the first column diverges. The critical
 loads are bracketed by halving; loads are in units of E I / L^2, E I / L^3 and k / L. A little equal
-damping in both joints lowers Ziegler's load (his paradox).
+damping in both joints lowers Ziegler's load (his paradox). The curves are those of Beck's column, m is its mass
+per length.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,8 +24,11 @@ from corota.model.materials import Elastic
 from corota.model.model import Model
 from corota.model.paths import Modes
 from corota.model.steps import Frequency, Static
-from corota.verification.catalogue import Problem, Value
+from corota.verification.catalogue import Curve, Picture, Problem, Value
 from corota.verification.models import cell, run
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 YOUNG, LENGTH, DEPTH = 1e4, 10.0, 0.25
 INERTIA = DEPTH**3 / 12.0
@@ -130,6 +135,26 @@ def measure() -> Iterator[Value]:
     yield Value("Ziegler, critical load with a little damping", 41.0 / 28.0, load, 5e-3)
 
 
+def curve() -> Curve:
+    """Frequencies of Beck's column and their growth over the load."""
+    unit = float(np.sqrt(YOUNG * INERTIA / (DEPTH * LENGTH**4))) / (2.0 * np.pi)
+    loads = np.r_[np.linspace(0.0, 19.0, 20), np.linspace(19.5, 21.0, 13), np.linspace(22, 26, 5)]
+    found = [beck(float(p)) for p in loads]
+    lines: dict[str, tuple[ArrayLike, ArrayLike]] = {}
+    # Beyond flutter both have become one pair with the first frequency.
+    same = [0 if m.growth.max() > 1e-9 else 1 for m in found]
+    lines["frequency of mode 1"] = (loads, [m.factors[0] / unit for m in found])
+    second = [m.factors[k] / unit for m, k in zip(found, same, strict=True)]
+    lines["frequency of mode 2"] = (loads, second)
+    lines["growth rate"] = (loads, [m.growth.max() / (2.0 * np.pi * unit) for m in found])
+    return Curve(
+        "P L^2 / (E I)",
+        "rate / sqrt(E I / (m L^4))",
+        lines,
+        {"flutter (Beck)": ([20.05], [11.016])},
+    )
+
+
 PROBLEM = Problem(
     title="Following forces: Beck, Leipholz and Ziegler",
     group="dynamics",
@@ -140,5 +165,7 @@ PROBLEM = Problem(
     why="the columns are solids of slenderness 40 with shear and rotary inertia, and coarse; loads "
     "are bracketed to 0.1 %",
     measure=measure,
+    picture=lambda: Picture(column("Q8", 16)),
+    curve=curve,
     seconds=6.0,
 )
