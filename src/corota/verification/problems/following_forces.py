@@ -5,8 +5,8 @@ spread over its length, Ziegler's pendulum (two rigid bars on torsion springs, m
 at its end. None of these forces has a potential: two frequencies meet and become complex (flutter),
 while statics sees no other equilibrium. Under a dead force the first column diverges. The critical
 loads are bracketed by halving; loads are in units of E I / L^2, E I / L^3 and k / L. A little equal
-damping in both joints lowers Ziegler's load (his paradox). The curves are those of Beck's column, m is its mass
-per length.
+damping in both joints lowers Ziegler's load (his paradox). The curves are those of Beck's
+column; m is its mass per length.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
