@@ -52,7 +52,7 @@ class Case:
         rng = np.random.default_rng(1)
         self.u = 1e-4 / ny * rng.standard_normal(n)
         self.force, self.scale = np.zeros(n), np.zeros(n)
-        self.values = np.zeros(len(self.system.indices))
+        self.values = np.zeros(len(self.system.pattern.indices))
         self.n_elements = mesh.n_cells
 
     def assemble(self, lanes: str = "best", threads: int = 1) -> None:
@@ -83,7 +83,7 @@ class Case:
         self.assemble()
         self.masked = self.values.copy()
         system.core.mask(self.masked, system.conditions.constrained)
-        self.solver.analyze(system.indptr, system.indices, system.node_of_dof)
+        self.solver.analyze(system.pattern.indptr, system.pattern.indices, system.node_of_dof)
 
 
 def table_of_elements(n_dofs: float, repeats: int) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 
 from corota.analysis.equations import Evaluation, System
 from support.tied import KINDS, constrained, system_of
@@ -17,13 +16,8 @@ def dense(system: System, at: Evaluation) -> np.ndarray:
     """The reduced matrix."""
     assert at.link is not None
     assert system.constraints is not None
-    places = system.constraints.places
-    m = len(system.constraints.free)
     values = at.link.reduce(at.values, at.residual)
-    upper = sp.csc_array(
-        (values, places.indices.astype(int), places.indptr.astype(int)), shape=(m, m)
-    ).toarray()
-    return upper + np.triu(upper, 1).T
+    return system.constraints.reduction.pattern.full(values).toarray()
 
 
 def trial(system: System, seed: int) -> np.ndarray:
@@ -57,10 +51,8 @@ def test_full_and_symmetric_reductions_agree(kind: str, element: str) -> None:
     model, _ = constrained(kind, element)
     system = system_of(model)
     at = system.evaluate(trial(system, 5), 0.0)
-    n = system.n_dofs
     assert at.link is not None
-    upper = sp.csc_array((at.values, system.indices, system.indptr), shape=(n, n))
-    full = (upper + sp.triu(upper, 1).T).tocsc()
+    full = system.pattern.full(at.values).tocsc()
     k = dense(system, at)
     other = at.link.reduce_full(full, at.residual).toarray()
     assert np.abs(other - k).max() <= 1e-13 * np.abs(k).max()

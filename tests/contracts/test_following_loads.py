@@ -44,8 +44,8 @@ def loaded(element: str, kind: str) -> ct.Model:
 def dense(system: System, values: np.ndarray, triplets: object) -> np.ndarray:
     n = system.n_dofs
     upper = np.zeros((n, n))
-    columns = np.repeat(np.arange(n), np.diff(system.indptr.astype(int)))
-    np.add.at(upper, (system.indices, columns), values)
+    columns = np.repeat(np.arange(n), np.diff(system.pattern.indptr.astype(int)))
+    np.add.at(upper, (system.pattern.indices, columns), values)
     full = upper + np.triu(upper, 1).T
     if triplets is not None:
         rows, cols, entries = triplets  # type: ignore[misc]
@@ -77,7 +77,7 @@ def test_load_stiffness_is_the_derivative_of_the_load(element: str, kind: str) -
     for mass in MASSES if kind in ("gravity", "centrifugal") else MASSES[:1]:
         system = ready(loaded(element, kind), mass)
         u = moved(system)
-        values = np.zeros(len(system.indices))
+        values = np.zeros(len(system.pattern.indices))
         _, triplets = system.conditions.external(1.0, u, values)
         found = dense(system, values, triplets)
         h, load = 1e-6, system.conditions
@@ -107,7 +107,7 @@ def test_what_is_worked_out_once_holds_at_every_displacement(element: str, kind:
             system.core.set_massless(flags)
             system.conditions.set_mass(mass)
             for scale, at, start in ((1.0, 0.3 * u, np.zeros(0)), (-0.7, u, 0.5 * u)):
-                to = LoadSum(np.zeros(n), np.zeros(len(system.indices)), 0.4, start)
+                to = LoadSum(np.zeros(n), np.zeros(len(system.pattern.indices)), 0.4, start)
                 load.add(scale, at, to)
                 # A spin's scale is that of omega^2, the first value.
                 value = [

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from corota.analysis.linear.matrix import SymmetricPattern
 from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
 from corota.errors import SingularError
 
@@ -16,10 +17,14 @@ def upper_triangle(n, rng):
     return full, sp.triu(sp.csc_array(full)).tocsc()
 
 
+def pattern_of(upper):
+    return SymmetricPattern(upper.indptr, upper.indices, np.arange(upper.shape[0]))
+
+
 def test_full_matrix_adds_entries_to_both_triangles_and_keeps_its_pattern():
     rng = np.random.default_rng(3)
     full, upper = upper_triangle(12, rng)
-    matrices = FullMatrix(upper.indptr, upper.indices)
+    matrices = FullMatrix(pattern_of(upper))
     rows, columns = np.array([0, 11, 0, 5]), np.array([11, 0, 11, 5])
     more = np.array([2.0, 3.0, 0.5, 1.0])
     built = matrices.build(upper.data, rows, columns, more)
@@ -41,7 +46,7 @@ def test_masked_solution_is_that_of_the_free_equations_and_orders_once(monkeypat
     analyze = lu._solver.analyze
     monkeypatch.setattr(lu._solver, "analyze", lambda *a: (analyzed.append(1), analyze(*a)))
     upper = upper_triangle(12, rng)[1]
-    matrices = FullMatrix(upper.indptr, upper.indices)
+    matrices = FullMatrix(pattern_of(upper))
     for skew in (0.5, 1.5):
         entry = (np.array([1]), np.array([3]), np.array([skew]))
         matrix = matrices.build(upper.data, *entry)

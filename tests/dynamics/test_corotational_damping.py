@@ -49,7 +49,7 @@ def test_rigid_rates_are_not_damped_in_any_configuration(element):
     u = bent(system, 2.0)
     x = system.model.mesh.points + system.by_node(u)[:, :2]
     rates = np.column_stack([2.0 - 3.0 * x[:, 1], 1.0 + 3.0 * x[:, 0], np.full(len(x), 3.0)])
-    values = np.zeros(len(system.indices))
+    values = np.zeros(len(system.pattern.indices))
     v = system.from_nodes(rates)
     force = viscous.add(u, u, v, 0.0, 1.0, values)
     random = np.random.default_rng(0).standard_normal(system.n_dofs)

@@ -151,11 +151,11 @@ def test_rigid_spin_has_the_kinetic_energy_of_the_body(element, mass):
 
 def inertia_matrix(system, kind, u):
     n = system.n_dofs
-    force, scale, values = np.zeros(n), np.zeros(n), np.zeros(len(system.indices))
+    force, scale, values = np.zeros(n), np.zeros(n), np.zeros(len(system.pattern.indices))
     system.core.inertia(u, 0 * u, 0 * u, kind, [0.0, 0.0, 1.0], force, scale, values)
     dense = np.zeros((n, n))
-    column = np.repeat(np.arange(n), np.diff(system.indptr.astype(int)))
-    dense[system.indices, column] = values
+    column = np.repeat(np.arange(n), np.diff(system.pattern.indptr.astype(int)))
+    dense[system.pattern.indices, column] = values
     return force, dense + np.triu(dense, 1).T
 
 

@@ -174,8 +174,8 @@ def test_central_differences_name_the_stable_increment():
     stable = stable_increment(system, np.zeros(system.n_dofs), mass)
     at = system.evaluate(np.zeros(system.n_dofs), 0.0)
     dense = np.zeros((system.n_dofs, system.n_dofs))
-    columns = np.repeat(np.arange(system.n_dofs), np.diff(system.indptr.astype(int)))
-    dense[system.indices, columns] = at.values
+    columns = np.repeat(np.arange(system.n_dofs), np.diff(system.pattern.indptr.astype(int)))
+    dense[system.pattern.indices, columns] = at.values
     dense += np.triu(dense, 1).T
     largest = np.linalg.eigvals(dense / mass[:, None]).real.max()
     assert stable == pytest.approx(2.0 / np.sqrt(largest), rel=0.02)

@@ -208,7 +208,9 @@ def test_tangent_is_the_derivative_with_free_strains(element: str, local_strain:
     c, s = np.cos(0.8), np.sin(0.8)
     moved = x @ np.array([[c, s], [-s, c]]) - x + 0.03 * rng.standard_normal(x.shape)
     u = system.from_nodes(np.column_stack([moved, 0.8 + 0.05 * rng.standard_normal(len(x))]))
-    upper = sp.csc_array((system.evaluate(u, 0.0).values, system.indices, system.indptr))
+    upper = sp.csc_array(
+        (system.evaluate(u, 0.0).values, system.pattern.indices, system.pattern.indptr)
+    )
     k = (upper + sp.triu(upper, 1).T).toarray()
     h = 1e-6
     for column in rng.choice(system.n_dofs, 6, replace=False):

@@ -135,7 +135,9 @@ def alone(element: str) -> System:
 
 def stiffness(system: System, values: np.ndarray) -> np.ndarray:
     n = system.n_dofs
-    upper = sp.csc_array((values, system.indices, system.indptr), shape=(n, n)).toarray()
+    upper = sp.csc_array(
+        (values, system.pattern.indices, system.pattern.indptr), shape=(n, n)
+    ).toarray()
     return upper + np.triu(upper, 1).T
 
 

@@ -88,7 +88,9 @@ def test_factors_are_those_of_the_dense_pencil():
     n = system.n_dofs
 
     def dense(data):
-        upper = scipy.sparse.csc_array((data, system.indices, system.indptr), shape=(n, n))
+        upper = scipy.sparse.csc_array(
+            (data, system.pattern.indices, system.pattern.indptr), shape=(n, n)
+        )
         full = upper.toarray()
         return (full + np.triu(full, 1).T)[np.ix_(free, free)]
 
@@ -166,7 +168,9 @@ def test_pivots_count_dense_negative_eigenvalues_along_a_path(seed):
     for frame in results.frames[1:]:
         u = system.from_nodes(np.column_stack([frame.U, frame.UR]))
         data = system.evaluate(u, frame.factor).values
-        upper = scipy.sparse.csc_array((data, system.indices, system.indptr), shape=(n, n))
+        upper = scipy.sparse.csc_array(
+            (data, system.pattern.indices, system.pattern.indptr), shape=(n, n)
+        )
         full = upper.toarray()
         matrix = (full + np.triu(full, 1).T)[np.ix_(free, free)]
         negative = int((np.linalg.eigvalsh(matrix) < 0.0).sum())

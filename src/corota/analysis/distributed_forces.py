@@ -151,7 +151,7 @@ class BodyLoad:
         force, stiffness = self._where_linear()
         force = scale * force
         if len(stiffness):
-            force += scale * system.core.multiply(
+            force += scale * system.pattern.multiply(
                 stiffness, 0.5 * (before + here) if len(before) else here
             )
             if len(to.values):
@@ -176,7 +176,7 @@ class BodyLoad:
             if self._couples:
                 masks = [m & ~t for m, t in zip(masks, self.nlgeom, strict=True)]
             spins = self.item.kind == "centrifugal" and any(m.any() for m in masks)
-            stiffness = np.zeros(len(self.system.indices)) if spins else EMPTY
+            stiffness = self.system.pattern.zeros() if spins else EMPTY
             self._linear = self._at_rest(masks, stiffness), stiffness
         return self._linear
 
@@ -234,7 +234,7 @@ class Traction:
         # Symmetric, between nodes of one element: the pattern has places for it.
         if self._places is None:
             upper = np.flatnonzero(rows <= columns)
-            self._places = (upper, places(self.system, rows[upper], columns[upper]))
+            self._places = (upper, self.system.pattern.places(rows[upper], columns[upper])[0])
         upper, at = self._places
         np.add.at(to.values, at, -to.share * values[upper])
 
@@ -281,16 +281,6 @@ def evaluate(
     start = system.start
     i, j = start[rows // 3] + rows % 3, start[columns // 3] + columns % 3
     return system.from_nodes(force), (i, j, values)
-
-
-def places(system: System, rows: Ints, columns: Ints) -> Ints:
-    """Places of entries (row <= column) in the upper triangle, which has them."""
-    start = system.indptr.astype(np.int64)
-    found = [
-        start[c] + np.searchsorted(system.indices[start[c] : start[c + 1]], r)
-        for r, c in zip(rows, columns, strict=True)
-    ]
-    return np.array(found, np.int64)
 
 
 __all__ = [

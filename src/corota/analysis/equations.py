@@ -19,6 +19,7 @@ from corota.analysis.blocks import blocks_of, check_shapes, core_input
 from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints, extra_dofs
 from corota.analysis.constraints.setup import carry_curves
 from corota.analysis.free_motion import name_motion
+from corota.analysis.linear.matrix import AssembledPattern
 from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
 from corota.analysis.memory import require_model
 from corota.analysis.newton import ElementFailure, ResidualNorms
@@ -35,6 +36,7 @@ from corota.model import elements
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.matrix import SymmetricPattern
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.terms.contact.contact import ContactTerm
     from corota.model.materials import Material
@@ -139,13 +141,13 @@ class System:
         self.node_of_dof = self.core.node_of_dof.astype(np.int64)
         self.component = np.arange(self.n_dofs) - self.start[self.node_of_dof]
         self.is_rotation = self.component == 2
-        self.indptr, self.indices = self.core.indptr, self.core.indices
+        self.pattern = AssembledPattern(self.core)
         self.nlgeom = True
         #: Largest local strain at the last recovery where it is linear, and the material there.
         self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
         self.constraints: Constraints | None = None
         if model.constraints or model.axes:
-            self.constraints = Constraints(model, self.start, carried, self.indptr, self.indices)
+            self.constraints = Constraints(model, self.start, carried, self.pattern)
         self.link: LinearizedConstraints | None = None
         self.conditions = Conditions(self)
         self.contact_term: ContactTerm | None = None
@@ -210,7 +212,7 @@ class System:
 
     def borrow_tangent(self) -> Floats:
         """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
-        return self._spare.pop() if self._spare else np.empty(len(self.indices))
+        return self._spare.pop() if self._spare else np.empty(self.pattern.nnz)
 
     def return_tangent(self, at: Evaluation) -> None:
         """Take the memory of a tangent back that nobody looks at any more."""
@@ -268,7 +270,7 @@ class System:
 
     def product(self, values: Floats, x: Floats) -> Floats:
         """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
-        return self.at_nodes(self.core.multiply(values, self.in_space(x)))
+        return self.at_nodes(self.pattern.multiply(values, self.in_space(x)))
 
     def set_temperatures(self, step_time: float) -> None:
         """Give the elements the thermal strain of a time of the step."""
@@ -400,10 +402,10 @@ class System:
                 unsymmetric, rhs, du_prescribed, constrained, self.node_of_dof
             )
             return du, -1
-        self.core.reduce(at.values, rhs, du_prescribed, constrained)
+        self.pattern.impose(at.values, rhs, du_prescribed, constrained)
         if not self._analyzed:
             with self.timed("order"):
-                self.solver.analyze(self.indptr, self.indices, self.node_of_dof)
+                self.pattern.analyze(self.solver)
             self._analyzed = True
         try:
             with self.timed("factor"):
@@ -421,19 +423,17 @@ class System:
         """Refuse a structure whose stiffness without that of its loads lets a motion free."""
         constrained = self.conditions.constrained
         if at.link is None:
-            indptr, indices, node = self.indptr, self.indices, self.node_of_dof
+            pattern: SymmetricPattern = self.pattern
             values, none = at.values.copy(), np.zeros(self.n_dofs)
-            self.core.reduce(values, none, none.copy(), constrained)
+            pattern.impose(values, none, none.copy(), constrained)
         else:
-            places = at.link.constraints.places
-            indptr, indices = places.indptr, places.indices
-            node = self.node_of_dof[at.link.constraints.free]
+            pattern = at.link.constraints.reduction.pattern
             values = at.link.reduce(at.values, self.at_nodes(at.internal))
-            places.mask(values, constrained[at.link.constraints.free])
+            pattern.mask(values, constrained[at.link.constraints.free])
             self.link = at.link
         if not self._analyzed:
             with self.timed("order"):
-                self.solver.analyze(indptr, indices, node)
+                pattern.analyze(self.solver)
             self._analyzed = True
         try:
             with self.timed("factor"):
@@ -472,7 +472,8 @@ class System:
         unsymmetric: Any,
     ) -> tuple[Floats, int]:
         """Solve for the unknowns that constraints leave; see :meth:`correct`."""
-        constraints, places, self.link = link.constraints, link.constraints.places, link
+        constraints, self.link = link.constraints, link
+        pattern = constraints.reduction.pattern
         free = constraints.free
         constrained = self.conditions.constrained[free]
         force, moved = np.asfortranarray(link.gather(rhs)[free]), du_prescribed[free]
@@ -483,14 +484,10 @@ class System:
             return self.expand(link, x), -1
         with self.timed("constraints"):
             values = link.reduce(at.values, at.residual)
-            for column, move in zip(_columns(force), _columns(moved), strict=True):
-                if np.any(move):
-                    column -= places.multiply(values, move)
-            places.mask(values, constrained)
-        force[constrained] = 0.0
+            pattern.impose(values, force, moved, constrained)
         if not self._analyzed:
             with self.timed("order"):
-                self.solver.analyze(places.indptr, places.indices, node)
+                pattern.analyze(self.solver)
             self._analyzed = True
         try:
             with self.timed("factor"):
@@ -521,7 +518,7 @@ class System:
         if skew.nnz and abs(skew).max() > 1e-9 * size:
             return False, self._full.build(at.values, rows, columns, -values)
         upper_extra = sp.triu(0.5 * (extra + extra.T)).tocoo()
-        places, known = self._full.places(upper_extra.row, upper_extra.col)
+        places, known = self.pattern.places(upper_extra.row, upper_extra.col)
         if not known.all():
             # Nodes that share no element: the pattern has no place for them.
             return False, self._full.build(at.values, rows, columns, -values)
@@ -530,7 +527,7 @@ class System:
 
     @cached_property
     def _full(self) -> FullMatrix:
-        return FullMatrix(self.indptr, self.indices)
+        return FullMatrix(self.pattern)
 
     def _solve_unsymmetric(
         self,
@@ -565,11 +562,6 @@ def failure(labels: list[int], why: str = "") -> ElementFailure:
     shown = ", ".join(str(n) for n in labels[:5]) + (", ..." if len(labels) > 5 else "")
     known = why if why == NO_NUMBER else "turned inside out or not converged"
     return ElementFailure(f"{known}: element {shown}")
-
-
-def _columns(x: Floats) -> list[Floats]:
-    """Views of the columns of a vector or matrix."""
-    return [x] if x.ndim == 1 else list(x.T)
 
 
 __all__ = ["DOF_NAMES", "Evaluation", "System", "blocks_of"]

@@ -77,7 +77,7 @@ class Scales:
         self.ratio = self.stiffest / float(some.min()) if len(some) else 1.0
 
     def _diagonal(self, values: Floats) -> Floats:
-        out: Floats = values[self.system.indptr[1:].astype(np.int64) - 1]
+        out: Floats = values[self.system.pattern.diagonal]
         return out
 
     def commit(self) -> None:

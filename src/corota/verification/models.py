@@ -149,14 +149,13 @@ def single(element: str, x: Floats, *, E: float, nu: float, **section: Any) -> M
 
 def assemble(model: Model, u: ArrayLike, nlgeom: bool = True) -> tuple[Floats, Floats]:
     """Internal force (n_dofs,) and tangent (n_dofs, n_dofs) at displacements by node."""
-    core = System(model, Faer()).core
+    system = System(model, Faer())
+    core = system.core
     n = core.n_dofs
     force, scale = np.empty(n), np.empty(n)
-    values = np.empty(len(core.indices))
+    values = np.empty(system.pattern.nnz)
     core.assemble(np.ravel(u).astype(float), nlgeom, force, scale, values)
-    upper = np.zeros((n, n))
-    upper[core.indices, np.repeat(np.arange(n), np.diff(core.indptr.astype(int)))] = values
-    return force, upper + np.triu(upper, 1).T
+    return force, system.pattern.full(values).toarray()
 
 
 def cook(

@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.constraints.pattern import Places, Rows
 from corota.analysis.constraints.setup import Builder, extra_dofs
+from corota.analysis.linear.reduction import Reduction, Rows
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.constraints.relations import Relation
+    from corota.analysis.linear.matrix import SymmetricPattern
     from corota.errors import Location
     from corota.model.model import Model
 
@@ -116,13 +117,13 @@ class LinearizedConstraints:
     def reduce(self, values: Floats, residual: Floats) -> Floats:
         """Values of the reduced matrix, upper triangle."""
         constraints = self.constraints
-        return constraints.places.reduce(
+        return constraints.reduction.reduce(
             values, constraints.rows_of(self.g), self.g, self.geometric_stiffness(residual)
         )
 
     def reduce_full(self, matrix: Any, residual: Floats) -> Any:
         """The reduced matrix of an unsymmetric one, scipy CSC."""
-        return self.constraints.places.reduce_full(
+        return self.constraints.reduction.reduce_full(
             matrix, self.constraints.rows_of(self.g), self.g, self.geometric_stiffness(residual)
         )
 
@@ -136,8 +137,8 @@ class Constraints:
     start : ndarray of int, shape (n_nodes + 1,)
     carried : ndarray of int, shape (n_nodes,)
         Dofs of each node that elements carry.
-    indptr, indices : ndarray
-        Pattern of the full matrix, upper triangle by columns.
+    matrix : SymmetricPattern
+        Of the matrix of all dofs.
 
     Attributes
     ----------
@@ -154,8 +155,7 @@ class Constraints:
         model: Model,
         start: Ints,
         carried: Ints,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
+        matrix: SymmetricPattern,
     ) -> None:
         self.n = int(start[-1])
         self.start = start
@@ -188,11 +188,9 @@ class Constraints:
             for r in self.bending
             for i, j in [np.triu_indices(len(r.masters))]
         ]
-        self.places = Places(
-            self.n,
+        self.reduction = Reduction(
+            matrix,
             self.free,
-            indptr,
-            indices,
             self.rows_of(pattern),
             Rows(self.dependent, pattern),
             pairs,

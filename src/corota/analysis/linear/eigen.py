@@ -22,7 +22,8 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.linearized import Factor, LinearMotion
+    from corota.analysis.linear.factor import Factor
+    from corota.analysis.terms.linearized import LinearMotion
 
     Floats = NDArray[np.float64]
     Complex = NDArray[np.complex128]

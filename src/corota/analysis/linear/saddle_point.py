@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.constraints.pattern import _union
+from corota.analysis.linear.reduction import _union
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -105,16 +105,10 @@ class SaddlePointSystem:
         self.system, self.n = system, n
         constraints = system.constraints
         self.free = np.arange(system.n_dofs) if constraints is None else constraints.free
-        base = (
-            (system.indptr, system.indices)
-            if constraints is None
-            else (constraints.places.indptr, constraints.places.indices)
-        )
+        base = system.pattern if constraints is None else constraints.reduction.pattern
         self.nf = len(self.free)
         self.size = self.nf + n
-        start = base[0].astype(np.int64)
-        column = np.repeat(np.arange(self.nf, dtype=np.int64), np.diff(start))
-        self._base = column * self.size + base[1].astype(np.int64)
+        self._base = base.columns * self.size + base.rows
         self.node = np.concatenate(
             [system.node_of_dof[self.free], len(system.per_node) + np.arange(n)]
         )
@@ -343,7 +337,7 @@ class SaddlePointSystem:
         import scipy.sparse as sp
 
         n = self.system.n_dofs
-        t = link.constraints.places.whole(link.constraints.rows_of(link.g))
+        t = link.constraints.reduction.whole(link.constraints.rows_of(link.g))
 
         def square(x: Triplets) -> Any:
             full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, n)).tocsr()

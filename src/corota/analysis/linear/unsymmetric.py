@@ -12,6 +12,8 @@ from corota.analysis.linear.solvers import Faer
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.linear.matrix import SymmetricPattern
+
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
@@ -21,26 +23,17 @@ class FullMatrix:
 
     Parameters
     ----------
-    indptr, indices : ndarray of int
-        Pattern of the upper triangle by columns.
+    pattern : SymmetricPattern
+        Of the tangent.
     """
 
-    def __init__(self, indptr: NDArray[Any], indices: NDArray[Any]) -> None:
-        start = indptr.astype(np.int64)
-        self.n = n = len(start) - 1
-        columns = np.repeat(np.arange(n, dtype=np.int64), np.diff(start))
-        rows = indices.astype(np.int64)
+    def __init__(self, pattern: SymmetricPattern) -> None:
+        self.n = n = pattern.n
+        rows, columns = pattern.rows, pattern.columns
         self._off = np.flatnonzero(rows != columns)
-        # Entries are known by the number that sorts them by columns.
-        self._upper = columns * n + rows
+        self._upper = pattern.keys
         self._lower = rows[self._off] * n + columns[self._off]
         self._more = self._entries = np.zeros(0, np.int64)
-
-    def places(self, rows: Ints, columns: Ints) -> tuple[Ints, NDArray[np.bool_]]:
-        """Places of entries (row <= column) in the upper triangle, and whether they have one."""
-        wanted = np.asarray(columns, np.int64) * self.n + np.asarray(rows, np.int64)
-        found = np.searchsorted(self._upper, wanted)
-        return found, np.take(self._upper, found, mode="clip") == wanted
 
     def _lay_out(self) -> None:
         n = self.n

@@ -114,7 +114,9 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
     largest_move = _moved(system, response, loads)
     constrained, free = system.conditions.constrained, _free(system)
     product = (
-        system.core.multiply if system.constraints is None else system.constraints.places.multiply
+        system.pattern.multiply
+        if system.constraints is None
+        else system.constraints.reduction.pattern.multiply
     )
 
     def apply(x: Floats) -> Floats:
@@ -130,7 +132,7 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
         if system.constraints is None:
             system.core.mask(at, constrained)
         else:
-            system.constraints.places.mask(at, constrained[free])
+            system.constraints.reduction.pattern.mask(at, constrained[free])
         inertia = system.solver.factorize(at)
         return -1 if inertia is None else inertia[1]
 
@@ -254,7 +256,7 @@ def _derivative(
         )
     change /= 2.0 * size
     # Entries of the load stiffness join the full tangent, since constraints reduce them too.
-    zero, own = np.zeros(system.n_dofs), np.zeros(len(system.indices))
+    zero, own = np.zeros(system.n_dofs), system.pattern.zeros()
     _, stiffness = loads.external(loads.period, u, own)
     if stiffness is not None or own.any():
         at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))

@@ -121,7 +121,7 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
             "meaning there; follow the path instead (path=ArcLength(...))"
         )
     change = change / (2.0 * size)
-    own = np.zeros(len(system.indices))
+    own = system.pattern.zeros()
     _, triplets = loads.external(loads.period, base.u, own)
     if triplets is not None:
         triplets = (triplets[0], triplets[1], -triplets[2])

@@ -43,7 +43,7 @@ def diagonal(system: System) -> Floats:
 
     values = Inertia(system, "lumped").matrix
     assert values is not None
-    return values[system.indptr[1:].astype(np.int64) - 1]
+    return values[system.pattern.diagonal]
 
 
 def stable_increment(system: System, u: Floats, mass: Floats) -> float:
@@ -63,11 +63,7 @@ def stable_increment(system: System, u: Floats, mass: Floats) -> float:
     idle = free & ~moving
     if idle.any():
         # What the free dofs without mass feel, whichever dof moves.
-        felt = np.zeros(system.n_dofs)
-        starts = system.indptr.astype(np.int64)
-        columns = np.repeat(np.arange(system.n_dofs), starts[1:] - starts[:-1])
-        np.maximum.at(felt, system.indices, np.abs(values))
-        np.maximum.at(felt, columns, np.abs(values))
+        felt = system.pattern.largest_by_row(values)
         _refuse_idle(system, idle & (felt > 0.0), "has stiffness but no mass")
     if not moving.any():
         return np.inf
@@ -76,7 +72,7 @@ def stable_increment(system: System, u: Floats, mass: Floats) -> float:
     largest = 0.0
     for _ in range(POWER):
         x /= np.sqrt(x @ (mass * x))
-        y = np.where(moving, system.core.multiply(values, x), 0.0)
+        y = np.where(moving, system.pattern.multiply(values, x), 0.0)
         largest = float(x @ y)
         x = inverse * y
         if not x.any():

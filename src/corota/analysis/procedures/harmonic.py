@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
+from corota.analysis.linear.factor import Factor
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.modal import supported
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
 from corota.analysis.terms.conditions import Conditions
-from corota.analysis.terms.linearized import Factor, LinearMotion
+from corota.analysis.terms.linearized import LinearMotion
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:

@@ -198,7 +198,7 @@ def supported(lin: LinearMotion, forces: Floats, external: Floats) -> Evaluation
     reaction = base.copy() if lin.link is None else lin.link.gather(base)
     reaction[lin.free] += forces[: lin.nf]
     internal = external + np.where(system.conditions.constrained, reaction, 0.0)
-    return Evaluation(internal, external, np.abs(internal), np.zeros(len(system.indices)))
+    return Evaluation(internal, external, np.abs(internal), system.pattern.zeros())
 
 
 def _tell_lost(system: System, state: State, number: int, start: Floats, kept: Floats) -> None:

@@ -114,7 +114,7 @@ class Inertia:
         zero = np.zeros(system.n_dofs)
         values = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
         self.matrix: Floats | None = None if coupled else values
-        self._own = np.abs(values[self.attached.diagonal])
+        self._own = np.abs(values[system.pattern.diagonal])
         moves = self._own[~system.is_rotation]
         self._largest = float(moves.max(initial=0.0))
 
@@ -171,13 +171,13 @@ class Inertia:
     ) -> tuple[Floats, Floats, Floats]:
         system = self.system
         force, scale = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
-        values = np.zeros(len(system.indices) if tangent else 0)
+        values = np.zeros(system.pattern.nnz if tangent else 0)
         with system.timed("assemble"):
             x, rate, growth = (system.in_space(x) for x in (u, v, a))
             system.core.inertia(x, rate, growth, self.kind, list(weights), force, scale, values)
         own = self.attached.mass * a
         if tangent:
-            values[self.attached.diagonal] += weights[2] * self.attached.mass
+            values[system.pattern.diagonal] += weights[2] * self.attached.mass
         return system.at_nodes(force) + own, scale + np.abs(own), values
 
     def momenta(self, u: Floats, v: Floats, carried: bool) -> Floats:
@@ -413,7 +413,7 @@ class ConservingMotion:
         hung = attached.mass * a
         force += hung
         scale += np.abs(hung)
-        values[attached.diagonal] += 2.0 / (dt * dt) * attached.mass
+        values[system.pattern.diagonal] += 2.0 / (dt * dt) * attached.mass
         link = None if system.constraints is None else system.constraints.secant(b.u, u)
         at = Evaluation(force, external, scale, values, stiffness, link)
         self.inertia.weigh(at, d, 2.0 / (dt * dt))

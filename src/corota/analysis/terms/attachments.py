@@ -29,8 +29,6 @@ class Attachments:
     ----------
     mass : ndarray, shape (n_dofs,)
         Added to the diagonal of any mass matrix [mass], [mass*length^2].
-    diagonal : ndarray of int, shape (n_dofs,)
-        Places of the diagonal in the upper triangle.
 
     Raises
     ------
@@ -40,7 +38,6 @@ class Attachments:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.diagonal: Ints = system.indptr[1:].astype(np.int64) - 1
         self.mass = np.zeros(system.n_dofs)
         for item in system.model.point_masses:
             nodes = (
@@ -113,7 +110,7 @@ class Attachments:
         system = self.system
         u, v = system.in_space(u), system.in_space(v)
         force: Floats = self.ground * v
-        values[self.diagonal] += weight * self.ground
+        values[system.pattern.diagonal] += weight * self.ground
         if not len(self.c):
             return system.at_nodes(force), None
         axis = self._axes(u)

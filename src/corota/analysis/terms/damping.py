@@ -70,7 +70,7 @@ def mass_damping(system: System, u: Floats, mass: str) -> Floats | None:
 def _mass(system: System, u: Floats, kind: str) -> Floats:
     """Mass matrix of the active blocks."""
     here, rest = system.in_space(u), np.zeros(system.n_dofs)
-    values = np.zeros(len(system.indices))
+    values = system.pattern.zeros()
     force, scale = np.zeros((2, system.n_dofs))
     system.core.inertia(here, rest, rest, kind, [0.0, 0.0, 1.0], force, scale, values)
     return values

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.factor import Factor
 from corota.analysis.procedures.motion import Inertia
 from corota.analysis.terms.attachments import Attachments
 from corota.analysis.terms.contact.equations import ContactEquations
@@ -36,80 +36,6 @@ SKEW = 1e-9
 #: Compliance of closed constraints relative to that of their nodes: constraints that follow from
 #: others then leave the matrix regular.
 COMPLIANCE = 1e-10
-#: Relative size of a product that is nothing but rounding.
-NULL = 1e-9
-
-
-class Factor:
-    """A factorized matrix of the active unknowns.
-
-    Parameters
-    ----------
-    matrix : scipy CSC array, shape (n, n)
-    symmetric : bool
-    node : ndarray of int, shape (n,)
-        Node of each unknown; unknowns of one node stand together.
-    multiplier : ndarray of bool, shape (n,)
-    threads : int
-
-    Attributes
-    ----------
-    negative : int
-        Negative pivots beyond one for each multiplier; -1 where unknown.
-
-    Raises
-    ------
-    SingularError
-        If the matrix is singular.
-    """
-
-    def __init__(
-        self, matrix: Any, symmetric: bool, node: Ints, multiplier: NDArray[np.bool_], threads: int
-    ) -> None:
-        self.negative = -1
-        if symmetric:
-            try:
-                self._symmetric(matrix, node, multiplier, threads)
-                return
-            except SingularError as error:
-                # The test for motions without stiffness goes by energy, which multipliers make
-                # vanish for what is no such motion.
-                if not multiplier.any() or _is_null(matrix, error.mode):
-                    raise
-        solver = Faer(symmetric=False)
-        solver.threads = threads
-        matrix = matrix.tocsc()
-        matrix.sort_indices()
-        solver.analyze(matrix.indptr, matrix.indices, node)
-        solver.factorize(matrix.data)
-        self._solver = solver
-
-    def _symmetric(
-        self, matrix: Any, node: Ints, multiplier: NDArray[np.bool_], threads: int
-    ) -> None:
-        upper = sp.triu(matrix).tocsc()
-        upper.sort_indices()
-        solver = Faer()
-        solver.threads = threads
-        after = np.flatnonzero(multiplier) if multiplier.any() else None
-        solver.analyze(upper.indptr, upper.indices, node, after)
-        inertia = solver.factorize(upper.data)
-        if inertia is not None:
-            self.negative = inertia[1] - int((matrix.diagonal()[multiplier] < 0.0).sum())
-        self._solver = solver
-
-    def solve(self, rhs: Floats) -> Floats:
-        """Solution for right-hand sides of shape (n,) or (n, k)."""
-        return self._solver.solve(rhs)
-
-
-def _is_null(matrix: Any, mode: Any) -> bool:
-    """Whether a symmetric matrix takes a vector to nothing but rounding."""
-    if mode is None:
-        return True
-    v = np.asarray(mode, float).reshape(matrix.shape[0], -1)[:, 0]
-    left, size = np.abs(matrix @ v), abs(matrix) @ np.abs(v)
-    return bool(left.max() <= NULL * size.max())
 
 
 class Linearized:
@@ -237,7 +163,7 @@ class Linearized:
         """All dofs in global axes by the independent ones."""
         assert self.link is not None
         constraints = self.link.constraints
-        return constraints.places.whole(constraints.rows_of(self.link.g))
+        return constraints.reduction.whole(constraints.rows_of(self.link.g))
 
     # -- between dofs and unknowns -----------------------------------------------------
 
@@ -262,11 +188,7 @@ class Linearized:
         n = system.n_dofs
         matrix = sp.csc_array((n, n))
         if values is not None:
-            upper = sp.csc_array(
-                (values, system.indices.astype(np.int32), system.indptr.astype(np.int32)),
-                shape=(n, n),
-            )
-            matrix = upper + sp.triu(upper, 1).T
+            matrix = system.pattern.full(values)
         if triplets is not None:
             rows, columns, entries = triplets
             matrix = matrix + sp.coo_array((entries, (rows, columns)), shape=(n, n))
@@ -388,7 +310,7 @@ class LinearMotion(Linearized):
             system = self.system
             per_mass, per_stiffness = rayleigh
             values = damping_matrix(system, self.u, per_stiffness, self.kind)
-            values = np.zeros(len(system.indices)) if values is None else values.copy()
+            values = system.pattern.zeros() if values is None else values.copy()
             values += per_mass * self.mass_values
             _, triplets = Attachments(system).damp(self.u, np.zeros(system.n_dofs), values, 1.0)
             matrix = self.padded(self.reduce(values, triplets))
@@ -413,11 +335,7 @@ class LinearMotion(Linearized):
             ),
             shape=(n, n),
         ).tocsr()
-        upper = sp.csc_array(
-            (self.mass_values, system.indices.astype(np.int32), system.indptr.astype(np.int32)),
-            shape=(n, n),
-        )
-        mass = upper + sp.triu(upper, 1).T
+        mass = system.pattern.full(self.mass_values)
         whole = (rate * (mass @ turn + turn @ mass)).tocoo()
         return self.padded(self.reduce(None, (whole.row, whole.col, whole.data)))
 
@@ -444,4 +362,4 @@ def spin(system: System) -> float:
     return float(sum(rates))
 
 
-__all__ = ["COMPLIANCE", "Factor", "LinearMotion", "Linearized", "spin"]
+__all__ = ["COMPLIANCE", "LinearMotion", "Linearized", "spin"]

@@ -101,9 +101,7 @@ class ViscousElements:
         dofs = (system.start[block.nodes][:, :, None] + np.arange(each)).reshape(n, size)
         i, j = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
         chosen = i <= j
-        keys = np.repeat(np.arange(system.n_dofs), np.asarray(np.diff(system.indptr), np.int64))
-        keys = keys * system.n_dofs + system.indices
-        places = np.searchsorted(keys, j[chosen] * system.n_dofs + i[chosen])
+        places, _ = system.pattern.places(i[chosen], j[chosen])
         arm = points - points.mean(axis=1, keepdims=True)
         return _Block(dofs, arm, matrix, chosen, places, turns)
 

@@ -239,7 +239,7 @@ class ContactTerm:
     def _measure(self, values: Floats) -> None:
         """Pressure per gap of each node: stiffness of the node over its area."""
         system = self.system
-        diagonal = np.abs(values[system.indptr[1:].astype(np.int64) - 1])
+        diagonal = np.abs(values[system.pattern.diagonal])
         by_node = np.zeros((len(system.per_node), 3))
         by_node[system.node_of_dof, system.component] = diagonal
         nodal = by_node[:, :2].mean(axis=1)

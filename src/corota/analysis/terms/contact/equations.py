@@ -161,7 +161,7 @@ class ContactEquations:
         if contact_state.damping is not None:
             at.internal += contact_state.damping * (u - self.contact_term.u)
             at.added = contact_state.damping
-            at.values[self.system.indptr[1:].astype(np.int64) - 1] += contact_state.damping
+            at.values[self.system.pattern.diagonal] += contact_state.damping
         return ContactEvaluation(at, contact_state)
 
     def residual_norms(self, at: ContactEvaluation, z: Floats) -> ResidualNorms:

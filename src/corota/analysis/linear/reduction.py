@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.linear.matrix import SymmetricPattern
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -99,16 +101,15 @@ class Terms:
             out[self.target] += np.add.reduceat(terms, self.first)
 
 
-class Places:
+class Reduction:
     """The map from the full upper triangle to the reduced one.
 
     Parameters
     ----------
-    n : int
+    whole : SymmetricPattern
+        Of all dofs.
     free : ndarray of int
         Dofs that stay, sorted.
-    indptr, indices : ndarray
-        Upper triangle by columns.
     turned : Rows
         Rows of ``Q G``, structure only.
     tied : Rows
@@ -119,15 +120,14 @@ class Places:
 
     def __init__(
         self,
-        n: int,
+        whole: SymmetricPattern,
         free: Ints,
-        indptr: NDArray[Any],
-        indices: NDArray[Any],
         turned: Rows,
         tied: Rows,
         pairs: list[tuple[Ints, Ints]],
     ) -> None:
-        self.n, self.free, m = n, free, len(free)
+        n, m = whole.n, len(free)
+        self.n, self.free = n, free
         renumber = np.full(n, -1, np.int64)
         renumber[free] = np.arange(m)
         self.renumber = renumber
@@ -136,13 +136,11 @@ class Places:
         self.tied_dofs = tied.dofs
         special = renumber < 0
         special[turned.dofs] = True
-        begin: Ints = indptr.astype(np.int64)
-        column = np.repeat(np.arange(n, dtype=np.int64), begin[1:] - begin[:-1])
-        row = indices.astype(np.int64)
-        contact_evaluation = special[row] | special[column]
-        self.plain = np.flatnonzero(~contact_evaluation)
+        row, column = whole.rows, whole.columns
+        changed = special[row] | special[column]
+        self.plain = np.flatnonzero(~changed)
         keys = [renumber[column[self.plain]] * m + renumber[row[self.plain]]]
-        some = np.flatnonzero(contact_evaluation)
+        some = np.flatnonzero(changed)
         raw = [self._products(self.turned, row[some], column[some], m)]
         i = np.concatenate([np.zeros(0, np.int64), *(p[0] for p in pairs)])
         j = np.concatenate([np.zeros(0, np.int64), *(p[1] for p in pairs)])
@@ -152,16 +150,13 @@ class Places:
         # Every unknown keeps its diagonal.
         keys.append(np.arange(m, dtype=np.int64) * (m + 1))
         unique = _union(keys[0], np.concatenate(keys[1:]))
-        self.indices = (unique % m).astype(np.uint32)
-        self.column = unique // m
-        counts = np.bincount(self.column, minlength=m)
-        self.indptr = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint64)
-        self.nnz = len(unique)
+        counts = np.bincount(unique // m, minlength=m)
+        start = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint64)
+        #: Of the matrix of the dofs that stay.
+        self.pattern = SymmetricPattern(start, (unique % m).astype(np.uint32), whole.node[free])
         self.plain_target = np.searchsorted(unique, keys[0])
         self.terms = self._terms(raw[0], unique, some)
         self.geometric_terms = self._terms(raw[1], unique, None)
-        self._held: NDArray[np.bool_] | None = None
-        self._masked = np.zeros(0, np.int64)
 
     def _products(self, layout: Layout, i: Ints, j: Ints, m: int) -> tuple[Any, ...]:
         entry, a, b, one, two = layout.expand(i, j)
@@ -182,7 +177,7 @@ class Places:
 
     def reduce(self, values: Floats, turned: Rows, g: Any, geometric_stiffness: Floats) -> Floats:
         """Values of the reduced upper triangle."""
-        out = np.zeros(self.nnz)
+        out = self.pattern.zeros()
         out[self.plain_target] = values[self.plain]
         self.terms.add(out, values, self.turned.numbers(turned.matrix))
         self.geometric_terms.add(out, geometric_stiffness, self.tied.numbers(g))
@@ -215,31 +210,6 @@ class Places:
             tied = self.whole(Rows(self.tied_dofs, g))
             out = out + tied.T @ (half + side) @ tied
         return out.tocsc()
-
-    def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:
-        """Replace rows and columns of held unknowns by a positive diagonal, in place."""
-        if self._held is None or not np.array_equal(constrained, self._held):
-            self._held = constrained.copy()
-            off = (self.indices != self.column) & (
-                constrained[self.indices] | constrained[self.column]
-            )
-            self._masked = np.flatnonzero(off)
-        values[self._masked] = 0.0
-        diagonal = (self.indptr[1:].astype(np.int64) - 1)[constrained]
-        size = np.abs(values[diagonal])
-        values[diagonal] = np.where(size > 0.0, size, 1.0)
-
-    def multiply(self, values: Floats, x: Floats) -> Floats:
-        """Product of the symmetric reduced matrix with a vector."""
-        import scipy.sparse as sp
-
-        m = len(self.free)
-        upper = sp.csc_array(
-            (values, self.indices.astype(np.int32), self.indptr.astype(np.int32)), shape=(m, m)
-        )
-        diagonal = values[self.indptr[1:].astype(np.int64) - 1]
-        out: Floats = upper @ x + upper.T @ x - diagonal * x
-        return out
 
 
 def _union(much: Ints, more: Ints) -> Ints:
