@@ -245,7 +245,8 @@ class Deck:
     """Everything said so far, and every fault found."""
 
     lenient: bool = False
-    element_map: dict[str, str] = field(default_factory=dict)
+    #: Element and plane (or "") by the deck's name of an element.
+    element_map: dict[str, tuple[str, str]] = field(default_factory=dict)
     literal: bool = False
     root: Scope = field(default_factory=Scope)
     parts: dict[str, Scope] = field(default_factory=dict)
@@ -258,6 +259,10 @@ class Deck:
     heading: list[str] = field(default_factory=list)
     damping: tuple[float, float] = (0.0, 0.0)
     controls: dict[str, float] = field(default_factory=dict)
+    #: Element types that were refused: what names their elements is not told again.
+    refused_types: set[str] = field(default_factory=set)
+    #: Origin and axes (rows) of ``*SYSTEM``.
+    system: tuple[Floats, Floats] | None = None
     velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)

@@ -17,25 +17,64 @@ class DeckElement:
     plane: str = ""
     #: What the name says to the letter, where another element stands for it.
     literal: str = ""
+    #: What is told where this element is taken for another formulation.
+    note: str = ""
+    #: Why a section of it must say the plane state.
+    ask: str = ""
 
 
 #: Elements under their own names; plane stress unless the section says otherwise.
 OWN = {name: elements.find(name).cell for name in elements.names()}
 
 #: CalculiX and Abaqus names, without the prefix CPS (plane stress) or CPE (plane strain).
-ALIASES = {
-    "3": "T3",
-    "4": "Q4",
-    "4I": "Q4I",
-    "4R": "Q4I",
-    "6": "T6",
-    "8": "Q8",
-    "8R": "Q8R",
-}
+ALIASES = {"3": "T3", "4": "Q4", "4I": "Q4I", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R"}
 
 #: What reduced integration means to the letter; the element above is the default, see the page
 #: of keywords.
 LITERAL = {"4R": "Q4R"}
+
+#: Formulations that exist against locking, and what stands for them.
+MIXED = {
+    "3H": "T3",
+    "4H": "Q4I",
+    "4IH": "Q4I",
+    "4RH": "Q4I",
+    "6H": "T6",
+    "6M": "T6",
+    "6MH": "T6",
+    "8H": "Q8",
+    "8RH": "Q8R",
+}
+
+#: Shells and membranes, which programs write for a planar part; membranes without the prefix M3D.
+SHELLS = {
+    "S3": "T3",
+    "S3R": "T3",
+    "STRI3": "T3",
+    "S4": "Q4",
+    "S4R": "Q4I",
+    "S4R5": "Q4I",
+    "S4RS": "Q4I",
+    "S6": "T6",
+    "STRI65": "T6",
+    "S8": "Q8",
+    "S8R": "Q8R",
+    "S8R5": "Q8R",
+    "S9R5": "Q9",
+}
+MEMBRANES = {"3": "T3", "4": "Q4", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R", "9": "Q9"}
+
+#: Names that meshio writes for any triangle and quadrilateral.
+MESHIO = {"R3D3": "T3", "CAX4P": "Q4"}
+ASK = (
+    "meshio writes this name for every cell of the shape: say which plane is meant by PLANE=STRESS "
+    "or STRAIN on the section"
+)
+
+
+def _displacement(element: str) -> str:
+    return f"is taken as {element}, which has no pressure or stress of its own"
+
 
 ELEMENTS: dict[str, DeckElement] = {
     **{
@@ -43,27 +82,46 @@ ELEMENTS: dict[str, DeckElement] = {
         for prefix, plane in (("CPS", "stress"), ("CPE", "strain"))
         for suffix, name in ALIASES.items()
     },
-    # FreeCAD and Gmsh write faces of a planar part as shells.
     **{
-        shell: DeckElement(OWN[name], name, "stress", LITERAL.get(shell[1:], ""))
-        for shell, name in {
-            "S3": "T3",
-            "S4": "Q4",
-            "S4R": "Q4I",
-            "S6": "T6",
-            "S8": "Q8",
-            "S8R": "Q8R",
-        }.items()
+        prefix + suffix: DeckElement(OWN[name], name, plane, note=_displacement(name))
+        for prefix, plane in (("CPS", "stress"), ("CPE", "strain"))
+        for suffix, name in MIXED.items()
+        if plane == "strain" or suffix == "6M"
+    },
+    **{
+        shell: DeckElement(
+            OWN[name],
+            name,
+            "stress",
+            "Q4R" if shell.startswith("S4R") else "",
+            "is taken in plane stress: a planar part has no bending",
+        )
+        for shell, name in SHELLS.items()
+    },
+    **{
+        "M3D" + suffix: DeckElement(OWN[name], name, "stress", LITERAL.get(suffix, ""))
+        for suffix, name in MEMBRANES.items()
     },
     **{name: DeckElement(kind, name) for name, kind in OWN.items()},
+    **{name: DeckElement(OWN[own], own, ask=ASK) for name, own in MESHIO.items()},
 }
+
+
+def collapsed(type_: str) -> str:
+    """Name of the triangle that a quadrilateral with a side of one node is."""
+    quadratic = ELEMENTS[type_].kind != "quad4"
+    return {"stress": "CPS", "strain": "CPE", "": "T"}[ELEMENTS[type_].plane] + (
+        "6" if quadratic else "3"
+    )
+
 
 #: Elements that have rotations at their nodes.
 DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 
 #: Line elements that mesh generators write for curves, with their number of nodes; trusses
 #: where a section names them.
-LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3}
+#: Sides of a rigid body (R2D2) name its nodes and its boundary.
+LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,16 +148,46 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
     **dict.fromkeys(
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
-    **dict.fromkeys(("M3D3", "M3D4", "M3D4R", "M3D6", "M3D8", "M3D8R"), _SOLID),
     **dict.fromkeys(
         ("DASHPOT1", "DASHPOT2", "GAPUNI", "DCOUP3D", "ROTARYI"),
         "of dashpots this version has DASHPOTA, of masses MASS, and no gaps",
     ),
-    **dict.fromkeys(
-        ("CPS4H", "CPE4H", "CPE4RH", "CPE4IH", "CPE8H", "CPE8RH", "CPE3H", "CPE6H"),
-        "hybrid elements are not part of this version; use CPE4I or CPE8R",
-    ),
-    **dict.fromkeys(
-        ("CPS6M", "CPE6M"), "modified triangles are not part of this version; use CPS6 or CPE6"
-    ),
 }
+
+#: Families of elements by the beginning of their names, and what to do instead.
+UNSUPPORTED_FAMILIES: dict[str, str] = {
+    "CAX": _AXI,
+    "SAX": _AXI,
+    "MAX": _AXI,
+    "C3D": _SOLID,
+    "SC": _SOLID,
+    "F3D": "fluids are not part of this version",
+    "DC": "heat conduction is not part of this version; give temperatures by *TEMPERATURE",
+    "COH": "cohesive elements are not part of this version; join the parts by *TIE",
+    "CIN": "infinite elements are not part of this version; hold the outer nodes by *BOUNDARY",
+    "CONN": "connectors are not part of this version; use *MPC, *EQUATION or *COUPLING",
+    "CPEG": "generalized plane strain is not part of this version; use CPE*",
+    "GAP": "gaps are not part of this version; use *CONTACT PAIR",
+    "R3D": _SOLID,
+    "RAX": _AXI,
+    "U": "user elements are not part of this version; use CPS* or CPE*",
+}
+#: Ends of names of planar elements with more than displacements at their nodes.
+UNSUPPORTED_FIELDS = {
+    "T": "heat conduction is not part of this version; give temperatures by *TEMPERATURE",
+    "P": "pore pressure is not part of this version; use CPS* or CPE*",
+    "E": "electric potentials are not part of this version; use CPS* or CPE*",
+}
+
+
+def why_unsupported(type_: str) -> str:
+    """Why a known element type cannot be computed, and what to do; empty if it is unknown."""
+    if type_ in UNSUPPORTED_ELEMENTS:
+        return UNSUPPORTED_ELEMENTS[type_]
+    if type_[:3] in ("CPS", "CPE") and type_[-1:] in UNSUPPORTED_FIELDS:
+        return UNSUPPORTED_FIELDS[type_[-1]]
+    for family, why in UNSUPPORTED_FAMILIES.items():
+        rest = type_[len(family) :]
+        if type_.startswith(family) and (rest[:1].isdigit() or family in ("CONN", "CPEG", "COH")):
+            return why
+    return ""

@@ -10,6 +10,7 @@ from corota.io.deck.cards import assembly as assembly
 from corota.io.deck.cards import attachments as attachments
 from corota.io.deck.cards import contact as contact
 from corota.io.deck.cards import dynamic as dynamic
+from corota.io.deck.cards import generate as generate
 from corota.io.deck.cards import lines as lines
 from corota.io.deck.cards import material as material
 from corota.io.deck.cards import mesh as mesh
@@ -56,6 +57,10 @@ def heading(deck: Deck, card: Card) -> None:
     deck.heading += [row.text.strip() for row in card.rows()]
 
 
+def parameter(deck: Deck, card: Card) -> None:
+    """``*PARAMETER``: its values are in the text already."""
+
+
 _PRINT = "NSET ELSET TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
 _FILE = "NSET ELSET FREQUENCY FREQUENCYF TIMEPOINTS"
 _FILE_IGNORED = (
@@ -65,7 +70,18 @@ _FILE_IGNORED = (
 
 KEYWORDS: dict[str, Keyword] = {
     "HEADING": Keyword(heading, ignored="UNITS"),
-    "NODE": Keyword(mesh.node, "NSET", place="model"),
+    "PARAMETER": Keyword(parameter, ignored="DEPENDENT INDEPENDENT"),
+    "NODE": Keyword(mesh.node, "NSET SYSTEM", place="model"),
+    "NGEN": Keyword(generate.ngen, "NSET LINE", place="model"),
+    "NFILL": Keyword(generate.nfill, "NSET BIAS", place="model"),
+    "NCOPY": Keyword(
+        generate.ncopy, "CHANGENUMBER OLDSET NEWSET SHIFT MULTIPLE REFLECT", place="model"
+    ),
+    "ELGEN": Keyword(generate.elgen, "ELSET", place="model"),
+    "ELCOPY": Keyword(
+        generate.elcopy, "ELEMENTSHIFT OLDSET NEWSET SHIFTNODES", "REFLECT", place="model"
+    ),
+    "SYSTEM": Keyword(generate.system, place="model"),
     "ELEMENT": Keyword(mesh.element, "TYPE ELSET", place="model"),
     "NSET": Keyword(mesh.nset, "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"),
     "ELSET": Keyword(mesh.elset, "ELSET GENERATE INSTANCE INTERNAL", place="model"),
@@ -79,11 +95,20 @@ KEYWORDS: dict[str, Keyword] = {
     "SOLIDSECTION": Keyword(
         material.solid_section,
         "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0",
-        "CONTROLS OFFSET",
+        "CONTROLS OFFSET REFNODE",
         place="model",
     ),
     "SHELLSECTION": Keyword(
-        material.shell_section, "ELSET MATERIAL ORIENTATION LOCALSTRAIN", "OFFSET", place="model"
+        material.shell_section,
+        "ELSET MATERIAL ORIENTATION LOCALSTRAIN",
+        "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO",
+        place="model",
+    ),
+    "MEMBRANESECTION": Keyword(
+        material.shell_section,
+        "ELSET MATERIAL ORIENTATION LOCALSTRAIN",
+        "CONTROLS POISSON",
+        place="model",
     ),
     "BEAMSECTION": Keyword(
         lines.beam_section, "ELSET MATERIAL SECTION OFFSET1 OFFSET2", place="model"
@@ -314,7 +339,6 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "MEMBRANESECTION",
             "FLUIDSECTION",
             "USERELEMENT",
             "USERSECTION",
@@ -329,14 +353,7 @@ UNSUPPORTED: dict[str, str] = {
     "CHANGESOLIDSECTION": "sections cannot change between steps",
     "CHANGEMATERIAL": "materials cannot change between steps",
     "DISTRIBUTION": "values given by element are not part of this version",
-    "NCOPY": "give the nodes by *NODE",
-    "NGEN": "give the nodes by *NODE",
-    "NFILL": "give the nodes by *NODE",
-    "ELGEN": "give the elements by *ELEMENT",
-    "ELCOPY": "give the elements by *ELEMENT",
-    "SYSTEM": "give the coordinates in global axes",
     "NORMAL": "planar elements have no normals of their own",
-    "PARAMETER": "write the numbers themselves",
     "VALUESATINFINITY": "it belongs to fluid dynamics",
 }
 
@@ -361,7 +378,10 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
     ("AMPLITUDE", "SMOOTH"): "give more points in the table",
-    ("NODE", "SYSTEM"): "give the coordinates in global axes",
+    ("NFILL", "SINGULAR"): "move the nodes beside the crack tip by *NODE",
+    ("NFILL", "TWOSTEP"): "give BIAS for single intervals",
+    ("NGEN", "SYSTEM"): "give the point of the curve in global axes",
+    ("NCOPY", "POLE"): "give the center of an arc by *NGEN, LINE=C",
     ("SOLIDSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
     ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from corota import _core
 from corota.errors import Diagnostic, FileError, Location
 from corota.io.deck import numerals
+from corota.io.deck.parameters import Parameters
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -193,6 +194,7 @@ class Lexer:
         self.diagnostics: list[Diagnostic] = []
         self._root = path.resolve().parent
         self._bytes = 0
+        self._parameters = Parameters()
 
     def read(self) -> list[Card]:
         """Read everything.
@@ -206,8 +208,15 @@ class Lexer:
             data = self._load(self.path)
         except (OSError, ValueError) as error:
             raise FileError(f"{self.path}: {_why(error)}") from error
-        self.scan(Source(str(self.path), data), [self.path.resolve()])
+        self.scan(self._source(str(self.path), data), [self.path.resolve()])
         return self.cards
+
+    def _source(self, name: str, data: bytes) -> Source:
+        """The text of a file with its parameters put in."""
+        data, faults = self._parameters.applied(data, decode)
+        for number, message in faults:
+            self._error(Location(name, number), f"*PARAMETER: {message}")
+        return Source(name, data)
 
     def scan(self, source: Source, stack: list[Path]) -> None:
         """Cut one file into cards; lines before its first card continue the last one."""
@@ -257,7 +266,26 @@ class Lexer:
             self._include(card, stack)
         else:
             self.cards.append(card)
+            if card.has("INPUT"):
+                self._rows_of_file(card, stack)
         return after, number
+
+    def _rows_of_file(self, card: Card, stack: list[Path]) -> None:
+        """Take the data lines of a card from a file."""
+        name = card.value("INPUT")
+        found = self._opened(card, stack, name)
+        if found is not None:
+            data, _ = found
+            shown = os.path.join(os.path.dirname(card.where.file), name)
+            source = self._source(shown, data)
+            if _next_keyword(source.data, 0) < len(source.data):
+                self._error(
+                    card.at("INPUT"), f"{numerals.shown(name)} has keywords; data lines only", card,
+                    hint="take it in by *INCLUDE, INPUT=",
+                )  # fmt: skip
+                return
+            card.chunks.append(Chunk(source, 0, len(source.data), 1))
+            del card.parameters["INPUT"]
 
     def _card(self, text: str, where: Location) -> Card:
         column = len(text) - len(text.lstrip()) + 1
@@ -306,11 +334,18 @@ class Lexer:
         if not name:
             self._error(card.where, "INPUT=file is missing", card)
             return
+        found = self._opened(card, stack, name)
+        if found is not None:
+            shown = os.path.join(os.path.dirname(card.where.file), name)
+            self.scan(self._source(shown, found[0]), [*stack, found[1]])
+
+    def _opened(self, card: Card, stack: list[Path], name: str) -> tuple[bytes, Path] | None:
+        """Bytes and place of a file that a card names; ``None`` after an error."""
         where = card.at("INPUT")
         path = Path(os.path.normpath(stack[-1].parent / name))
         if len(stack) > MAX_DEPTH:
             self._error(where, f"files are included more than {MAX_DEPTH} deep", card)
-            return
+            return None
         try:
             target = path.resolve()
             if not self.allow_include and not target.is_relative_to(self._root):
@@ -320,17 +355,15 @@ class Lexer:
                     card,
                     hint="allow it with --allow-include (Python: allow_include=True)",
                 )
-                return
+                return None
             if target in stack:
                 names = " -> ".join(p.name for p in [*stack[stack.index(target) :], target])
                 self._error(where, f"the file includes itself: {names}", card)
-                return
-            data = self._load(target)
+                return None
+            return self._load(target), target
         except (OSError, ValueError, RuntimeError) as error:
             self._error(where, f"{numerals.shown(name)} cannot be read: {_why(error)}", card)
-            return
-        shown = os.path.join(os.path.dirname(card.where.file), name)
-        self.scan(Source(shown, data), [*stack, target])
+            return None
 
     def _load(self, path: Path) -> bytes:
         status = path.stat()

@@ -90,7 +90,7 @@ def _open_ends(deck: Deck) -> None:
         deck.error(None, None, "the assembly has no *END ASSEMBLY")
 
 
-def _checked_map(element_map: Mapping[str, str]) -> dict[str, str]:
+def _checked_map(element_map: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     found = {}
     for given, wanted in element_map.items():
         old, new = key(given), key(wanted)
@@ -101,5 +101,5 @@ def _checked_map(element_map: Mapping[str, str]) -> dict[str, str]:
             raise InputError(f"unknown element {wanted!r} for {given}; known: {', '.join(OWN)}")
         if ELEMENTS[old].kind != ELEMENTS[new].kind:
             raise InputError(f"{wanted} cannot replace {given}: it has another shape")
-        found[old] = ELEMENTS[new].element
+        found[old] = (ELEMENTS[new].element, ELEMENTS[new].plane)
     return found

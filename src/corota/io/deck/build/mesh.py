@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic, Location
-from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES
+from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, collapsed
 from corota.io.deck.lexer import key
 from corota.mesh.data import Cells, Mesh
-from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
+from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, REVERSED, classify
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck, ElementBlock, Instance, NodeBlock, Scope
@@ -77,6 +77,10 @@ class Placed:
     turned: Ints
     view: View
     block: ElementBlock
+    #: Name of the element if it is not that of the block.
+    type: str = ""
+    #: Side of a quadrilateral that is one node, -1 for none.
+    side: int = -1
 
 
 class MeshBuilder:
@@ -92,6 +96,8 @@ class MeshBuilder:
         Index into ``types``.
     turned : ndarray of bool, shape (n_cells,)
         Cells given clockwise.
+    side : ndarray of int, shape (n_cells,)
+        Side of the deck's quadrilateral that is one node, -1 for none.
     line_nodes : list of ndarray of int
         Nodes of each line element that is no truss.
     twin : ndarray of int, shape (n_cells,)
@@ -107,6 +113,7 @@ class MeshBuilder:
         self.types: list[str] = []
         self.cell_type: Ints = np.zeros(0, np.int64)
         self.turned = np.zeros(0, bool)
+        self.side: Ints = np.zeros(0, np.int64)
         self.line_nodes: list[Ints] = []
         self.twin: Ints = np.zeros(0, np.int64)
         self._halves: list[tuple[View, Ints, Ints]] = []
@@ -247,7 +254,13 @@ class MeshBuilder:
                         self.line_nodes.append(nodes[at])
                     continue
                 kind = ELEMENTS[block.type].kind
-                good &= self._distinct(block, nodes)
+                if kind in ("quad4", "quad8"):
+                    for part in self._collapsed(view, block, nodes, good, points):
+                        placed.append(part)
+                        n_turned += int(part.turned.sum())
+                    if len(good) and not good.any():
+                        continue
+                good &= self._distinct(block, nodes, good)
                 shape = np.zeros(len(nodes), np.int64)
                 shape[good] = classify(kind, points[nodes[good]])
                 self._bad_shapes(block, shape)
@@ -331,9 +344,60 @@ class MeshBuilder:
         self._more(len(bad), "elements have undefined nodes")
         return np.asarray((nodes >= 0).all(axis=1))
 
-    def _distinct(self, block: ElementBlock, nodes: Ints) -> Ints:
+    def _collapsed(
+        self, view: View, block: ElementBlock, nodes: Ints, good: Ints, points: Floats
+    ) -> list[Placed]:
+        """Triangles of quadrilaterals with a side of one node; they leave ``good``."""
+        quadratic = nodes.shape[1] == 8
+        found = []
+        for side in range(4):
+            twin = (side + 1) % 4
+            same = good & (nodes[:, side] == nodes[:, twin])
+            keep = [i for i in range(4) if i != twin]
+            if quadratic:
+                same &= nodes[:, 4 + side] == nodes[:, side]
+                keep += [4 + i for i in range(4) if i != side]
+            if not same.any():
+                continue
+            corners = np.sort(nodes[:, keep], axis=1)
+            same &= (np.diff(corners, axis=1) > 0).all(axis=1)
+            shape = np.zeros(len(nodes), np.int64)
+            kind = "tri6" if quadratic else "tri3"
+            triangles = nodes[:, _rotated(keep, side, quadratic)]
+            shape[same] = classify(kind, points[triangles[same]])
+            self._bad_shapes(block, np.where(same, shape, GOOD))
+            good &= ~same
+            same &= (shape != FLAT) & (shape != FOLDED)
+            turned = same & (shape == CLOCKWISE)
+            triangles[turned] = triangles[turned][:, REVERSED[kind]]
+            if same.any():
+                found.append(
+                    Placed(
+                        kind,
+                        triangles[same],
+                        block.labels[same],
+                        turned[same],
+                        view,
+                        block,
+                        collapsed(block.type),
+                        side,
+                    )
+                )
+        count = sum(len(part.labels) for part in found)
+        if count:
+            name = "six" if quadratic else "three"
+            self.deck.note(
+                f"{count} {block.type} elements (such as {found[0].labels[0]}) have a side of one "
+                f"node; they become triangles of {name} nodes, which is the same"
+                + (" but for terms inside the element" if quadratic else "")
+            )
+        return found
+
+    def _distinct(self, block: ElementBlock, nodes: Ints, among: Ints | None = None) -> Ints:
         sorted_ = np.sort(nodes, axis=1)
         twice = (np.diff(sorted_, axis=1) == 0) & (sorted_[:, 1:] >= 0)
+        if among is not None:
+            twice &= among[:, None]
         bad = np.flatnonzero(twice.any(axis=1))
         for at in bad[:MAX_LISTED]:
             labels, counts = np.unique(block.nodes[at], return_counts=True)
@@ -352,19 +416,22 @@ class MeshBuilder:
             self._more(len(bad), f"elements are bad: {text}")
 
     def _index_cells(self, order: list[Placed]) -> None:
-        names = [block.block.type for block in order]
+        names = [block.type or block.block.type for block in order]
         self.types = list(dict.fromkeys(names))
         start = 0
         by_view: dict[int, list[tuple[Ints, Ints]]] = {}
         types, turned = [np.zeros(0, np.int64)], [np.zeros(0, bool)]
+        sides = [np.zeros(0, np.int64)]
         for block, name in zip(order, names, strict=True):
             count = len(block.labels)
             rows = np.arange(start, start + count)
             by_view.setdefault(id(block.view), []).append((block.labels, rows))
             types.append(np.full(count, self.types.index(name), np.int64))
             turned.append(np.asarray(block.turned, bool))
+            sides.append(np.full(count, block.side, np.int64))
             start += count
         self.cell_type, self.turned = np.concatenate(types), np.concatenate(turned)
+        self.side = np.concatenate(sides)
         for view in self.views:
             parts = by_view.get(id(view))
             if parts:
@@ -385,6 +452,16 @@ class MeshBuilder:
     def _more(self, count: int, text: str) -> None:
         if count > MAX_LISTED:
             self.deck.error(None, None, f"{count} {text}; the first {MAX_LISTED} are listed")
+
+
+def _rotated(keep: list[int], side: int, quadratic: bool) -> list[int]:
+    """Local nodes of the triangle so that each mid-side node follows its corner."""
+    corners = keep[:3]
+    if not quadratic:
+        return corners
+    # Edge i of the quadrilateral starts at corner i; the twin of the collapsed side lends its own.
+    twin = (side + 1) % 4
+    return corners + [4 + (twin if i == side else i) for i in corners]
 
 
 def views_in(views: list[View], deck: Deck, scope: object) -> list[View]:

@@ -90,9 +90,8 @@ class ModelBuilder:
         model.notes += deck.notes
         return model
 
-    def _tied(self, tie: TieDraft) -> Elements | None:
-        card = tie.card
-        return self.sets.elements(self.at, tie.elset, card.at("ELSET"), card)
+    def _tied(self, tie: TieDraft) -> Ints | None:
+        return self.sets.nodes_of_elements(self.at, tie.elset, tie.card.at("ELSET"), tie.card)
 
     def _surface_name(self, table: Mapping[str, object], name: str) -> str:
         return self.sets.mesh_name(table, self.at, name)
@@ -211,7 +210,16 @@ class ModelBuilder:
                     f"PLANE={draft.plane.upper()} does not fit",
                 )
                 return
-            plane = draft.plane or info.plane or "stress"
+            mapped = self.deck.element_map.get(name)
+            if info.ask and not draft.plane and not mapped:
+                deck.error(
+                    card,
+                    card.where,
+                    f"{name} elements: {info.ask}",
+                    hint=f"or replace them: --element {name}=CPS{info.kind[-1]}",
+                )
+                return
+            plane = draft.plane or info.plane or (mapped[1] if mapped else "") or "stress"
             element = self._element(self.meshes.types[code])
             groups.setdefault((element, plane), []).append(cells[types == code])
         full = self.sets.full_name(self.sets.elsets, view, draft.elset)
@@ -244,7 +252,7 @@ class ModelBuilder:
         mapped = self.deck.element_map.get(type_)
         own, literal = ELEMENTS[type_].element, ELEMENTS[type_].literal
         if mapped or not literal:
-            return mapped or own
+            return mapped[0] if mapped else own
         if self.deck.literal:
             return literal
         self.deck.note(

@@ -50,6 +50,7 @@ class Sets:
     def __init__(self, builder: MeshBuilder, mesh: Mesh) -> None:
         self.deck, self.mesh, self.views = builder.deck, mesh, builder.views
         self.turned, self.line_nodes = builder.turned, builder.line_nodes
+        self.side = builder.side
         self.twin = builder.twin
         self.nsets: dict[str, tuple[View, NamedSet]] = {}
         self.elsets: dict[str, tuple[View, NamedSet]] = {}
@@ -133,7 +134,7 @@ class Sets:
         parts = [_NONE]
         for entry in named.entries:
             if entry.name.startswith("elset:"):
-                found = self._elset_nodes(view, entry.name[6:], entry.where)
+                found = self.nodes_of_elements(view, entry.name[6:], entry.where, None)
                 if found is not None:
                     parts.append(found)
                 continue
@@ -164,8 +165,11 @@ class Sets:
         self.deck.error(None, where, f"no node set named {numerals.shown(name)}", hint=hint)
         return None
 
-    def _elset_nodes(self, view: View, name: str, where: Location) -> Ints | None:
-        found = self.elements(view, name, where, None)
+    def nodes_of_elements(
+        self, view: View, name: str, where: Location, card: Card | None
+    ) -> Ints | None:
+        """Nodes of the elements of a set or a number; ``None`` after an error."""
+        found = self.elements(view, name, where, card)
         if found is None:
             return None
         parts = [self.line_nodes[i] for i in found.lines]
@@ -306,25 +310,41 @@ class Sets:
 
     def faces(self, cells: Ints, face: int, card: Card, where: Location, text: str) -> Ints | None:
         """Edges (n, 2) of one face number (from 0, as the deck counts) of cells."""
-        edges = np.stack([cells, np.full(len(cells), face, np.int64)], axis=1)
+        face_of = np.full(len(cells), face, np.int64)
+        side = self.side[cells]
+        if 0 <= face < 4:
+            # Of a quadrilateral with a side of one node three faces are left.
+            for missing in np.unique(side[side >= 0]).tolist():
+                face_of[side == missing] = _face_of_triangle(face, missing)
+            cells, face_of = cells[face_of >= 0], face_of[face_of >= 0]
+        edges = np.stack([cells, face_of], axis=1)
         offsets = self.mesh.offsets
         for number, block in enumerate(self.mesh.cells):
             inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
             count = len(EDGES[block.kind])
-            if inside.any() and not 0 <= face < count:
+            if (inside & ((face_of < 0) | (face_of >= count))).any():
                 label = self.mesh.cell_labels[cells[inside][0]]
                 self.deck.error(
                     card, where, f"element {label} has {count} faces, not {face + 1}", text=text
                 )
                 return None
             back = inside & self.turned[cells]
-            edges[back, 1] = count - 1 - face
+            edges[back, 1] = count - 1 - face_of[back]
         return edges
 
     def _edges_of_lines(self, lines: Ints) -> Ints:
         """Cell edges on line elements; a line without a cell is left out."""
         edges = self.mesh.edges_between([self.line_nodes[i][:2] for i in lines])
         return np.asarray(edges[edges[:, 0] >= 0])
+
+
+def _face_of_triangle(face: int, missing: int) -> int:
+    """Face of the triangle that a quadrilateral without one side is; -1 for that side."""
+    if face == missing:
+        return -1
+    twin = (missing + 1) % 4
+    corners = [i for i in range(4) if i != twin]
+    return corners.index(missing if face == twin else face)
 
 
 def _only(name: str, names: Iterable[str]) -> str:

@@ -17,14 +17,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.io.deck.build.sets import Elements
     from corota.io.deck.cards.tie import TieDraft
     from corota.io.deck.deck import Deck, Draft
     from corota.mesh.data import Floats, Ints
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
-    FindCells = Callable[[TieDraft], Elements | None]
+    FindCells = Callable[[TieDraft], Ints | None]
     FindName = Callable[[Mapping[str, object], str], str]
 
 
@@ -85,8 +84,7 @@ def _build(
     if tie.surface:
         chosen, weights = _surface(deck, model, name, tie)
     elif tie.elset:
-        found = cells(tie)
-        chosen = None if found is None else _nodes_of(model, found.cells)
+        chosen = cells(tie)
     else:
         assert tie.target is not None
         chosen = find(tie.target)
@@ -148,14 +146,6 @@ def single_node(deck: Deck, find: Find, draft: Draft, model: Model) -> int | Non
         )  # fmt: skip
         return None
     return int(nodes[0])
-
-
-def _nodes_of(model: Model, cells: Ints) -> Ints:
-    parts = [np.zeros(0, np.int64)]
-    for cell in cells.tolist():
-        block, row = model.mesh.locate(cell)
-        parts.append(model.mesh.cells[block].nodes[row])
-    return np.unique(np.concatenate(parts))
 
 
 def _surface(

@@ -161,7 +161,8 @@ def solid_section(deck: Deck, card: Card) -> None:
     thickness: float | None = 1.0
     if rows:
         thickness = deck.real(card, rows[0], 0, "the thickness", 1.0)
-        deck.extra_fields(card, rows[0], 1)
+        if any(rows[0].fields[1:]):
+            deck.note(f"{rows[0].at(1)}: {card.spelled}: only the thickness is used")
         for row in rows[1:]:
             deck.row_error(card, row, 0, "one data line is expected, the thickness")
     if not rows or not rows[0].get(0):
@@ -178,11 +179,11 @@ def solid_section(deck: Deck, card: Card) -> None:
 
 
 def shell_section(deck: Deck, card: Card) -> None:
-    """``*SHELL SECTION``: a planar part written as a shell; the thickness is required."""
+    """``*SHELL SECTION``, ``*MEMBRANE SECTION``: a planar part; the thickness is required."""
     if not any(row.get(0) for row in card.rows()):
         deck.error(card, card.where, "a data line is missing: the thickness")
         return
-    deck.note(f"{card.where}: *SHELL SECTION is read as a plane-stress section")
+    deck.note(f"{card.where}: {card.spelled} is read as a plane-stress section")
     solid_section(deck, card)
 
 

@@ -12,6 +12,7 @@ from corota.errors import Location
 from corota.io.deck import numerals
 from corota.io.deck.cards import attachments as attachments
 from corota.io.deck.cards.contact import profile
+from corota.io.deck.cards.generate import in_global_axes
 from corota.io.deck.deck import (
     Deck,
     ElementBlock,
@@ -23,7 +24,14 @@ from corota.io.deck.deck import (
     int_array,
     nearest,
 )
-from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, UNSUPPORTED_ELEMENTS
+from corota.io.deck.elements import (
+    ALIASES,
+    ELEMENTS,
+    LINE_ELEMENTS,
+    LINES,
+    OWN,
+    why_unsupported,
+)
 from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
 from corota.mesh.data import N_NODES
 
@@ -43,6 +51,8 @@ def node(deck: Deck, card: Card) -> None:
     labels_of_card = []
     for chunk in card.chunks:
         block = _node_block(deck, card, chunk)
+        if card.has("SYSTEM") or deck.system is not None:
+            block.points = in_global_axes(deck, card, block.points)
         if len(block.labels):
             deck.scope.nodes.append(block)
             labels_of_card.append(block.labels)
@@ -117,21 +127,25 @@ def element(deck: Deck, card: Card) -> None:
         size = LINES[type_]
     elif type_ in LINE_ELEMENTS:
         size = LINE_ELEMENTS[type_].n_nodes
-    elif type_ in UNSUPPORTED_ELEMENTS:
+    elif why_unsupported(type_):
+        deck.refused_types.add(type_)
         deck.error(
             card,
             card.at("TYPE"),
-            f"elements of type {name} are not supported: {UNSUPPORTED_ELEMENTS[type_]}",
+            f"elements of type {name} are not supported: {why_unsupported(type_)}",
         )
         return
     else:
+        deck.refused_types.add(type_)
         deck.error(
             card,
             card.at("TYPE"),
             f"unknown element type {numerals.shown(name)}",
-            hint=nearest(type_, [*ELEMENTS, *LINE_ELEMENTS]) or "known: " + ", ".join(ELEMENTS),
+            hint=_known_types(type_),
         )
         return
+    if type_ in ELEMENTS and ELEMENTS[type_].note:
+        deck.note(f"{type_} {ELEMENTS[type_].note}")
     labels_of_card = []
     for chunk in card.chunks:
         table, lines = _element_rows(deck, card, chunk, size)
@@ -143,6 +157,13 @@ def element(deck: Deck, card: Card) -> None:
             labels_of_card.append(block.labels)
     if card.has("ELSET"):
         _extend(deck, deck.scope.elsets, card, "ELSET", labels_of_card)
+
+
+def _known_types(type_: str) -> str:
+    """A type that is spelled alike and means the same, or the known ones."""
+    same = [t for t in (*ELEMENTS, *LINE_ELEMENTS) if t not in OWN and t[:3] == type_[:3]]
+    known = "known: CPS and CPE with " + ", ".join([*ALIASES, *OWN, *LINE_ELEMENTS])
+    return nearest(type_, same, 0.8) or known
 
 
 def _element_rows(deck: Deck, card: Card, chunk: Chunk, size: int) -> tuple[Ints, Ints]:
