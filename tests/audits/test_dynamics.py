@@ -1489,3 +1489,780 @@ def test_path_after_a_preload_by_a_prescribed_support():
         rise = height + frame.U[1, 1]
         now = math.hypot(near, rise)
         np.testing.assert_allclose(frame.factor, 2 * k * (length - now) * rise / now, atol=1e-4)
+
+
+# --- beside other programs, and decks -----------------------------------------------------------
+
+LONG_PLATE = """*NODE, NSET=ALL
+{nodes}
+*ELEMENT, TYPE=CPE8, ELSET=E
+{elements}
+*NSET, NSET=L
+{left}
+*MATERIAL, NAME=M
+*ELASTIC
+210000., .3
+*DENSITY
+7.8e-9
+*SOLID SECTION, ELSET=E, MATERIAL=M{options}
+3.
+*BOUNDARY
+L, 1, 2
+"""
+
+
+def plate_deck(options=""):
+    """Cantilever of 100 x 10 mm and 3 mm, 8 x 2 serendipity cells; numbers row by row."""
+    label, nodes = {}, []
+    for j in range(5):
+        for i in range(17):
+            if not (i % 2 and j % 2):
+                label[i, j] = len(label) + 1
+                nodes.append(f"{label[i, j]}, {100 * i / 16}, {10 * j / 4}")
+    order = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1)]
+    elements = []
+    for j in range(2):
+        for i in range(8):
+            own = [label[2 * i + p, 2 * j + q] for p, q in order]
+            elements.append(", ".join(map(str, [len(elements) + 1, *own])))
+    left = ", ".join(str(label[0, j]) for j in range(5))
+    return LONG_PLATE.format(
+        nodes="\n".join(nodes), elements="\n".join(elements), left=left, options=options
+    )
+
+
+def run_deck(text, folder, name="job"):
+    path = folder / f"{name}.inp"
+    path.write_text(text)
+    return ct.solve(ct.read(path))
+
+
+def test_frequencies_beside_calculix(tmp_path):
+    # CalculiX 2.20, the same deck.
+    results = run_deck(plate_deck() + "*STEP\n*FREQUENCY\n6\n*END STEP\n", tmp_path)
+    calculix = [879.0976, 5269.234, 13650.02, 13882.01, 25299.30, 38868.63]
+    np.testing.assert_allclose(results.modes[-1].factors, calculix, rtol=2e-6)
+
+
+def test_spinning_preload_beside_calculix(tmp_path):
+    # CalculiX 2.20: static NLGEOM step under CENTRIF, then *STEP, PERTURBATION, *FREQUENCY. Its
+    # material is linear in Green-Lagrange strain, so the same is asked for here.
+    spin = "*DLOAD\nE, CENTRIF, 4.e6, 0., 5., 0., 0., 0., 1.\n"
+    text = plate_deck(", LOCAL STRAIN=GREEN LAGRANGE") + (
+        f"*STEP, NLGEOM\n*STATIC\n{spin}*END STEP\n*STEP, PERTURBATION\n*FREQUENCY\n6\n*END STEP\n"
+    )
+    calculix = [890.2048, 5320.437, 13658.29, 13940.71, 25365.30, 38941.18]
+    found = run_deck(text, tmp_path).modes[-1].factors
+    np.testing.assert_allclose(found, calculix, rtol=2e-6)
+
+
+def test_buckling_beside_calculix(tmp_path):
+    # CalculiX 2.20, force on the middle of the free end; it takes the stresses of the linear
+    # response alone, which is the same to the first order of the strain.
+    text = plate_deck(", LOCAL STRAIN=GREEN LAGRANGE") + (
+        "*STEP\n*BUCKLE\n3\n*CLOAD\n43, 1, -1.\n*END STEP\n"
+    )
+    found = run_deck(text, tmp_path).modes[-1].factors
+    np.testing.assert_allclose(found, [14235.46, 120136.7, 298042.2], rtol=5e-3)
+    np.testing.assert_allclose(found[0], 14235.46, rtol=3e-4)
+
+
+def test_first_frequency_under_a_following_tension(tmp_path):
+    # A tension that follows the free end: Beck's frequency equation p^2 + 2 w^2 (1 + ch a cos b) +
+    # p w sh a sin b = 0 with p = -P L^2/EI lowers the first frequency by 6.85 %.
+    pull = "*DLOAD\n8, P2, -400.\n16, P2, -400.\n"
+    text = plate_deck() + (
+        f"*STEP, NLGEOM\n*STATIC\n{pull}*END STEP\n*STEP, PERTURBATION\n*FREQUENCY\n2\n*END STEP\n"
+    )
+
+    def first(p):
+        def value(w):
+            r = math.sqrt(p * p / 4 + w * w)
+            a, b = math.sqrt(r - p / 2), math.sqrt(r + p / 2)
+            even = 2 * w * w * (1 + math.cosh(a) * math.cos(b))
+            return p * p + even + p * w * math.sinh(a) * math.sin(b)
+
+        low, high = 1.0, 5.0
+        for _ in range(100):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if value(low) * value(middle) > 0 else (low, middle)
+        return low
+
+    p = -400.0 * 30 * 100.0**2 / (210000 / 0.91 * 250)
+    found = run_deck(text, tmp_path).modes[-1].factors[0]
+    np.testing.assert_allclose(found / 879.0976, first(p) / first(0.0), rtol=2e-3)
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q8", "T6", "T3"])
+@pytest.mark.parametrize("mass", ["consistent", "lumped"])
+def test_coriolis_forces_of_a_continuum(element, mass):
+    # All real modes give the mass, M = (Phi Phi^T)^-1; C = 2 W M J. Eigenvalues by LAPACK.
+    mesh = ct.mesh.rectangle(100.0, 10.0, nx=5, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    steel = ct.Elastic(E=210000.0, nu=0.3, rho=7.8e-9)
+    model.section("all", element=element, material=steel, thickness=3.0, plane="strain")
+    model.fix("left")
+    spin = 2000.0
+    model.centrifugal(spin, about=(0.0, 5.0))
+    free = np.setdiff1d(np.arange(mesh.n_nodes), mesh.nodes_of("left"))
+    n = 2 * len(free)
+    steps = [
+        ct.Static(),
+        ct.Frequency(modes=n, mass=mass),
+        ct.Frequency(modes=4, mass=mass, complex_modes=True),
+    ]
+    real, found = ct.solve(model, steps).modes
+    phi = real.shapes[:, free, :2].reshape(n, n).T
+    matrix = np.linalg.inv(phi @ phi.T)
+    turn = np.kron(np.eye(len(free)), [[0.0, -1.0], [1.0, 0.0]])
+    half = spin * matrix @ turn
+    modal = phi.T @ (half - half.T) @ phi
+    squares = (2 * np.pi * real.factors) ** 2
+    companion = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(squares), -modal]])
+    roots = np.linalg.eigvals(companion)
+    exact = np.sort(roots.imag[roots.imag > 0])[:4] / (2 * np.pi)
+    np.testing.assert_allclose(found.factors, exact, rtol=1e-8)
+    np.testing.assert_allclose(found.growth, 0.0, atol=1e-6 * exact[0])
+
+
+CHAIN_DECK = """*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 2., 0.
+4, 3., 0.
+*NSET, NSET=TIP
+4
+*ELEMENT, TYPE=SPRINGA, ELSET=S1
+1, 1, 2
+*ELEMENT, TYPE=SPRINGA, ELSET=S2
+2, 2, 3
+*ELEMENT, TYPE=SPRINGA, ELSET=S3
+3, 3, 4
+*SPRING, ELSET=S1
+
+100.
+*SPRING, ELSET=S2
+
+200.
+*SPRING, ELSET=S3
+
+50.
+*ELEMENT, TYPE=MASS, ELSET=M1
+11, 2
+*ELEMENT, TYPE=MASS, ELSET=M2
+12, 3
+*ELEMENT, TYPE=MASS, ELSET=M3
+13, 4
+*MASS, ELSET=M1
+1.
+*MASS, ELSET=M2
+2.
+*MASS, ELSET=M3
+.5
+*ELEMENT, TYPE=DASHPOTA, ELSET=D
+21, 2, 3
+*DASHPOT, ELSET=D
+
+6.
+*AMPLITUDE, NAME=A
+0., 0., 0.25, 1., 0.5, 1., 1., -2.
+2., 0.
+*BOUNDARY
+1, 1, 2
+2, 2
+3, 2
+4, 2
+"""
+COUPLED = 6.0 * np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+def table_rows(text, name):
+    """Tables of a .dat file under headings that hold `name`: time to rows."""
+    found, rows = {}, None
+    for line in text.splitlines():
+        if "time" in line:
+            rows = found.setdefault(float(line.split()[-1]), []) if name in line else None
+        elif line.strip() and rows is not None:
+            try:
+                rows.append([float(word) for word in line.split()])
+            except ValueError:
+                rows = None
+    return found
+
+
+def solve_to_files(text, folder):
+    path = folder / "job.inp"
+    path.write_text(text)
+    results = ct.solve(ct.read(path), observers=[ct.JobFiles(str(folder))])
+    return results, (folder / "job.dat").read_text()
+
+
+def test_deck_of_modal_dynamics_with_a_dashpot(tmp_path):
+    # Forces by a table, dashpot between two particles, table of displacements in .dat.
+    steps = (
+        "*STEP\n*FREQUENCY\n3\n*END STEP\n"
+        "*STEP\n*MODAL DYNAMIC\n0.05, 1.5\n*CLOAD, AMPLITUDE=A\n4, 1, 3.\n"
+        "*NODE PRINT, NSET=TIP\nU\n*END STEP\n"
+    )
+    results, text = solve_to_files(CHAIN_DECK + steps, tmp_path)
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    corners = [0.0, 0.25, 0.5, 1.0, 2.0]
+
+    def load(t):
+        return np.array([0.0, 0.0, 3.0 * np.interp(t, corners, [0.0, 1.0, 1.0, -2.0, 0.0])])
+
+    exact = linear_motion(k, m, COUPLED, load, 1.5, corners)
+    np.testing.assert_allclose(results.frames[-1].U[1:, 0], exact[:3], rtol=1e-7)
+    rows = table_rows(text, "TIP")
+    np.testing.assert_allclose(rows[max(rows)][-1][1], exact[2], rtol=1e-5)
+
+
+def test_deck_of_steady_state_with_two_load_cases(tmp_path):
+    # LOAD CASE=2 acts a quarter of a period ahead; the dashpot couples the modes.
+    steps = (
+        "*STEP\n*FREQUENCY\n3\n*END STEP\n"
+        "*STEP\n*STEADY STATE DYNAMICS\n0.5, 2.5, 5\n"
+        "*CLOAD, LOAD CASE=1\n2, 1, 2.\n*CLOAD, LOAD CASE=2\n4, 1, -1.\n*END STEP\n"
+    )
+    results, _ = solve_to_files(CHAIN_DECK + steps, tmp_path)
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    frames = [f for f in results.frames if f.step == 2]
+    assert len(frames) == 13
+    for frame in frames:
+        w = 2 * math.pi * frame.time
+        exact = np.linalg.solve(k - w**2 * m + 1j * w * COUPLED, [2.0, 0.0, -1j])
+        np.testing.assert_allclose(frame.U[1:, 0], exact.real, atol=1e-7 * abs(exact).max())
+        np.testing.assert_allclose(
+            frame.V[1:, 0], -w * exact.imag, atol=1e-7 * w * abs(exact).max()
+        )
+
+
+def test_deck_of_complex_frequencies(tmp_path):
+    # Eigenvalues of the quadratic problem in the result and in the table.
+    steps = "*STEP\n*FREQUENCY\n3\n*END STEP\n*STEP\n*COMPLEX FREQUENCY, CORIOLIS\n3\n*END STEP\n"
+    results, text = solve_to_files(CHAIN_DECK + steps, tmp_path)
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    companion = np.block(
+        [[np.zeros((3, 3)), np.eye(3)], [-np.linalg.solve(m, k), -np.linalg.solve(m, COUPLED)]]
+    )
+    roots = np.linalg.eigvals(companion)
+    roots = roots[roots.imag > 0]
+    roots = roots[np.argsort(roots.imag)]
+    found = results.modes[-1]
+    np.testing.assert_allclose(2 * np.pi * found.factors, roots.imag, rtol=1e-8)
+    np.testing.assert_allclose(found.growth, roots.real, rtol=1e-8)
+    rows = [line.split() for line in text.splitlines() if line.split()[:1] == ["1"]]
+    assert any(
+        len(row) == 4
+        and math.isclose(float(row[1]), roots[0].imag, rel_tol=1e-6)
+        and math.isclose(abs(float(row[3])), abs(roots[0].real), rel_tol=1e-6)
+        for row in rows
+    )
+
+
+def test_deck_of_direct_dynamics_and_its_histories(tmp_path):
+    # Trapezoidal rule (ALPHA=0) with a dashpot and a table: displacement in .dat,
+    # dissipation of the dashpot and kinetic energy in .csv.
+    steps = (
+        "*STEP, INC=10000\n*DYNAMIC, DIRECT, ALPHA=0.\n0.0025, 1.5\n*CLOAD, AMPLITUDE=A\n"
+        "4, 1, 3.\n*NODE PRINT, NSET=TIP, FREQUENCY=100\nU\n*END STEP\n"
+    )
+    _, text = solve_to_files(CHAIN_DECK + steps, tmp_path)
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    corners = [0.0, 0.25, 0.5, 1.0, 2.0]
+
+    def rate(t, z):
+        force = np.array([0.0, 0.0, 3.0 * np.interp(t, corners, [0.0, 1.0, 1.0, -2.0, 0.0])])
+        v = z[3:6]
+        return np.r_[
+            v, np.linalg.solve(m, force - k @ z[:3] - COUPLED @ v), v @ COUPLED @ v, force @ v
+        ]
+
+    exact = integrate(rate, np.zeros(8), 1.5, corners)
+    rows = table_rows(text, "TIP")
+    np.testing.assert_allclose(rows[max(rows)][-1][1], exact[2], rtol=1e-3)
+    lines = (tmp_path / "job.csv").read_text().splitlines()
+    names = lines[0].split(",")
+    last = dict(zip(names, lines[-1].split(","), strict=True))
+    np.testing.assert_allclose(float(last["ALLVD"]), exact[6], rtol=1e-3)
+    np.testing.assert_allclose(float(last["ALLWK"]), exact[7], rtol=1e-3)
+    np.testing.assert_allclose(float(last["ALLKE"]), 0.5 * exact[3:6] @ m @ exact[3:6], rtol=2e-3)
+
+
+# --- bodies in motion ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+@pytest.mark.parametrize("element", ["Q4", "Q8", "OPT", "Q4D"])
+def test_rayleigh_damping_of_a_spinning_flight(element, scheme):
+    # Damping per mass alone slows flight and spin by exp(-alpha t); damping per stiffness does not
+    # act on a rigid motion. A stiff plate, large spin.
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=1e7, nu=0.3, rho=2.0), thickness=0.5
+    )
+    model.velocity(x=1.0, y=-2.0, spin=3.0, about=(1.0, 0.5))
+    alpha, end = 0.8, 1.0
+    step = ct.Dynamic(period=end, increments=100, scheme=scheme, rayleigh=(alpha, 1e-3))
+    scalars = ct.solve(model, step, fields=False).frames[-1]
+    left = math.exp(-alpha * end)
+    flown = (1 - left) / alpha
+    middle = scalars.U[[int(i) for i in np.lexsort(mesh.points.T)[[0, -1]]]].mean(axis=0)
+    np.testing.assert_allclose(middle, [flown, -2.0 * flown], rtol=2e-3)
+    d = (mesh.points + scalars.U)[np.lexsort(mesh.points.T)[[0, -1]]]
+    angle = math.atan2(*(d[1] - d[0])[::-1]) - math.atan2(1.0, 2.0)
+    np.testing.assert_allclose(angle, 3.0 * flown, rtol=2e-3)
+
+
+@pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4I", "Q8", "Q9", "OPT", "Q4D"])
+@pytest.mark.parametrize("mass", ["consistent", "lumped"])
+def test_what_rests_under_gravity_stays_at_rest(element, mass):
+    # A static step under gravity, with large deflection, a rigid end that carries a particle with
+    # its weight, then motion under the same loads: nothing moves.
+    mesh = ct.mesh.rectangle(10.0, 1.0, nx=6, ny=1, cell=CELL[element])
+    handle = ct.mesh.add_node(mesh, 11.0, 0.5)
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=1e4, nu=0.3, rho=0.5), thickness=2.0
+    )
+    model.fix("left", rotation=True if element in ("OPT", "Q4D") else None)
+    model.rigid("right", handle)
+    model.point_mass([handle], 0.5, inertia=0.2)
+    model.gravity(y=-9.81)
+    model.force([handle], y=-0.5 * 9.81)
+    steps = [
+        ct.Static(increments=3),
+        ct.Dynamic(period=2.0, increments=5, mass=mass, scheme="newmark"),
+    ]
+    frames = ct.solve(model, steps, fields=False).frames
+    still = [f for f in frames if f.step == 1][-1]
+    assert abs(still.U[:, 1]).max() > 0.5
+    for frame in frames:
+        if frame.step == 2:
+            np.testing.assert_allclose(frame.U, still.U, atol=1e-6)
+            assert abs(frame.V).max() < 1e-5
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_compound_pendulum_of_a_rigid_plate(scheme):
+    # A plate of cells that are all rigid hangs on one corner: I phi'' = -m g times the arm,
+    # I = m (a^2 + b^2)/3 about the corner, with consistent mass exactly. Half a turn and more.
+    a, b, g, end = 1.2, 0.5, 9.81, 1.1
+    mesh = ct.mesh.rectangle(a, b, nx=2, ny=1)
+    pivot = ct.mesh.add_node(mesh, 0.0, 0.0)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4", material=ct.Elastic(E=1e3, nu=0.3, rho=3.0), thickness=0.7)
+    model.rigid(np.arange(pivot), pivot)
+    model.fix([pivot])
+    model.gravity(y=-g)
+
+    def rate(_, z):
+        arm = 0.5 * (a * math.cos(z[0]) - b * math.sin(z[0]))
+        return [z[1], -g * arm / ((a**2 + b**2) / 3)]
+
+    exact = integrate(rate, [0.0, 0.0], end)
+
+    def run(n):
+        step = ct.Dynamic(period=end, increments=n, scheme=scheme)
+        frame = ct.solve(model, step, fields=False).frames[-1]
+        return np.array([frame.UR[pivot], frame.V[pivot, 2]])
+
+    np.testing.assert_allclose(extrapolated(run, 50), exact, rtol=0, atol=2e-3)
+
+
+def test_wave_in_a_bar_struck_by_its_support():
+    # The left end starts at the speed v: a front of stress -E v/c runs at c.
+    # At the stable increment central differences with lumped mass carry it exactly; the work is
+    # that of the force A E v/c.
+    n, h, c, v, area = 40, 0.05, 10.0, 0.02, 0.3
+    young, rho = 500.0, 5.0
+    points = [[i * h, 0.0] for i in range(n + 1)]
+    model = network(points, [[i, i + 1] for i in range(n)])
+    model.truss(list(range(n)), material=ct.Elastic(E=young, rho=rho), area=area)
+    model.fix(list(range(n + 1)), x=None)
+    table(model, "strike", [0.0, 1.0], [0.0, v])
+    model.fix([0], x=1.0, y=None, amplitude="strike")
+    step = ct.Dynamic(nlgeom=False, period=0.1, increments=20 * 5, scheme="central_difference")
+    frame = ct.solve(model, step).frames[-1]
+    front = c * 0.1
+    exact = np.maximum(v * (0.1 - np.arange(n + 1) * h / c), 0.0)
+    np.testing.assert_allclose(frame.U[:, 0], exact, atol=0.03 * v * 0.1)
+    np.testing.assert_allclose(frame.scalars["ALLWK"], area * young * v / c * v * 0.1, rtol=3e-2)
+    np.testing.assert_allclose(frame.scalars["ALLKE"], 0.5 * rho * area * front * v**2, rtol=6e-2)
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_vibration_seen_from_a_frame_at_constant_velocity(scheme):
+    # A beam whose support moves steadily, started with that velocity, beside one at rest: relative
+    # displacements, stresses and reactions are the same, also with Rayleigh damping per stiffness.
+    def run(speed):
+        mesh = ct.mesh.rectangle(4.0, 0.5, nx=4, ny=1)
+        model = ct.Model(mesh)
+        model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=1.0))
+        table(model, "go", [0.0, 10.0], [0.0, 10.0])
+        model.fix("left", x=speed[0], y=speed[1], amplitude="go")
+        if any(speed):
+            model.velocity(x=speed[0], y=speed[1])
+        model.traction("right", y=5.0)
+        step = ct.Dynamic(period=1.5, increments=60, scheme=scheme, rayleigh=(0.0, 1e-3))
+        frame = ct.solve(model, step).frames[-1]
+        relative = frame.U - np.asarray(speed) * 1.5
+        reaction = frame.RF[mesh.nodes_of("left"), :2]
+        return relative, reaction, frame.fields[0].values["S"]
+
+    still, moving = run((0.0, 0.0)), run((3.0, -7.0))
+    for one, other in zip(still, moving, strict=True):
+        np.testing.assert_allclose(other, one, atol=1e-7 * abs(one).max())
+
+
+@pytest.mark.parametrize("scheme", [*IMPLICIT, "central_difference"])
+def test_support_that_goes_on_at_its_speed_in_the_next_step(scheme):
+    # Two dynamic steps, each with its own table by step time: the speed of the support is the same
+    # in both, so there is no pulse where they meet. m x'' = k (s - x) as if there were one step.
+    k, m, v = 30.0, 2.0, 0.7
+    w, end = math.sqrt(k / m), 1.6
+
+    def run(n):
+        model = network([[0.0, 0.0], [1.0, 0.0]], [[0, 1]])
+        bars(model, [0], k, 1.0)
+        model.point_mass([0], 1.0)
+        model.point_mass([1], m)
+        model.fix([1], x=None)
+        model.fix([0], x=None)
+        model.velocity([0], x=v)
+        table(model, "one", [0.0, 0.8], [0.0, 0.8 * v])
+        table(model, "two", [0.0, 0.8], [0.8 * v, 1.6 * v])
+        steps = [
+            ct.Dynamic(
+                period=0.8,
+                increments=n,
+                scheme=scheme,
+                supports=[Fixed([0], 0, 1.0, amplitude=name)],
+            )
+            for name in ("one", "two")
+        ]
+        results = ct.solve(model, steps)
+        last = results.frames[-1]
+        pulse = next(f.RF[0, 0] for f in results.frames if f.step == 2)
+        return np.array([last.U[1, 0], last.V[1, 0], last.RF[0, 0], pulse])
+
+    exact = [
+        v * end - v / w * math.sin(w * end),
+        v - v * math.cos(w * end),
+        k * v / w * math.sin(w * end),
+    ]
+    np.testing.assert_allclose(extrapolated(run, 60)[:3], exact, rtol=0, atol=2e-3)
+    t = 0.8 * (1 + 1 / 60)
+    np.testing.assert_allclose(run(60)[3], k * v / w * math.sin(w * t), rtol=0, atol=0.1)
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_work_of_a_ground_dashpot_on_a_driven_rotation(scheme):
+    # A disc turned at constant rate against a rotational dashpot: moment c W, dissipation c W^2 t.
+    model = network([[0.0, 0.0], [1.0, 0.0]], [[0, 1]])
+    model.beam([0], material=ct.Elastic(E=1e-6, rho=LIGHT), area=LIGHT, inertia=LIGHT)
+    model.point_mass([0], 1.0, inertia=0.7)
+    model.dashpot(0, rotation=0.4)
+    model.fix([1], rotation=True)
+    table(model, "turn", [0.0, 10.0], [0.0, 30.0])
+    model.fix([0], rotation=1.0, amplitude="turn")
+    model.velocity([0], spin=3.0)
+    frame = ct.solve(model, ct.Dynamic(period=5.0, increments=200, scheme=scheme)).frames[-1]
+    # Energy-momentum works on 2 tan(dphi/2) for dphi: second order.
+    close = {"rtol": 1e-3 if scheme == "energy_momentum" else 1e-6}
+    np.testing.assert_allclose(frame.UR[0], 15.0, rtol=1e-12)
+    np.testing.assert_allclose(frame.RF[0, 2], 1.2, **close)
+    np.testing.assert_allclose(frame.scalars["ALLVD"], 0.4 * 9.0 * 5.0, **close)
+    np.testing.assert_allclose(frame.scalars["ALLWK"], 0.4 * 9.0 * 5.0, **close)
+
+
+def test_equation_with_a_right_hand_side_in_motion():
+    # x1 - x2 = 0.3 holds at the start of the analysis: in the static step before it stretches the
+    # springs, the motion after it (force on both) keeps the distance.
+    k, m = [40.0, 60.0], [1.0, 2.0]
+    model = network([[0, 0], [1, 0], [2, 0], [3, 0]], [[0, 1], [2, 3]])
+    bars(model, [0], k[0], 1.0)
+    bars(model, [1], k[1], 1.0)
+    for i in (1, 2):
+        model.point_mass([i], m[i - 1])
+        model.fix([i], x=None)
+    model.fix([0, 3])
+    model.equation((1, "x", 1.0), (2, "x", -1.0), rhs=0.3)
+    push = 2.0
+    second = ct.Dynamic(period=0.9, increments=300, loads=[NodalForce([2], 0, push)])
+    frames = ct.solve(model, [ct.Static(), second], fields=False).frames
+    rest = -k[0] * 0.3 / sum(k)
+    still = [f for f in frames if f.step == 1][-1]
+    np.testing.assert_allclose(still.U[2, 0], rest, rtol=1e-9)
+    w = math.sqrt(sum(k) / sum(m))
+    exact = rest + push / sum(k) * (1 - math.cos(w * 0.9))
+    np.testing.assert_allclose(frames[-1].U[2, 0], exact, rtol=1e-3)
+    np.testing.assert_allclose(frames[-1].U[1, 0] - frames[-1].U[2, 0], 0.3, rtol=1e-12)
+
+
+# --- sequences of procedures and constraints in modes -------------------------------------------
+
+
+@pytest.mark.parametrize("between", ["frequency"])
+@pytest.mark.parametrize("scheme", ["newmark", "energy_momentum", "central_difference"])
+def test_linear_procedures_between_do_not_end_a_motion(between, scheme):
+    # x = sin(w t)/w v goes on through a frequency or harmonic step: only static steps
+    # end a motion, and a harmonic force is no load of a transient.
+    k, m = 50.0, 2.0
+    model = chain([k], [m])
+    model.velocity([1], x=1.0)
+    linear = {
+        "frequency": [ct.Frequency(modes=1)],
+        "steady": [
+            ct.Frequency(modes=1),
+            ct.SteadyState(lowest=0.1, highest=0.2, points=2, loads=[NodalForce([1], 0, 1.0)]),
+        ],
+    }[between]
+    motion = [ct.Dynamic(period=0.4, increments=200, scheme=scheme) for _ in range(2)]
+    steps = [motion[0], *linear, motion[1]]
+    last = ct.solve(model, steps, fields=False).frames[-1]
+    w = math.sqrt(k / m)
+    exact = [math.sin(w * 0.8) / w, math.cos(w * 0.8)]
+    np.testing.assert_allclose([last.U[1, 0], last.V[1, 0]], exact, atol=1e-4)
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_direct_integration_goes_on_from_modal_dynamics(scheme):
+    # Modal motion under a ramp of force for half a second, then direct integration without it.
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    model = chain(STIFFNESS, MASSES)
+    steps = [
+        ct.Frequency(modes=3),
+        ct.ModalDynamic(period=0.5, increments=20, loads=[NodalForce([3], 0, 0.2)]),
+        ct.Dynamic(period=0.5, increments=400, scheme=scheme, new_loads=True),
+    ]
+    last = ct.solve(model, steps, fields=False).frames[-1]
+
+    def load(t):
+        return np.array([0.0, 0.0, 0.2 * (t < 0.5)])
+
+    exact = linear_motion(k, m, np.zeros((3, 3)), load, 1.0, [0.5])
+    np.testing.assert_allclose(last.U[1:, 0], exact[:3], atol=1e-3 * abs(exact[:3]).max())
+    np.testing.assert_allclose(last.V[1:, 0], exact[3:], atol=5e-3 * abs(exact[3:]).max())
+
+
+@pytest.mark.parametrize("second", [*IMPLICIT, "central_difference"])
+@pytest.mark.parametrize("first", [*IMPLICIT, "central_difference"])
+def test_schemes_follow_each_other(first, second):
+    # A spring pendulum in large motion changes its scheme half way.
+    k, length, m, g = 50.0, 1.0, 2.0, 9.81
+
+    def rate(_, z):
+        r = np.hypot(z[0], z[1])
+        return [z[2], z[3], *(-k * (r - length) * z[:2] / r / m + np.array([0.0, -g]))]
+
+    exact = integrate(rate, [0.0, -length, 4.0, 0.0], 1.0)
+    model = network([[0.0, 0.0], [0.0, -length]], [[0, 1]])
+    bars(model, [0], k, length)
+    model.point_mass([1], m)
+    model.fix([0])
+    model.force([1], y=-m * g)
+    model.velocity([1], x=4.0)
+    steps = [ct.Dynamic(period=0.5, increments=100, scheme=s) for s in (first, second)]
+    frame = ct.solve(model, steps, fields=False).frames[-1]
+    found = np.r_[frame.U[1] + [0.0, -length], frame.V[1, :2]]
+    np.testing.assert_allclose(found, exact, rtol=0, atol=3e-3)
+
+
+@pytest.mark.parametrize("turned", [0.0, 1.1])
+def test_frequency_of_a_rigid_pendulum_about_a_turned_state(turned):
+    # Dead weights at the particles: w^2 I = g times the height of the pivot over the center, as it
+    # stands; a torsion spring on the pivot holds the turned body in equilibrium.
+    model, x, m = wheel(masses=(1.0, 2.0, 0.5))
+    points, cells = model.mesh.points, list(model.mesh.cells)
+    cells.append(Cells("point1", np.array([[0]]), np.array([9])))
+    model = ct.Model(Mesh(points, cells, model.mesh.node_labels))
+    bars(model, [0, 1], 1.0, 1.0)
+    g, kt = 9.81, 60.0
+    for i in range(3):
+        model.point_mass([i + 1], m[i])
+    model.rigid([1, 2, 3], 0)
+    model.spring([2], kt, "theta")
+    model.fix([0])
+
+    def at(phi):
+        return x @ [[math.cos(phi), math.sin(phi)], [-math.sin(phi), math.cos(phi)]]
+
+    moment = kt * turned + g * m @ at(turned)[:, 0]
+    loads = [NodalForce([i + 1], 1, -m[i] * g) for i in range(3)]
+    loads.append(NodalForce([0], 2, moment))
+    results = ct.solve(model, [ct.Static(increments=10, loads=loads), ct.Frequency(modes=1)])
+    np.testing.assert_allclose(results.frames[-1].UR[0], turned, atol=1e-8)
+    square = (kt - g * m @ at(turned)[:, 1]) / (m @ (x**2).sum(axis=1))
+    found = 2 * np.pi * results.modes[-1].factors[0]
+    np.testing.assert_allclose(found, math.sqrt(square), rtol=1e-6)
+
+
+def test_harmonic_turning_of_a_rigid_base():
+    # A rigid arm turns by theta exp(i w t) about its pivot; a particle hangs on its end by a spring
+    # across: m x'' = k (a theta - x). The moment on the pivot is k a times the
+    # lengthening of the spring.
+    a, k, m, theta = 0.8, 40.0, 1.5, 0.01
+    model = network([[0, 0], [0, a], [1, a], [0, 0.5 * a]], [[1, 2], [1, 3]])
+    bars(model, [0], k, 1.0)
+    bars(model, [1], 1.0, 1.0)
+    model.rigid([1, 3], 0)
+    model.point_mass([2], m)
+    model.fix([0])
+    model.fix([2], x=None)
+    table_free = ct.Frequency(modes=1, supports=[Fixed([0], 2)])
+    steady = ct.SteadyState(
+        lowest=0.2,
+        highest=0.7,
+        points=5,
+        supports=[Fixed([0], 2, theta)],
+    )
+    frames = [f for f in ct.solve(model, [table_free, steady]).frames if f.step == 2]
+    for frame in frames:
+        w = 2 * math.pi * frame.time
+        # The arm points up: a positive turn moves its end to the left.
+        exact = -k * a * theta / (k - m * w**2)
+        np.testing.assert_allclose(frame.U[2, 0], exact, rtol=1e-6)
+        np.testing.assert_allclose(frame.RF[0, 2], k * a * (a * theta + exact), rtol=1e-5)
+
+
+def test_buckling_by_heating_and_by_moving_a_support():
+    # A clamped-clamped beam buckles at the strain 4 pi^2 I/(A L^2): by alpha dT, or by a support
+    # that moves by strain times length.
+    n, length, young, inertia, area, alpha = 40, 2.0, 2e5, 1e-6, 1e-2, 1.2e-5
+    strain = 4 * math.pi**2 * inertia / (area * length**2)
+    for heated in (True, False):
+        points = [[i * length / n, 0.0] for i in range(n + 1)]
+        model = network(points, [[i, i + 1] for i in range(n)])
+        model.beam(
+            list(range(n)),
+            material=ct.Elastic(E=young, expansion=alpha),
+            area=area,
+            inertia=inertia,
+        )
+        if heated:
+            model.fix([0, n], rotation=True)
+            model.temperature(10.0)
+            unit = alpha * 10.0
+        else:
+            model.fix([0], rotation=True)
+            model.fix([n], x=-1e-5, rotation=True)
+            unit = 1e-5 / length
+        found = ct.solve(model, ct.Buckle(modes=1)).modes[-1]
+        np.testing.assert_allclose(found.factors[0] * unit, strain, rtol=8e-3)
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_sudden_heating_of_a_bar(scheme):
+    # k = EA/L and a particle: heated at once, x = alpha dT L (1 - cos w t); the account is closed.
+    k, m, alpha, heat, length = 50.0, 2.0, 1e-3, 30.0, 1.0
+    model = network([[0.0, 0.0], [length, 0.0]], [[0, 1]])
+    model.truss([0], material=ct.Elastic(E=k * length, rho=LIGHT, expansion=alpha), area=1.0)
+    model.point_mass([1], m)
+    model.fix([0])
+    model.fix([1], x=None)
+    model.temperature(heat)
+    frame = ct.solve(model, ct.Dynamic(period=1.1, increments=400, scheme=scheme)).frames[-1]
+    w = math.sqrt(k / m)
+    np.testing.assert_allclose(
+        frame.U[1, 0], alpha * heat * length * (1 - math.cos(w * 1.1)), rtol=3e-3
+    )
+    assert abs(frame.scalars["energy balance error"]) < 5e-3
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_automatic_increments_see_a_short_pulse(scheme):
+    # A pulse of 5 ms within a second, increments free: the particle leaves with the impulse.
+    m, force = 2.0, 400.0
+    model = network([[0.0, 0.0], [1.0, 0.0]], [[0, 1]])
+    bars(model, [0], 1e-9, 1.0)
+    model.fix([1])
+    model.point_mass([0], m)
+    table(model, "pulse", [0.0, 0.5, 0.502, 0.505, 0.507], [0.0, 0.0, 1.0, 1.0, 0.0])
+    model.force([0], x=0.0, y=force, amplitude="pulse")
+    results = ct.solve(model, ct.Dynamic(period=1.0, scheme=scheme), fields=False)
+    impulse = force * 0.005
+    np.testing.assert_allclose(results.frames[-1].V[0, 1], impulse / m, rtol=1e-2)
+    np.testing.assert_allclose(results.frames[-1].U[0, 1], impulse / m * 0.4965, rtol=1e-2)
+
+
+def test_mode_of_a_mass_on_a_distributing_coupling():
+    # The reference node with mass M follows the mean of two particles on springs k1, k2, at its
+    # middle: u_r = (u1 + u2)/2 across the line.
+    k, m, heavy = [30.0, 70.0], [1.0, 1.5], 2.5
+    model = network([[0, 0], [2, 0], [0, 1], [2, 1], [1, 0]], [[0, 2], [1, 3], [0, 1]])
+    bars(model, [0], k[0], 1.0)
+    bars(model, [1], k[1], 1.0)
+    bars(model, [2], 10.0, 2.0)
+    model.point_mass([0], m[0])
+    model.point_mass([1], m[1])
+    model.point_mass([4], heavy)
+    model.couple([0, 1], 4, kind="distributing")
+    model.fix([0, 1], y=None)
+    model.fix([2, 3])
+    found = ct.solve(model, ct.Frequency(modes=2)).modes[-1]
+    mass = np.diag(m) + heavy / 4 * np.ones((2, 2))
+    exact = np.sqrt(linalg.eigvalsh(np.diag(k), mass))
+    np.testing.assert_allclose(2 * np.pi * found.factors, exact, rtol=1e-7)
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+def test_rigid_rotor_on_springs_whirls_by_its_unbalance(scheme):
+    # A disc of mass m and inertia I on springs k has an off-center particle mu at r and spins
+    # freely from W: Lagrange's equations of x, y and phi.
+    k, m, inertia, mu, r, spin, end = 300.0, 4.0, 0.5, 0.3, 0.4, 12.0, 1.2
+
+    def rate(_, z):
+        x, v = z[:3], z[3:]
+        c, s = math.cos(x[2]), math.sin(x[2])
+        matrix = np.array(
+            [
+                [m + mu, 0.0, -mu * r * s],
+                [0.0, m + mu, mu * r * c],
+                [-mu * r * s, mu * r * c, inertia + mu * r**2],
+            ]
+        )
+        w2 = v[2] ** 2
+        force = np.array([-k * x[0] + mu * r * w2 * c, -k * x[1] + mu * r * w2 * s, 0.0])
+        return np.r_[v, np.linalg.solve(matrix, force)]
+
+    exact = integrate(rate, [0.0, 0.0, 0.0, 0.0, 0.0, spin], end)
+    points = [[0.0, 0.0], [r, 0.0], [9.0, 9.0]]
+    model = network(points, [[1, 2]], [0, 0])
+    bars(model, [0], LIGHT, 10.0)
+    model.spring([1], k, "x")
+    model.spring([2], k, "y")
+    model.fix([2])
+    model.point_mass([0], m, inertia=inertia)
+    model.point_mass([1], mu)
+    model.rigid([1], 0)
+    model.velocity([0, 1], spin=spin)
+
+    def run(n):
+        step = ct.Dynamic(period=end, increments=n, scheme=scheme)
+        frame = ct.solve(model, step, fields=False).frames[-1]
+        return np.r_[frame.U[0], frame.UR[0], frame.V[0]]
+
+    found = extrapolated(run, 60)
+    np.testing.assert_allclose(found[:3], exact[:3], rtol=0, atol=1e-2)
+    np.testing.assert_allclose(found[3:], exact[3:], rtol=0, atol=1e-1)
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q8", "Q4D"])
+def test_tie_of_unlike_meshes_in_modes(element):
+    # Two halves of a bar (roller supports, nu = 0) tied at unlike cells: c/(4 L) for one fixed end.
+    kind = CELL[element]
+    left = ct.mesh.rectangle(1.0, 0.5, nx=16, ny=2, cell=kind)
+    right = ct.mesh.rectangle(1.0, 0.5, nx=18, ny=3, cell=kind, origin=(1.0, 0.0))
+    mesh = ct.mesh.assembly(a=left, b=right)
+    model = ct.Model(mesh)
+    rubber = ct.Elastic(E=400.0, nu=0.0, rho=4.0)
+    model.section(np.arange(mesh.n_cells), element=element, material=rubber, thickness=0.5)
+    model.tie("b.left", "a.right")
+    model.fix("a.left", rotation=True if element == "Q4D" else None)
+    for side in ("a.bottom", "b.bottom"):
+        model.fix(side, x=None)
+    found = ct.solve(model, ct.Frequency(modes=3)).modes[-1]
+    along = [f for f, s in zip(found.factors, found.shapes, strict=True) if np.ptp(s[:, 0]) > 0.5]
+    assert any(math.isclose(f, 10.0 / 8.0, rel_tol=2e-3) for f in along)
