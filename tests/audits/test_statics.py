@@ -1528,3 +1528,826 @@ def test_empty_sets_are_refused(what: str) -> None:
 
     with pytest.raises(ct.CorotaError):
         build()
+
+
+# --- Trusses, beams, springs ---
+
+
+def line_mesh(points: np.ndarray, pairs: list[tuple[int, int]]) -> Any:
+    from corota.mesh import Mesh
+
+    cells = [Cells("line2", np.array(pairs), np.arange(1, len(pairs) + 1))]
+    return Mesh(np.asarray(points, float), cells, np.arange(1, len(points) + 1))
+
+
+def test_prestressed_string_with_a_large_load(tmp_path: Path) -> None:
+    """Two bars with initial stress, a side load, heat: N = A s0 + EA (l/L - 1 - alpha T), exactly.
+
+    Equilibrium in one unknown, P = 2 N v/l; solved by bracketing.
+    """
+    text = """*NODE
+1, 0., 0.
+2, 1., 0.
+3, 2., 0.
+*ELEMENT, TYPE=T3D2, ELSET=all
+1, 1, 2
+2, 2, 3
+*MATERIAL, NAME=m
+*ELASTIC
+1000., 0.
+*EXPANSION
+1e-3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.2
+*INITIAL CONDITIONS, TYPE=STRESS
+all, 30.
+*NSET, NSET=every, ELSET=all
+*BOUNDARY
+1, 1, 2
+3, 1, 2
+*STEP, NLGEOM
+*STATIC
+0.25, 1.
+*CLOAD
+2, 2, 40.
+*TEMPERATURE
+every, 10.
+*END STEP
+"""
+    frame = run(tmp_path / "s.inp", text).frames[-1]
+
+    def gap(v: float) -> float:
+        long = math.hypot(1.0, v)
+        return 2 * (0.2 * 30.0 + 200.0 * (long - 1 - 0.01)) * v / long - 40.0
+
+    v = brentq(gap, 0.01, 2.0)
+    assert frame.U[1, 1] == pytest.approx(v, rel=1e-8)
+    force = 6.0 + 200.0 * (math.hypot(1.0, v) - 1.01)
+    values = frame.fields[0].values
+    assert np.allclose(values["N"].ravel(), force, rtol=1e-7)
+    assert np.allclose(values["S"][..., :2].sum(axis=-1), force / 0.2, rtol=1e-7)
+    assert frame.RF[0, 0] == pytest.approx(-force / math.hypot(1, v), rel=1e-7)
+
+
+def test_section_forces_of_a_far_bent_beam() -> None:
+    """N, V, M1, M2 of beams in an elastica under a dead tip load, by statics of the free end.
+
+    At each node the tip force through its current arm; N along, V across the chord of the beam.
+    """
+    n, L, _EI, P = 40, 2.0, 3.0, np.array([-1.5, 6.0])
+    x = np.linspace(0, L, n + 1)
+    mesh = line_mesh(np.column_stack([x, 0 * x]), [(i, i + 1) for i in range(n)])
+    model = ct.Model(mesh)
+    model.beam(list(range(n)), material=ct.Elastic(E=3e4), area=0.1, inertia=1e-4)
+    model.fix([0], rotation=True)
+    model.force([n], x=P[0], y=P[1])
+    frame = ct.solve(model, ct.Static(increments=5), threads=1).frames[-1]
+    pos = mesh.points + frame.U
+    values = frame.fields[0].values
+    N, V = values["N"].ravel(), values["V"].ravel()
+    M1, M2 = values["M1"].ravel(), values["M2"].ravel()
+    assert frame.U[n, 1] > 1.2
+    for i in range(n):
+        e = (pos[i + 1] - pos[i]) / np.linalg.norm(pos[i + 1] - pos[i])
+        arm0, arm1 = pos[n] - pos[i], pos[n] - pos[i + 1]
+        m0 = arm0[0] * P[1] - arm0[1] * P[0]
+        m1 = arm1[0] * P[1] - arm1[1] * P[0]
+        assert N[i] == pytest.approx(P @ e, rel=1e-6, abs=1e-6)
+        # The load bends upwards and stretches the lower side, on the right of the way.
+        assert M1[i] == pytest.approx(m0, rel=1e-5, abs=1e-6)
+        assert M2[i] == pytest.approx(m1, rel=1e-5, abs=1e-6)
+        across = -P[0] * e[1] + P[1] * e[0]
+        assert abs(V[i]) == pytest.approx(abs(across), rel=3e-3, abs=1e-3)
+    clamp = pos[n, 0] * P[1] - pos[n, 1] * P[0]
+    assert frame.RF[0, 2] == pytest.approx(-clamp, rel=1e-7)
+
+
+def test_nonlinear_springs_in_series_with_the_ground() -> None:
+    """A table spring between two nodes and one to the ground; constant force outside the table."""
+    from corota.mesh import Mesh
+
+    cells = [
+        Cells("line2", np.array([[0, 1]]), np.array([1])),
+        Cells("point1", np.array([[0]]), np.array([2])),
+    ]
+    mesh = Mesh(np.array([[0.0, 0.0], [3.0, 0.0]]), cells, np.array([1, 2]))
+    model = ct.Model(mesh)
+    model.spring([0], [(-1.0, -5.0), (0.0, 0.0), (0.5, 4.0), (1.0, 5.0)])
+    model.spring([1], 20.0, "x")
+    model.fix([0], x=None)
+    model.fix([1], x=2.0)
+    results = ct.solve(model, ct.Static(increments=20), threads=1)
+    for f in results.frames[1:]:
+        u = f.U[1, 0]
+
+        def balance(a: float, u: float = u) -> float:
+            return float(np.interp(u - a, [-1, 0, 0.5, 1], [-5, 0, 4, 5])) - 20.0 * a
+
+        a = brentq(balance, -1.0, 2.0)
+        assert f.U[0, 0] == pytest.approx(a, rel=1e-8)
+        assert f.RF[1, 0] == pytest.approx(20.0 * a, rel=1e-8)
+
+
+# --- Paths, limit loads and buckling ---
+
+
+@pytest.mark.parametrize("preload", [0.0, 1.5])
+def test_shallow_truss_with_a_preload_kept(preload: float) -> None:
+    """Snap-through of two bars with engineering strain; a dead preload of an earlier step stays.
+
+    F(v) = 2 EA (L - l)/L (h - v)/l; a later load on the same node replaces the preload.
+    """
+    EA, a, h = 1000.0, 2.0, 0.5
+    L = math.hypot(a, h)
+
+    def force(v: float) -> float:
+        long = math.hypot(a, h - v)
+        return 2 * EA * (L - long) / L * (h - v) / long
+
+    grid = np.linspace(0.0, h, 20001)
+    peak = max(force(v) for v in grid)
+    mesh = line_mesh([[-a, 0.0], [0.0, h], [a, 0.0]], [(0, 1), (1, 2)])
+    model = ct.Model(mesh)
+    model.truss([0, 1], material=ct.Elastic(E=EA / 0.5), area=0.5)
+    model.fix([0, 2])
+    from corota.model.loads import NodalForce
+
+    steps = []
+    if preload:
+        steps.append(ct.Static(loads=[NodalForce([1], 1, -preload)]))
+    path = ct.ArcLength(displacement=([1], "y", -1.2 * h))
+    steps.append(
+        ct.Static(loads=[NodalForce([1], 0, 0.0), NodalForce([1], 1, -4.0 - preload)], path=path)
+    )
+    results = ct.solve(model, steps, threads=1)
+    first = next(c for c in results.critical_points if c.kind == "limit")
+    # The factor leads from the old value to the new.
+    assert preload + 4.0 * first.factor == pytest.approx(peak, rel=1e-6)
+    for f in results.frames:
+        v = -f.U[1, 1]
+        if f.increment:
+            total = preload * (f.factor if f.step == 1 and preload else 1.0)
+            if f.step == len(steps):
+                total = preload + 4.0 * f.factor
+            assert total == pytest.approx(force(v), rel=1e-6, abs=1e-6)
+
+
+def test_thermal_buckling_of_a_clamped_beam_with_preload() -> None:
+    """alpha T EA + N0 = 4 pi^2 EI/L^2 for beams; a compressive preload lowers the factor.
+
+    Preload by an earlier step that moves an end; the moved end is then held.
+    """
+    n, L, E, A, inertia, alpha = 80, 2.0, 2e4, 0.01, 1e-6, 1e-5
+    x = np.linspace(0, L, n + 1)
+    mesh = line_mesh(np.column_stack([x, 0 * x]), [(i, i + 1) for i in range(n)])
+    critical = 4 * math.pi**2 * E * inertia / L**2
+    for share in (0.0, 0.4):
+        model = ct.Model(mesh)
+        model.beam(
+            list(range(n)), material=ct.Elastic(E=E, expansion=alpha), area=A, inertia=inertia
+        )
+        model.fix([0], rotation=True)
+        model.fix([n], x=None, rotation=True)
+        move = -share * critical * L / (E * A)
+        steps = [
+            ct.Static(supports=[Fixed([n], 0, move)], increments=1),
+            ct.Buckle(loads=[Temperature("", 1.0)]),
+        ]
+        results = ct.solve(model, steps, threads=1)
+        want = (1 - share) * critical / (E * A * alpha)
+        assert results.modes[0].factors[0] == pytest.approx(want, rel=2e-3)
+
+
+@pytest.mark.parametrize("element", ["Q8R", "Q4I", "Q4S"])
+def test_yield_of_two_thicknesses_in_series_in_a_turned_frame(element: str) -> None:
+    """A tension bar of two thicknesses at 55 degrees yields where it is thin.
+
+    Small strain, hardening 1: elongation s1/E + p + s2/E with s1 = sy + p, s2 = s1 t1/t2.
+    Equations in the turned axes join them along the bar only, so that both contract freely.
+    """
+    low = ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1, cell=CELL[element])
+    high = ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1, cell=CELL[element], origin=(1.0, 0.0))
+    mesh = ct.mesh.move(ct.mesh.assembly(low=low, high=high), angle=55.0)
+    start, ends = mesh.nodes_of("low.left"), mesh.nodes_of("high.right")
+    model = ct.Model(mesh)
+    steel = ct.Mises(E=1000.0, nu=0.3, yield_stress=2.0, isotropic=1.0)
+    model.section("low", element=element, material=steel, thickness=0.5)
+    model.section("high", element=element, material=steel, thickness=0.8)
+    model.local_axes(np.arange(mesh.n_nodes), angle=math.radians(55.0))
+    for n, m in zip(mesh.nodes_of("low.right"), mesh.nodes_of("high.left"), strict=True):
+        assert np.allclose(mesh.points[n], mesh.points[m])
+        model.equation((int(n), "x", 1.0), (int(m), "x", -1.0))
+    model.fix(start, y=None)
+    model.fix([int(start[0])])
+    model.fix([int(ends[0])], x=None)
+    model.fix(ends, x=0.02, y=None)
+    frame = ct.solve(model, ct.Static(nlgeom=False, increments=8), threads=1).frames[-1]
+    p = (0.02 - 2.0 / 1000.0 * 1.625) / (1 + 1.625 / 1000.0)
+    axis = rotation(math.radians(55.0))[:, 0]
+    pull = axis @ frame.RF[ends, :2].sum(axis=0)
+    assert pull == pytest.approx((2.0 + p) * 0.5, rel=1e-8)
+    other = frame.fields[1].values["S"][0, 0]
+    assert other[0] == pytest.approx((2.0 + p) * 0.5 / 0.8 * axis[0] ** 2, rel=1e-8)
+    assert np.allclose(frame.fields[0].values["PEEQ"], p, rtol=1e-6)
+    assert frame.scalars["ALLPD"] == pytest.approx((2.0 * p + p**2 / 2) * 0.5, rel=1e-6)
+
+
+# --- Ties, contact, files in local axes ---
+
+
+@pytest.mark.parametrize("pair", [("CPE8", "quad8"), ("T6", "tri6"), ("Q4I", "quad4")])
+@pytest.mark.parametrize("angle", [0.0, 120.0])
+def test_tied_halves_of_unlike_meshes_and_thickness(pair: tuple[str, str], angle: float) -> None:
+    """Tension across a tie, thickness 1 and 2, nu = 0: the force passes, stress halves.
+
+    Turned by 120 degrees through supports in turned axes.
+    """
+    name, cell = pair
+    element = {"CPE8": "Q8"}.get(name, name)
+    low = ct.mesh.rectangle(2.0, 1.0, nx=3, ny=2, cell=cell)
+    high = ct.mesh.rectangle(2.0, 1.0, nx=4, ny=2, cell=cell, origin=(0.0, 1.0))
+    mesh = ct.mesh.move(ct.mesh.assembly(low=low, high=high), angle=angle)
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=100.0, nu=0.0)
+    model.section("low", element=element, material=material, thickness=1.0)
+    model.section("high", element=element, material=material, thickness=2.0)
+    model.tie("high.bottom", "low.top")
+    a = math.radians(angle)
+    for s in ("low.bottom", "high.top"):
+        model.local_axes(s, angle=a)
+    model.fix("low.bottom", x=None)
+    model.fix([int(mesh.nodes_of("low.bottom")[0])])
+    model.fix("high.top", x=None, y=0.03)
+    frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+    # Springs in series: 100 * 2 * (1 | 2) / 1
+    force = 0.03 / (1 / 200.0 + 1 / 400.0)
+    n = rotation(a)[:, 1]
+    assert n @ frame.RF[mesh.nodes_of("high.top"), :2].sum(axis=0) == pytest.approx(force, rel=1e-8)
+    for k, stress in ((0, force / 2.0), (1, force / 4.0)):
+        S = frame.fields[k].values["S"]
+        assert np.allclose(S[..., 0], stress * n[0] ** 2, atol=1e-7)
+        assert np.allclose(S[..., 3], stress * n[0] * n[1], atol=1e-7)
+
+
+def test_contact_of_two_thicknesses(tmp_path: Path) -> None:
+    """Two blocks pressed together: CF sums to the force, CPRESS is force over the smaller area.
+
+    The supports carry the same; a straight interface, nu = 0.
+    """
+    low = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    high = ct.mesh.rectangle(2.0, 1.0, nx=3, ny=1, origin=(0.0, 1.0))
+    mesh = ct.mesh.assembly(low=low, high=high)
+    for thin in ("low", "high"):
+        model = ct.Model(mesh)
+        for body in ("low", "high"):
+            model.section(
+                body, element="Q4I", material=ct.Elastic(E=100.0, nu=0.0),
+                thickness=1.0 if body == thin else 3.0,
+            )  # fmt: skip
+        model.contact("high.bottom", "low.top", name="joint")
+        model.fix("low.bottom")
+        model.fix("high.top", y=-0.03)
+        model.fix("high", x=0.0, y=None)
+        results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+        force = 0.03 / (1 / 200.0 + 1 / 600.0)
+        slave = mesh.nodes_of("high.bottom")
+        assert np.allclose(results.nodal("CPRESS")[slave], force / 2.0, rtol=1e-7)
+        assert results.history("joint: force y")[-1] == pytest.approx(force, rel=1e-7)
+        assert results.frames[-1].RF[mesh.nodes_of("low.bottom"), 1].sum() == pytest.approx(
+            force, rel=1e-7
+        )
+
+
+# --- Beside CalculiX ---
+
+TWO_CELLS = """*NODE, NSET=nall
+1, 0., 0.
+2, 1., 0.
+3, 2., 0.
+4, 0., 1.
+5, 1., 1.
+6, 2., 1.2
+7, .5, 0.
+8, 1.5, 0.
+9, 0., .5
+10, 1., .5
+11, 2., .6
+12, .5, 1.
+13, 1.5, 1.1
+*ELEMENT, TYPE=CPE8R, ELSET=all
+1, 1, 2, 5, 4, 7, 10, 12, 9
+2, 2, 3, 6, 5, 8, 11, 13, 10
+*NSET, NSET=left
+1, 4, 9
+*MATERIAL, NAME=m
+*ELASTIC
+1000., 0.3
+*PLASTIC
+2., 0.
+3., 0.02
+3.5, 0.1
+*EXPANSION
+1e-4
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.5
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+nall, 0.
+"""
+
+
+def test_plastic_steps_with_heat_beside_calculix(tmp_path: Path) -> None:
+    """Pull beyond yield, then press while heating (OP=NEW), plane strain: CalculiX 2.20, CPE8R.
+
+    Ten equal increments a step in both; its own tolerance leaves about 1e-4.
+    """
+    text = (
+        TWO_CELLS
+        + """*BOUNDARY
+left, 1, 1
+1, 2, 2
+*STEP
+*STATIC, DIRECT
+0.1, 1.
+*DLOAD
+2, P2, -1.6
+1, P3, 0.5
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.1, 1.
+*DLOAD, OP=NEW
+2, P2, 1.9
+*TEMPERATURE
+nall, 15.
+*END STEP
+"""
+    )
+    results = run(tmp_path / "c.inp", text)
+    reference: dict[int, Any] = {
+        1: {
+            "U": {
+                3: (-0.004014733, -0.07244893),
+                5: (0.03171075, -0.03562519),
+                6: (0.04697514, -0.0763323),
+                12: (0.02242482, -0.02334716),
+            },
+            "S": {
+                (1, 1): (0.7162174, -0.7554172, -0.01620935, -0.9928418),
+                (1, 3): (3.123783, -0.4505465, 1.324842, 0.2041658),
+                (2, 1): (1.358197, 0.6458243, 0.6012064, -0.02440676),
+                (2, 3): (2.326087, -0.07752677, 0.8887819, 0.02440677),
+            },
+            "PEEQ": {
+                (1, 1): 0.002808864,
+                (1, 2): 0,
+                (1, 3): 0.03849852,
+                (1, 4): 0.01297605,
+                (2, 1): 0,
+                (2, 2): 0,
+                (2, 3): 0.001905923,
+                (2, 4): 0,
+            },
+        },
+        2: {
+            "U": {
+                3: (-0.003866604, -0.06047854),
+                5: (0.02649996, -0.0269135),
+                6: (0.03516075, -0.05854897),
+                12: (0.01977381, -0.01754563),
+            },
+            "S": {
+                (1, 1): (-1.490185, 0.2531232, -1.875568, -0.1915636),
+                (1, 3): (-3.069815, 0.08643617, -1.872143, 0.1915636),
+                (2, 1): (-1.612859, 0.3441812, -1.637797, 0.2702725),
+                (2, 3): (-2.762169, -0.3319421, -1.910641, -0.2702878),
+            },
+            "PEEQ": {
+                (1, 1): 0.002808864,
+                (1, 2): 0,
+                (1, 3): 0.03849852,
+                (1, 4): 0.01342606,
+                (2, 1): 0.0004898666,
+                (2, 2): 4.674788e-05,
+                (2, 3): 0.003730374,
+                (2, 4): 0.001792295,
+            },
+        },
+    }
+    for step in (1, 2):
+        frame = [f for f in results.frames if f.step == step][-1]
+        for node, want in reference[step]["U"].items():
+            assert np.allclose(frame.U[node - 1], want, atol=1e-5)
+        values = frame.fields[0].values
+        for (e, q), want in reference[step]["S"].items():
+            assert np.allclose(values["S"][e - 1, q - 1], want, atol=8e-4)
+        for (e, q), want in reference[step]["PEEQ"].items():
+            assert values["PEEQ"][e - 1, q - 1] == pytest.approx(want, abs=4e-6)
+
+
+# --- More of loads, materials and constraints ---
+
+
+def test_body_forces_are_known_by_direction_over_steps(tmp_path: Path) -> None:
+    """Gravity in a second direction adds, in the same one replaces, OP=NEW takes all away.
+
+    Sums of reactions: weight m g with m = rho V of a part 0.4 thick; CENTRIF about a point adds
+    m w^2 (centroid - point) in a linear step.
+    """
+    mesh = ct.mesh.rectangle(3.0, 1.0, nx=3, ny=1, cell="quad8")
+    text = (
+        deck_mesh(mesh, "CPS8")
+        + """*MATERIAL, NAME=m
+*ELASTIC
+500., 0.3
+*DENSITY
+2.
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.4
+*BOUNDARY
+left, 1, 2
+*STEP
+*STATIC
+*DLOAD
+all, GRAV, 5., 0., -1., 0.
+*END STEP
+*STEP
+*STATIC
+*DLOAD
+all, GRAV, 3., 1., 0., 0.
+*END STEP
+*STEP
+*STATIC
+*DLOAD
+all, GRAV, 7., 0., -1., 0.
+all, CENTRIF, 4., -1., 0., 0., 0., 0., 1.
+*END STEP
+*STEP
+*STATIC
+*DLOAD, OP=NEW
+all, GRAV, 1., 0., 2., 0.
+*END STEP
+"""
+    )
+    results = run(tmp_path / "g.inp", text)
+    m = 2.0 * 3.0 * 0.4
+    spin = 4.0 * (np.array([1.5, 0.5]) - np.array([-1.0, 0.0]))
+    want = [(0.0, -5.0), (3.0, -5.0), (3.0 + spin[0], -7.0 + spin[1]), None]
+    for step, g in enumerate(want, 1):
+        frame = [f for f in results.frames if f.step == step][-1]
+        total = frame.RF[:, :2].sum(axis=0)
+        if g is None:  # a direction is made a unit vector, as in CalculiX
+            assert np.allclose(total, [0.0, -m], atol=1e-8)
+        else:
+            assert np.allclose(total, -m * np.array(g), rtol=1e-8)
+
+
+def test_support_taken_away_leaves_no_reaction(tmp_path: Path) -> None:
+    """*BOUNDARY, OP=NEW without a prop: the cantilever ends as one that was never propped."""
+    mesh = ct.mesh.rectangle(6.0, 1.0, nx=6, ny=1)
+    head = (
+        deck_mesh(mesh, "CPS4I")
+        + """*MATERIAL, NAME=m
+*ELASTIC
+500., 0.3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.5
+"""
+    )
+    load = "*CLOAD\nright, 2, -0.3\n"
+    propped = (
+        "*STEP, NLGEOM\n*STATIC\n0.5, 1.\n*BOUNDARY\nleft, 1, 2\nright, 2, 2\n"
+        + load
+        + "*END STEP\n*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY, OP=NEW\nleft, 1, 2\n*END STEP\n"
+    )
+    free = "*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY\nleft, 1, 2\n" + load + "*END STEP\n"
+    a = run(tmp_path / "a.inp", head + propped)
+    b = run(tmp_path / "b.inp", head + free).frames[-1]
+    assert np.allclose(a.frames[-1].U, b.U, atol=1e-8)
+    right = mesh.nodes_of("right")
+    assert np.abs(a.frames[-1].RF[right]).max() < 1e-8
+    one = [f for f in a.frames if f.step == 1][-1]
+    assert one.RF[right, 1].sum() == pytest.approx(0.6, rel=1e-9)
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q8", "Q9", "T6", "OPT", "Q4D"])
+def test_work_of_pressure_in_a_ring(element: str) -> None:
+    """Linear inflation: ALLWK = ALLIE = p (area swept) t/2, and Lame's displacement sets the area.
+
+    Half of p 2 pi a u(a) t for a ring of four quadrants held by symmetry.
+    """
+    a, b, p, E, nu, t = 1.0, 1.6, 3.0, 700.0, 0.3, 0.35
+    n = 10 if element in ("Q8", "Q9", "T6") else 40
+    mesh = ct.mesh.annulus(a, b, 6, n, angle=90.0, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(E=E, nu=nu), thickness=t)
+    turn = True if element in DRILLING else None
+    model.fix("start", x=None, rotation=turn)
+    model.fix("end", y=None, rotation=turn)
+    model.pressure("inner", p)
+    frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+    C = p * a**2 / (b**2 - a**2)
+    u = C / E * ((1 - nu) * a + (1 + nu) * b**2 / a)
+    want = p * (math.pi / 2) * a * u * t / 2
+    assert frame.scalars["ALLWK"] == pytest.approx(want, rel=6e-3)
+    assert frame.scalars["ALLIE"] == pytest.approx(frame.scalars["ALLWK"], rel=1e-9)
+
+
+@pytest.mark.parametrize("element", CELL)
+def test_elastic_cycle_gives_all_work_back(element: str) -> None:
+    """Load, turn far, and unload over three steps: work, energy and displacement end at zero."""
+    mesh = ct.mesh.rectangle(6.0, 1.0, nx=6, ny=1, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=300.0, nu=0.2), thickness=0.2,
+        plane="strain", local_strain="logarithmic",
+    )  # fmt: skip
+    model.fix("left", rotation=True if element in DRILLING else None)
+    from corota.model.loads import EdgeLoad, NodalForce
+
+    right = mesh.nodes_of("right")
+    steps = [
+        ct.Static(loads=[NodalForce(right, 1, 0.08)], increments=20),
+        ct.Static(loads=[EdgeLoad("top", "pressure", (0.03,))], increments=20),
+        ct.Static(new_loads=True, increments=20),
+    ]
+    results = ct.solve(model, steps, threads=1)
+    largest = max(f.scalars["ALLSE"] for f in results.frames)
+    last = results.frames[-1]
+    assert np.abs(last.U).max() < 1e-8
+    assert abs(last.scalars["ALLSE"]) < 1e-12 * largest
+    assert abs(last.scalars["ALLWK"]) < 5e-3 * largest
+
+
+@pytest.mark.parametrize("angle", [0.0, 20.0, 45.0, 90.0])
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "T6", "Q9", "Q4S"])
+def test_off_axis_tension_of_a_lamina(element: str, angle: float) -> None:
+    """Strains of an orthotropic strip under traction at an angle: Jones eq. 2.91 and on.
+
+    Thickness 0.3; both coupling coefficients from the rotated compliance.
+    """
+    E1, E2, n12, G = 130.0, 9.0, 0.28, 5.0
+    mesh = ct.mesh.distort(ct.mesh.rectangle(4.0, 2.0, nx=4, ny=2, cell=CELL[element]), 0.15)
+    model = ct.Model(mesh)
+    lamina = ct.Orthotropic(E1, E2, E2, n12, n12, 0.4, G)
+    a = math.radians(angle)
+    model.section("all", element=element, material=lamina, orientation=a, thickness=0.3)
+    corner = int(np.argmin(mesh.points.sum(axis=1)))
+    other = int(np.argmin(mesh.points[:, 0] - mesh.points[:, 1]))
+    model.fix([corner])
+    model.fix([other], y=None)
+    model.traction("right", x=0.02)
+    model.traction("left", x=-0.02)
+    frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+    c, s = math.cos(a), math.sin(a)
+    local = 0.02 * np.array([c * c, s * s, -s * c])
+    S = np.array([[1 / E1, -n12 / E1, 0], [-n12 / E1, 1 / E2, 0], [0, 0, 1 / G]])
+    e1, e2, g = S @ local
+    R = rotation(a)
+    strain = R @ np.array([[e1, g / 2], [g / 2, e2]]) @ R.T
+    E = frame.fields[0].values["E"]
+    for k, want in ((0, strain[0, 0]), (1, strain[1, 1]), (3, 2 * strain[0, 1])):
+        assert np.allclose(E[..., k], want, rtol=1e-8, atol=1e-12)
+    assert np.allclose(
+        frame.fields[0].values["E"][..., 2], -(n12 / E1 * local[0] + 0.4 / E2 * local[1]), rtol=1e-8
+    )
+
+
+def test_python_model_and_its_deck_agree(tmp_path: Path) -> None:
+    """A written deck of an orthotropic, heated, loaded, turned part gives the results of Python."""
+    from corota.io import formats
+
+    mesh = ct.mesh.rectangle(5.0, 1.0, nx=5, ny=2, cell="quad8")
+    model = ct.Model(mesh, name="part")
+    wood = ct.Orthotropic(
+        900.0, 300.0, 250.0, 0.3, 0.25, 0.2, 150.0, rho=0.1, expansion=(1e-4, 2e-4, 0.0)
+    )
+    model.section(
+        "all", element="Q8R", material=wood, thickness=0.7, plane="strain", orientation=0.6,
+        local_strain="logarithmic",
+    )  # fmt: skip
+    model.fix("left")
+    model.initial_temperature(5.0)
+    model.temperature(30.0)
+    model.gravity(0.1, -0.5)
+    model.pressure("top", 0.2)
+    model.traction("right", x=0.3, y=0.1)
+    model.force([int(mesh.nodes_of("right")[1])], y=0.05)
+    want = ct.solve(model, ct.Static(increments=2), threads=1).frames[-1]
+    path = tmp_path / "part.inp"
+    formats.write(model, path)
+    again = ct.read(path)
+    got = ct.solve(again, None if again.steps else ct.Static(increments=2), threads=1).frames[-1]
+    assert np.allclose(got.U, want.U, atol=1e-7)
+
+
+def test_coupling_of_x_only_with_a_moment() -> None:
+    """Kinematic coupling of x: plane sections stay plane along x, the nodes slide in y.
+
+    A moment on the reference node bends a strip with M/EI; Poisson's contraction stays free.
+    """
+    E, nu, t, h, L = 1000.0, 0.4, 0.6, 1.0, 8.0
+    mesh = ct.mesh.rectangle(L, h, nx=16, ny=2, cell="quad8")
+    end = ct.mesh.add_node(mesh, L, h / 2, "ref")
+    model = ct.Model(mesh)
+    model.section("all", element="Q8", material=ct.Elastic(E=E, nu=nu), thickness=t)
+    model.fix("left", y=None)
+    left = mesh.nodes_of("left")
+    middle = left[np.argmin(np.abs(mesh.points[left, 1] - h / 2))]
+    model.fix([int(middle)], x=None)
+    model.couple("right", end, dofs="x")
+    model.fix([end], x=None)
+    model.force([end], moment=0.7)
+    frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+    EI = E * t * h**3 / 12
+    assert frame.UR[end] == pytest.approx(0.7 * L / EI, rel=1e-8)
+    right = mesh.nodes_of("right")
+    tip = right[np.argmin(np.abs(mesh.points[right, 1] - h / 2))]
+    assert frame.U[tip, 1] == pytest.approx(0.7 * L**2 / (2 * EI), rel=1e-8)
+    S = frame.fields[0].values["S"]
+    y = frame.fields[0].points[..., 1] - frame.fields[0].points[..., 1].mean()
+    assert np.abs(S[..., 1]).max() < 1e-8
+    assert np.abs(S[..., 3]).max() < 1e-8
+    assert np.abs(y).max() > 0
+
+
+def test_nodes_on_a_straight_line_that_turns(tmp_path: Path) -> None:
+    """*MPC, STRAIGHT on the end of a strip bent by a rigid turn of two corners, NLGEOM.
+
+    All nodes of the end lie on the line of its corners; the line's forces sum to nothing.
+    """
+    mesh = ct.mesh.rectangle(6.0, 1.0, nx=6, ny=4)
+    right = mesh.nodes_of("right")
+    right = right[np.argsort(mesh.points[right, 1])]
+    labels = [int(mesh.node_labels[i]) for i in right]
+    order = [labels[0], labels[-1], *labels[1:-1]]
+    text = (
+        deck_mesh(mesh, "Q4I")
+        + f"""*MATERIAL, NAME=m
+*ELASTIC
+500., 0.3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.5
+*MPC
+STRAIGHT, {", ".join(map(str, order))}
+*BOUNDARY
+left, 1, 2
+*STEP, NLGEOM
+*STATIC
+0.1, 1.
+*CLOAD
+{labels[2]}, 2, 1.5
+{labels[-1]}, 1, -0.5
+{labels[0]}, 1, 0.5
+*END STEP
+"""
+    )
+    results = run(tmp_path / "m.inp", text)
+    frame = results.frames[-1]
+    x = mesh.points + frame.U
+    e = x[right[-1]] - x[right[0]]
+    e /= np.linalg.norm(e)
+    for i in right:
+        d = x[i] - x[right[0]]
+        assert abs(e[0] * d[1] - e[1] * d[0]) < 1e-9
+    assert abs(math.atan2(e[1], e[0]) - math.pi / 2) > 0.3
+    left = mesh.nodes_of("left")
+    assert np.allclose(frame.RF[left, :2].sum(axis=0), [0.0, -1.5], atol=1e-8)
+    moment = np.sum(x[left, 0] * frame.RF[left, 1] - x[left, 1] * frame.RF[left, 0])
+    load = x[labels[2] - 1, 0] * 1.5 + x[right[-1], 1] * 0.5 - x[right[0], 1] * 0.5
+    assert moment == pytest.approx(-load, rel=1e-7)
+
+
+@pytest.mark.parametrize("strain", ["linear", "logarithmic"])
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+def test_laws_that_must_agree(strain: str, plane: str) -> None:
+    """Elastic, J2 below yield, orthotropic with equal constants and a Python law: one answer."""
+    E, nu = 700.0, 0.3
+
+    def law(strain: np.ndarray, state: np.ndarray, kind: str) -> tuple[Any, ...]:
+        if kind == "stress":
+            C = E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+        else:
+            k = E / (1 + nu) / (1 - 2 * nu)
+            C = k * np.array([[1 - nu, nu, 0], [nu, 1 - nu, 0], [0, 0, 0.5 - nu]])
+        extra = {"strain_zz": -nu / (1 - nu) * (strain[..., 0] + strain[..., 1])}
+        if kind == "strain":
+            extra = {"stress_zz": nu * ((strain @ C)[..., 0] + (strain @ C)[..., 1])}
+        return strain @ C, np.broadcast_to(C, (*strain.shape, 3)), state, extra
+
+    G = E / (2 + 2 * nu)
+    laws = [
+        ct.Elastic(E=E, nu=nu),
+        ct.Mises(E=E, nu=nu, yield_stress=1e6),
+        ct.Orthotropic(E, E, E, nu, nu, nu, G),
+        ct.UserMaterial(law),
+    ]
+    ends = []
+    for material in laws:
+        mesh = ct.mesh.rectangle(6.0, 1.0, nx=6, ny=2, cell="quad4")
+        model = ct.Model(mesh)
+        model.section(
+            "all", element="Q4I", material=material, thickness=1.3, plane=plane,
+            local_strain=strain, orientation=0.4 if material is laws[2] else 0.0,
+        )  # fmt: skip
+        model.fix("left")
+        model.force("right", y=0.9, x=-0.4)
+        model.pressure("top", 0.2)
+        ends.append(ct.solve(model, ct.Static(increments=5), threads=1))
+    for other in ends[1:]:
+        assert np.allclose(other.frames[-1].U, ends[0].frames[-1].U, atol=1e-6)
+        a, b = (r.frames[-1].fields[0].values["S"] for r in (ends[0], other))
+        assert np.allclose(a, b, atol=1e-5)
+        assert other.history("ALLSE")[-1] == pytest.approx(ends[0].history("ALLSE")[-1], rel=1e-3)
+
+
+def test_formats_hold_the_same_displacements(tmp_path: Path) -> None:
+    """.vtkhdf, .npz, .vtu, .csv and .dat written from one result agree."""
+    mesh = ct.mesh.rectangle(3.0, 1.0, nx=3, ny=1, cell="quad9")
+    model = ct.Model(mesh)
+    model.section("all", element="Q9", material=ct.Elastic(E=100.0, nu=0.3), thickness=2.0)
+    model.fix("left")
+    model.force("right", y=0.3)
+    results = ct.solve(model, ct.Static(increments=3), threads=1)
+    with ct.read_results(results.write(tmp_path / "a.vtkhdf")) as stored:
+        assert np.allclose(stored.frame(2).U, results.frames[2].U, rtol=1e-14)
+        assert np.allclose(stored.nodal("MISES"), results.nodal("MISES"), rtol=1e-10)
+    archive = np.load(results.write(tmp_path / "a.npz"))
+    want = results.frames[-1].U
+    fields = [archive[k] for k in archive.files if archive[k].dtype.kind == "f"]
+    shown = [f[-1][..., :2] for f in fields if f.ndim == 3 and f.shape[1] == mesh.n_nodes]
+    assert any(np.allclose(f, want, rtol=1e-12) for f in shown if f.shape == want.shape)
+    import csv
+
+    with results.write(tmp_path / "a.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) in (3, 4)
+    assert float(rows[-1]["ALLWK"]) == pytest.approx(results.history("ALLWK")[-1], rel=1e-9)
+
+
+def test_reduced_integration_as_written(tmp_path: Path) -> None:
+    """CPE4R is Q4I by default, Q4R as written; both bend an elastic rectangle exactly alike.
+
+    Deflection of a cantilever under an end moment given by a couple of forces: M L^2/(2 E' I).
+    """
+    mesh = ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1)
+    labels = [int(mesh.node_labels[n]) for n in mesh.nodes_of("right")]
+    labels.sort(key=lambda k: mesh.points[k - 1, 1])
+    text = (
+        deck_mesh(mesh, "CPE4R")
+        + f"""*MATERIAL, NAME=m
+*ELASTIC
+2000., 0.3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.25
+*BOUNDARY
+left, 1, 1
+1, 2, 2
+*STEP
+*STATIC
+*CLOAD
+{labels[0]}, 1, 0.1
+{labels[1]}, 1, -1.D-1
+*END STEP
+"""
+    )
+    want = 0.1 * 100.0 / (2 * 2000.0 / 0.91 * 0.25 / 12)
+    for options, element in (({}, "Q4I"), ({"as_written": True}, "Q4R")):
+        results = run(tmp_path / "r.inp", text, **options)
+        assert results.frames[-1].fields[0].element == element
+        n = labels[0] - 1
+        assert results.frames[-1].U[n, 1] == pytest.approx(want, rel=1e-8)
+
+
+def test_opposite_pressures_on_a_turning_body_cancel() -> None:
+    """Equal pressure on all sides of a bent, closed body: no resultant, stress -p of all cells.
+
+    Plane strain; nu = 0.25; the body is turned and bent by its supports' absence: it floats on
+    three held dofs. Uniform Cauchy stress -p in the plane under green_lagrange and logarithmic.
+    """
+    mesh = ct.mesh.mapped(
+        [
+            lambda t: (4 * t, 0.5 * np.sin(3 * t)),
+            lambda t: (4 + 0.3 * t, 0.5 * np.sin(3.0) + t),
+            lambda t: (4.3 * t, 1 + (0.5 * np.sin(3.0)) * t),
+            lambda t: (0 * t, t),
+        ],
+        nx=5, ny=2, cell="quad8",
+    )  # fmt: skip
+    for strain in ("logarithmic", "green_lagrange"):
+        model = ct.Model(mesh)
+        model.section(
+            "all", element="Q8", material=ct.Elastic(E=100.0, nu=0.25), plane="strain",
+            thickness=0.7, local_strain=strain,
+        )  # fmt: skip
+        for side in ("left", "right", "top", "bottom"):
+            model.pressure(side, 6.0)
+        left = mesh.nodes_of("left")
+        a, b = left[np.argmin(mesh.points[left, 1])], left[np.argmax(mesh.points[left, 1])]
+        model.fix([int(a)])
+        model.fix([int(b)], y=None)
+        frame = ct.solve(model, ct.Static(increments=3), threads=1).frames[-1]
+        S = frame.fields[0].values["S"]
+        assert np.allclose(S[..., 0], -6.0, atol=1e-6)
+        assert np.allclose(S[..., 1], -6.0, atol=1e-6)
+        assert np.abs(S[..., 3]).max() < 1e-6
+        assert np.abs(frame.RF).max() < 1e-6
