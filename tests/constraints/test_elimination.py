@@ -14,8 +14,6 @@ TRIALS = [(k, e) for k in KINDS for e in ("Q4I", "Q4D")]
 
 def dense(system: System, at: Evaluation) -> np.ndarray:
     """The reduced matrix."""
-    assert at.link is not None
-    assert system.constraints is not None
     values = at.link.reduce(at.values, at.residual)
     return system.constraints.reduction.pattern.full(values).toarray()
 
@@ -29,7 +27,6 @@ def test_tangent_is_the_derivative_of_the_residual(kind: str, element: str) -> N
     model, _ = constrained(kind, element)
     system = system_of(model)
     constraints = system.constraints
-    assert constraints is not None
     u = trial(system, 3)
     at = system.evaluate(u, 0.0)
     k = dense(system, at)
@@ -51,7 +48,6 @@ def test_full_and_symmetric_reductions_agree(kind: str, element: str) -> None:
     model, _ = constrained(kind, element)
     system = system_of(model)
     at = system.evaluate(trial(system, 5), 0.0)
-    assert at.link is not None
     full = system.pattern.full(at.values).tocsc()
     k = dense(system, at)
     other = at.link.reduce_full(full, at.residual).toarray()
@@ -65,7 +61,6 @@ def test_inertia_counts_the_reduced_matrix(kind: str) -> None:
     if kind == "kinematic x":
         model.fix([reference], x=None)
     system = system_of(model)
-    assert system.constraints is not None
     from corota.model.steps import Static
 
     negative = set()
@@ -95,7 +90,6 @@ def test_corrections_satisfy_the_linearised_constraints(kind: str) -> None:
     at = system.evaluate(trial(system, 8), 1.0)
     u = at.link.u  # type: ignore[union-attr]
     du, _ = system.predict(at, np.zeros(system.n_dofs))
-    assert system.constraints is not None
     h = 1e-7 / np.abs(du).max()
     one, two = u + h * du, u - h * du
     system.constraints.complete(one)

@@ -70,6 +70,5 @@ def constrained(kind: str, element: str = "Q4D") -> tuple[ct.Model, int]:
 def system_of(model: ct.Model) -> System:
     """The system of a model, with finite rotations."""
     system = System(model, SOLVERS["faer"](), 1)
-    if system.constraints is not None:
-        system.constraints.set_nlgeom(True)
+    system.constraints.set_nlgeom(True)
     return system

@@ -7,7 +7,6 @@ elements, loads and supports, and nothing of increments or iterations.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -16,11 +15,13 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.blocks import blocks_of, check_shapes, core_input
-from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints, extra_dofs
+from corota.analysis.constraints.elimination import extra_dofs
+from corota.analysis.constraints.none import IDENTITY, constraints_of
 from corota.analysis.constraints.setup import carry_curves
 from corota.analysis.free_motion import name_motion
 from corota.analysis.linear.matrix import AssembledPattern
-from corota.analysis.linear.unsymmetric import FullMatrix, MaskedLu
+from corota.analysis.linear.system import LinearSystem
+from corota.analysis.linear.unsymmetric import FullMatrix
 from corota.analysis.memory import require_model
 from corota.analysis.newton import ElementFailure, ResidualNorms
 from corota.analysis.recovery import recover
@@ -29,16 +30,16 @@ from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains
 from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
-from corota.analysis.timer import Timer
 from corota.errors import ModelError, SingularError
 from corota.model import elements
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.linear.matrix import SymmetricPattern
+    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.timer import Timer
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -69,7 +70,7 @@ class Evaluation:
         Tangent of the internal force, upper triangle, columns.
     load_stiffness : tuple of ndarray or None
         Triplets (row, column, value) of the derivative of the external force.
-    link : Link or None
+    link : LinearizedConstraints
         The constraints linearised at the state.
     added : ndarray, shape (n_dofs,), or None
         What damping added to the diagonal of the tangent: no stiffness.
@@ -83,7 +84,7 @@ class Evaluation:
     scale: Floats
     values: Floats
     load_stiffness: tuple[Ints, Ints, Floats] | None = None
-    link: LinearizedConstraints | None = None
+    link: LinearizedConstraints = IDENTITY
     added: Floats | None = None
     heft: float = 0.0
     momentum: float = 0.0
@@ -116,7 +117,7 @@ class System:
         self.blocks = blocks_of(model)
         #: Mass that gravity acts on in steps that do not move.
         self.mass = MovingMass()
-        self.solver = solver
+        self.linear = LinearSystem(solver)
         mesh = model.mesh
         inputs = [core_input(b) for b in self.blocks]
         check_shapes(model, self.blocks)
@@ -145,21 +146,16 @@ class System:
         self.nlgeom = True
         #: Largest local strain at the last recovery where it is linear, and the material there.
         self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
-        self.constraints: Constraints | None = None
-        if model.constraints or model.axes:
-            self.constraints = Constraints(model, self.start, carried, self.pattern)
-        self.link: LinearizedConstraints | None = None
+        self.constraints = constraints_of(model, self.start, carried, self.pattern)
+        #: The constraints as they were linearized for the last correction.
+        self.link = self.constraints.link(np.zeros(self.n_dofs))
         self.conditions = Conditions(self)
         self.contact_term: ContactTerm | None = None
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
-        self._timers: defaultdict[str, Timer] = defaultdict(Timer)
-        self._analyzed = False
         #: Whether the structure without its loads was seen to have no free motion in this step.
         self.free_motion_excluded = False
-        self._last: LinearSolver | MaskedLu = solver
         self.scales = Scales(self)
-        self._lu = MaskedLu()
         self._spare: list[Floats] = []
         if model.contacts or model.ties:
             from corota.analysis.terms.contact.contact import ContactTerm
@@ -180,11 +176,11 @@ class System:
 
     def in_space(self, vector: Floats) -> Floats:
         """A vector along the axes of its nodes in global axes, shape (n_dofs,)."""
-        return vector if self.constraints is None else self.constraints.to_global(vector)
+        return self.constraints.to_global(vector)
 
     def at_nodes(self, vector: Floats) -> Floats:
         """A vector in global axes along the axes of its nodes, shape (n_dofs,)."""
-        return vector if self.constraints is None else self.constraints.to_axes(vector)
+        return self.constraints.to_axes(vector)
 
     def from_nodes(self, values: Floats) -> Floats:
         """Inverse of `by_node`."""
@@ -201,9 +197,8 @@ class System:
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
         """Make a step's loads and supports the current ones."""
         self.nlgeom = step.nlgeom
-        if self.constraints is not None:
-            self.constraints.set_nlgeom(step.nlgeom)
-            self.constraints.complete(u)
+        self.constraints.set_nlgeom(step.nlgeom)
+        self.constraints.complete(u)
         self.conditions.begin(step, time, u, reaction)
         self.scales.begin(getattr(step, "tolerance", 1e-9), u)
         self.free_motion_excluded = False
@@ -233,14 +228,13 @@ class System:
             np.empty(self.n_dofs),
             self.borrow_tangent(),
         )
-        if self.constraints is not None:
-            self.constraints.complete(u)
+        self.constraints.complete(u)
         self.set_temperatures(step_time)
         self._assemble(u, internal, scale, values)
         if not self.scales.stiffest:
             self.scales.measure(values)
         external, stiffness = self.conditions.external(step_time, u, values)
-        link = None if self.constraints is None else self.constraints.link(u)
+        link = self.constraints.link(u)
         return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
 
     def forces(self, u: Floats, step_time: float) -> Evaluation:
@@ -266,7 +260,7 @@ class System:
 
     def reaction(self, at: Evaluation) -> Floats:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
-        return at.residual if at.link is None else at.link.gather(at.residual)
+        return at.link.gather(at.residual)
 
     def product(self, values: Floats, x: Floats) -> Floats:
         """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
@@ -305,12 +299,12 @@ class System:
 
     def timed(self, phase: str) -> Timer:
         """Add the time of a block to the profile."""
-        return self._timers[phase]
+        return self.linear.timed(phase)
 
     @property
     def profile(self) -> dict[str, float]:
         """Seconds by phase."""
-        return {phase: timer.seconds for phase, timer in self._timers.items()}
+        return self.linear.profile
 
     def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual against its scale; see :class:`corota.analysis.scales.Scales`."""
@@ -386,119 +380,55 @@ class System:
 
     def _correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
         """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
-        constrained = self.conditions.constrained
-        unsymmetric = None
-        joined = at.link is not None and self.nlgeom
-        if (at.load_stiffness is not None or joined) and not (self.free_motion_excluded or at.heft):
+        link, pattern = at.link, self.constraints.pattern
+        if (at.load_stiffness is not None or (link.couples and self.nlgeom)) and not (
+            self.free_motion_excluded or at.heft
+        ):
             # Loads that follow, and those on rigid parts that turn, give a free motion stiffness
             # that is none.
             self._refuse_free(at)
+        unsymmetric = None
         if at.load_stiffness is not None:
             _, unsymmetric = self._add_load_stiffness(at)
-        if at.link is not None:
-            return self._correct_tied(at, at.link, rhs, du_prescribed, unsymmetric)
+        self.link = link
+        constrained = link.unknowns(self.conditions.constrained)
+        force = np.asfortranarray(link.unknowns(link.gather(rhs)))
+        moved = link.unknowns(du_prescribed)
         if unsymmetric is not None:
-            du = self._solve_unsymmetric(
-                unsymmetric, rhs, du_prescribed, constrained, self.node_of_dof
-            )
-            return du, -1
-        self.pattern.impose(at.values, rhs, du_prescribed, constrained)
-        if not self._analyzed:
-            with self.timed("order"):
-                self.pattern.analyze(self.solver)
-            self._analyzed = True
+            matrix = link.reduce_full(unsymmetric, at.residual)
+            return link.expand(self._solve_unsymmetric(matrix, force, moved, constrained)), -1
+        with self.timed("constraints"):
+            values = link.reduce(at.values, at.residual)
+            pattern.impose(values, force, moved, constrained)
         try:
-            with self.timed("factor"):
-                inertia = self.solver.factorize(at.values)
-            self._last = self.solver
-            with self.timed("solve"):
-                du = self.solver.solve(rhs)
+            inertia = self.linear.factorize(pattern, values)
+            x = self.linear.solve(force)
         except SingularError as error:
             raise self.singular(error) from None
-        fixed = self.conditions.fixed
-        du[fixed] = du_prescribed[fixed]
-        return du, (inertia[1] if inertia is not None else -1)
+        x[constrained] = moved[constrained]
+        return link.expand(x), (inertia[1] if inertia is not None else -1)
 
     def _refuse_free(self, at: Evaluation) -> None:
         """Refuse a structure whose stiffness without that of its loads lets a motion free."""
-        constrained = self.conditions.constrained
-        if at.link is None:
-            pattern: SymmetricPattern = self.pattern
-            values, none = at.values.copy(), np.zeros(self.n_dofs)
-            pattern.impose(values, none, none.copy(), constrained)
-        else:
-            pattern = at.link.constraints.reduction.pattern
-            values = at.link.reduce(at.values, self.at_nodes(at.internal))
-            pattern.mask(values, constrained[at.link.constraints.free])
-            self.link = at.link
-        if not self._analyzed:
-            with self.timed("order"):
-                pattern.analyze(self.solver)
-            self._analyzed = True
+        link, pattern = at.link, self.constraints.pattern
+        values = link.reduce(at.values.copy(), self.at_nodes(at.internal))
+        pattern.mask(values, link.unknowns(self.conditions.constrained))
+        self.link = link
         try:
-            with self.timed("factor"):
-                self.solver.factorize(values)
+            self.linear.factorize(pattern, values)
         except SingularError as error:
             raise self.singular(error) from None
         self.free_motion_excluded = True
 
     def solve_with_last_factor(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation, held dofs at rest; shape as in `correct`."""
-        constrained = self.conditions.constrained
-        if self.link is not None and self.constraints is not None:
-            free = self.constraints.free
-            rhs = self.link.gather(rhs)[free]
-            constrained = constrained[free]
-        else:
-            rhs = rhs.copy(order="K")
-        rhs[constrained] = 0.0
-        with self.timed("solve"):
-            x = self._last.solve(rhs)
+        link = self.link
+        constrained = link.unknowns(self.conditions.constrained)
+        force = np.array(link.unknowns(link.gather(rhs)), order="K")
+        force[constrained] = 0.0
+        x = self.linear.solve(force)
         x[constrained] = 0.0
-        return x if self.link is None else self.expand(self.link, x)
-
-    def expand(self, link: LinearizedConstraints, x: Floats) -> Floats:
-        """Changes of all dofs from those of the unknowns that constraints leave."""
-        out = np.zeros((self.n_dofs, *x.shape[1:]), order="F")
-        out[link.constraints.free] = x
-        return link.move(out)
-
-    def _correct_tied(
-        self,
-        at: Evaluation,
-        link: LinearizedConstraints,
-        rhs: Floats,
-        du_prescribed: Floats,
-        unsymmetric: Any,
-    ) -> tuple[Floats, int]:
-        """Solve for the unknowns that constraints leave; see :meth:`correct`."""
-        constraints, self.link = link.constraints, link
-        pattern = constraints.reduction.pattern
-        free = constraints.free
-        constrained = self.conditions.constrained[free]
-        force, moved = np.asfortranarray(link.gather(rhs)[free]), du_prescribed[free]
-        node = self.node_of_dof[free]
-        if unsymmetric is not None:
-            matrix = link.reduce_full(unsymmetric, at.residual)
-            x = self._solve_unsymmetric(matrix, force, moved, constrained, node)
-            return self.expand(link, x), -1
-        with self.timed("constraints"):
-            values = link.reduce(at.values, at.residual)
-            pattern.impose(values, force, moved, constrained)
-        if not self._analyzed:
-            with self.timed("order"):
-                pattern.analyze(self.solver)
-            self._analyzed = True
-        try:
-            with self.timed("factor"):
-                inertia = self.solver.factorize(values)
-            self._last = self.solver
-            with self.timed("solve"):
-                x = self.solver.solve(force)
-        except SingularError as error:
-            raise self.singular(error) from None
-        x[constrained] = moved[constrained]
-        return self.expand(link, x), (inertia[1] if inertia is not None else -1)
+        return link.expand(x)
 
     def singular(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
@@ -535,16 +465,12 @@ class System:
         rhs: Floats,
         du_prescribed: Floats,
         constrained: NDArray[np.bool_],
-        node: Ints,
     ) -> Floats:
         rhs = rhs - matrix @ du_prescribed
         rhs[constrained] = 0.0
-        self._last = self._lu
         try:
-            with self.timed("factor"):
-                self._lu.factorize(matrix, constrained, node)
-            with self.timed("solve"):
-                du = self._lu.solve(rhs)
+            self.linear.factorize_unsymmetric(matrix, constrained, self.constraints.pattern.node)
+            du = self.linear.solve(rhs)
         except SingularError as error:
             raise self.singular(error) from None
         du[constrained] = du_prescribed[constrained]

@@ -38,10 +38,10 @@ def name_motion(system: System, error: SingularError) -> SingularError:
     equation, modes = error.equation, error.modes
     if modes is None and error.mode is not None:
         modes = np.asarray(error.mode).reshape(1, -1)
-    if system.constraints is not None and 0 <= equation < len(system.constraints.free):
+    if 0 <= equation < len(system.constraints.free):
         equation = int(system.constraints.free[equation])
-        if modes is not None and system.link is not None:
-            modes = system.expand(system.link, np.asarray(modes).T).T
+        if modes is not None:
+            modes = system.link.expand(np.asarray(modes).T).T
     mode = None if modes is None else modes[0]
     if not 0 <= equation < system.n_dofs:
         return SingularError(str(error), equation, mode, modes)

@@ -103,11 +103,12 @@ class Scales:
         """
         system, length = self.system, self.system.length
         scale, internal, external = at.scale, at.internal, at.external
-        if at.link is not None:
+        if at.link.couples:
+            # What constraints pass on from load to load is no scale: the residual alone is judged.
             internal = system.reaction(at)
             scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
         self._sizes, residual, worst, displacement = system.core.sizes(
-            internal, scale, external, u, system.conditions.constrained, at.link is None
+            internal, scale, external, u, system.conditions.constrained, not at.link.couples
         )
         self._heft = at.heft
         force = larger(self._sizes[0], self._committed[0])
@@ -129,20 +130,20 @@ class Scales:
             most = max(most, FARTHEST * self.nothing)
         self._most = most
         if norms.size > self.tolerance and max(residual[0], residual[1] / length) <= most:
-            excess = self._beyond_noise(at, internal, moved, force, moment)
+            excess = self._beyond_noise(at, moved, force, moment)
             norms.floor, norms.moment_floor = (
                 r / e if e > 0.0 else r for r, e in zip(relative, excess, strict=True)
             )
         return norms
 
     def _beyond_noise(
-        self, at: Evaluation, internal: Floats, moved: float, force: float, moment: float
+        self, at: Evaluation, moved: float, force: float, moment: float
     ) -> tuple[float, float]:
         """Residuals above the tolerance over their rounding, the largest of each kind."""
         system = self.system
         if not len(at.values):
             return np.inf, np.inf
-        left = np.abs(internal if at.link is not None else internal - at.external)
+        left = np.abs(system.reaction(at))
         left[system.conditions.constrained] = 0.0
         stiffness = self._diagonal(at.values)
         if at.added is not None:
@@ -150,8 +151,7 @@ class Scales:
         noise = EPS * moved * np.abs(stiffness)
         turn = system.is_rotation
         noise[turn] /= system.cell_size
-        if at.link is not None:
-            noise = at.link.gather_sizes(noise)
+        noise = at.link.gather_sizes(noise)
         out = []
         for mask, size in ((~turn, force), (turn, moment)):
             above = left[mask] > self.tolerance * size

@@ -9,13 +9,15 @@ dofs change, so a map of places is made once and numbers are put through it.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.constraints.setup import Builder, extra_dofs
 from corota.analysis.linear.reduction import Reduction, Rows
+from corota.analysis.linear.triplets import Triplets
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -56,7 +58,7 @@ def local_axes(model: Model) -> dict[int, Floats]:
     return axes
 
 
-@dataclass
+@dataclass(eq=False)
 class LinearizedConstraints:
     """The constraints linearised at a state.
 
@@ -78,6 +80,9 @@ class LinearizedConstraints:
     direct: Any
     curvature: float = 1.0
 
+    #: Whether any dof depends on others or has axes of its own.
+    couples = True
+
     def gather(self, force: Floats) -> Floats:
         """``G^T`` of forces, in all dofs; zero at dependent ones. Shape as `force`."""
         out: Floats = force.copy()
@@ -98,6 +103,42 @@ class LinearizedConstraints:
         out[self.constraints.eliminated] = 0.0
         out[self.constraints.dependent] = self.g @ out
         return out
+
+    def unknowns(self, x: Any) -> Any:
+        """Entries of the unknowns of what has one for each dof."""
+        return x[self.constraints.free]
+
+    def expand(self, x: Floats) -> Floats:
+        """Changes of all dofs from those of the unknowns, shape (n_unknowns, ...)."""
+        out = np.zeros((self.constraints.n, *x.shape[1:]), order="F")
+        out[self.constraints.free] = x
+        return self.move(out)
+
+    def linear(self) -> LinearizedConstraints:
+        """The same without second derivatives: for matrices that are no tangents."""
+        return replace(self, curvature=0.0)
+
+    @cached_property
+    def transform(self) -> Any:
+        """All dofs in global axes by the unknowns, scipy CSC."""
+        return self.constraints.reduction.whole(self.constraints.rows_of(self.g))
+
+    def reduce_columns(self, columns: Any) -> Any:
+        """Columns of forces in global axes as those on the unknowns, scipy sparse."""
+        return self.transform.T @ columns
+
+    def symmetric_half(self, entries: Triplets) -> Triplets:
+        """Upper triangle of the reduced matrix of symmetric entries in global axes."""
+        whole = self.reduce_entries(entries, self.constraints.n)
+        return Triplets.halves(0.5 * (whole + whole.T))[0]
+
+    def reduce_entries(self, entries: Triplets, n: int) -> Any:
+        """The reduced matrix of entries of all `n` dofs in global axes, scipy CSR."""
+        return self.transform.T @ entries.matrix(n) @ self.transform
+
+    def neighbors(self, dofs: Ints) -> Ints:
+        """Unknowns that stand for dofs in a pattern that looks ahead: none are known."""
+        return dofs[:0]
 
     def geometric_stiffness(self, residual: Floats) -> Floats:
         """Entries of ``sum_s r_s d2 g_s`` where the relations bend, in the map's order."""
@@ -195,6 +236,8 @@ class Constraints:
             Rows(self.dependent, pattern),
             pairs,
         )
+        #: Of the matrix of the unknowns.
+        self.pattern = self.reduction.pattern
 
     def _depth(self) -> int:
         """Longest chain of relations that depend on each other."""

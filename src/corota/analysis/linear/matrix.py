@@ -32,10 +32,14 @@ class SymmetricPattern:
         Row of each entry, rising in each column.
     node : ndarray of int, shape (n,)
         Node of each equation; equations of one node stand together.
+    after : ndarray of int, optional
+        Equations of multipliers, to be eliminated after what they connect.
     """
 
-    def __init__(self, indptr: NDArray[Any], indices: NDArray[Any], node: Ints) -> None:
-        self.indptr, self.indices, self.node = indptr, indices, node
+    def __init__(
+        self, indptr: NDArray[Any], indices: NDArray[Any], node: Ints, after: Ints | None = None
+    ) -> None:
+        self.indptr, self.indices, self.node, self.after = indptr, indices, node, after
         self.n, self.nnz = len(indptr) - 1, len(indices)
         self._constrained: NDArray[np.bool_] | None = None
         self._masked = np.zeros(0, np.int64)
@@ -134,7 +138,9 @@ class SymmetricPattern:
 
     def analyze(self, solver: LinearSolver) -> None:
         """Let a linear solver order and prepare."""
-        solver.analyze(self.indptr, self.indices, self.node)
+        # Solvers need not know of multipliers where there are none.
+        more = () if self.after is None else (self.after,)
+        solver.analyze(self.indptr, self.indices, self.node, *more)
 
 
 class AssembledPattern(SymmetricPattern):
@@ -159,6 +165,10 @@ class AssembledPattern(SymmetricPattern):
     ) -> None:
         """See :meth:`SymmetricPattern.impose`."""
         self._core.reduce(values, rhs, moved, constrained)
+
+    def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:
+        """See :meth:`SymmetricPattern.mask`."""
+        self._core.mask(values, constrained)
 
 
 def _columns(x: Floats) -> list[Floats]:

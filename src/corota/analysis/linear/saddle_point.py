@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.linear.matrix import SymmetricPattern
 from corota.analysis.linear.reduction import _union
+from corota.analysis.linear.triplets import Triplets
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -37,30 +39,6 @@ GMRES_TOLERANCE, GMRES_STEPS = 1e-9, 60
 DEPENDENT, MOST_DENSE = 1e-9, 2000
 #: Relative size of a product that is nothing but rounding.
 NULL = 1e-10
-
-
-@dataclass
-class Triplets:
-    """Entries of a sparse matrix, those at one place to be added."""
-
-    rows: Ints
-    columns: Ints
-    values: Floats
-
-    @classmethod
-    def join(cls, parts: list[Triplets]) -> Triplets:
-        """All entries of several."""
-        if not parts:
-            return cls(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
-        return cls(
-            np.concatenate([p.rows for p in parts]),
-            np.concatenate([p.columns for p in parts]),
-            np.concatenate([p.values for p in parts]),
-        )
-
-    def keep(self, chosen: NDArray[np.bool_]) -> Triplets:
-        """Some of the entries."""
-        return Triplets(self.rows[chosen], self.columns[chosen], self.values[chosen])
 
 
 @dataclass
@@ -103,9 +81,7 @@ class SaddlePointSystem:
 
     def __init__(self, system: System, n: int) -> None:
         self.system, self.n = system, n
-        constraints = system.constraints
-        self.free = np.arange(system.n_dofs) if constraints is None else constraints.free
-        base = system.pattern if constraints is None else constraints.reduction.pattern
+        self.free, base = system.constraints.free, system.constraints.pattern
         self.nf = len(self.free)
         self.size = self.nf + n
         self._base = base.columns * self.size + base.rows
@@ -115,11 +91,10 @@ class SaddlePointSystem:
         self.after = self.nf + np.arange(n)
         self.keys = np.zeros(0, np.int64)
         self._held: NDArray[np.bool_] | None = None
-        self._analyzed = False
         #: The last system solved: its held unknowns, constraints, and what solves it again.
         self._at_rest = np.zeros(self.size, bool)
-        self._link: LinearizedConstraints | None = None
-        self._resolve: Callable[[Floats], Floats] = system.solver.solve
+        self._link: LinearizedConstraints = system.link
+        self._resolve: Callable[[Floats], Floats] = system.linear.solver.solve
         #: Steps of GMRES so far and fall-backs to LU, for reports.
         self.steps = self.whole = 0
         #: Multipliers of constraints that followed from others.
@@ -148,9 +123,10 @@ class SaddlePointSystem:
         self.rows = self.keys % self.size
         self.columns = self.keys // self.size
         counts = np.bincount(self.columns, minlength=self.size)
-        self.indptr = np.concatenate([[0], np.cumsum(counts)])
-        self.diagonal = self.indptr[1:] - 1
-        self._held, self._analyzed = None, False
+        start = np.concatenate([[0], np.cumsum(counts)])
+        self.pattern = SymmetricPattern(start, self.rows, self.node, self.after)
+        self.diagonal = self.pattern.diagonal
+        self._held = None
 
     def _mask(self, constrained: NDArray[np.bool_]) -> Ints:
         """Places of the entries of held unknowns beside the diagonal."""
@@ -197,18 +173,10 @@ class SaddlePointSystem:
         constrained = np.zeros(self.size, bool)
         constrained[: self.nf] = system.conditions.constrained[self.free]
         with system.timed("border"):
-            load = self._load(at)
-            if link is None:
-                values = at.values
-                upper, rest = self._direct(coupling, load)
-                b = np.concatenate([force, rhs])
-            else:
-                values = link.reduce(at.values, at.residual)
-                upper, rest = self._reduced(coupling, load, link)
-                b = np.concatenate([link.gather(force)[self.free], rhs])
-            places = self._place(
-                upper.rows, upper.columns, lambda: self._spare(coupling, link is None)
-            )
+            values = link.reduce(at.values, at.residual)
+            upper, rest = self._entries(coupling, self._load(at), link)
+            b = np.concatenate([link.unknowns(link.gather(force)), rhs])
+            places = self._place(upper.rows, upper.columns, lambda: self._spare(coupling, link))
             data = np.zeros(len(self.keys))
             data[self._target] = values
             np.add.at(data, places, upper.values)
@@ -246,7 +214,7 @@ class SaddlePointSystem:
         Held dofs are at rest and so are the constraints.
         """
         b = np.zeros((self.size, 1))
-        b[: self.nf, 0] = (force if self._link is None else self._link.gather(force))[self.free]
+        b[: self.nf, 0] = self._link.unknowns(self._link.gather(force))
         b[self._at_rest] = 0.0
         x = self._resolve(b)
         x[self._at_rest] = 0.0
@@ -254,7 +222,7 @@ class SaddlePointSystem:
 
     def _spread(self, x: Floats) -> Floats:
         """Displacements of all dofs of a solution."""
-        return x[: self.nf] if self._link is None else self.system.expand(self._link, x[: self.nf])
+        return self._link.expand(x[: self.nf])
 
     def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
         """Take constraints out that follow from others, in place; returns their multipliers."""
@@ -306,59 +274,29 @@ class SaddlePointSystem:
         rows, columns, values = at.load_stiffness
         return Triplets(np.asarray(rows, np.int64), np.asarray(columns, np.int64), -values)
 
-    def _direct(self, c: Coupling, load: Triplets) -> tuple[Triplets, Triplets]:
-        upper = [
-            c.geometric_stiffness.keep(c.geometric_stiffness.rows <= c.geometric_stiffness.columns)
-        ]
-        rest = []
+    def _entries(
+        self, c: Coupling, load: Triplets, link: LinearizedConstraints
+    ) -> tuple[Triplets, Triplets]:
+        """Upper triangle of what contact and loads add, and what is not symmetric."""
+        n, own = self.system.n_dofs, np.arange(self.n) + self.nf
+        upper, rest = [link.symmetric_half(c.geometric_stiffness)], []
         if len(load.values):
-            import scipy.sparse as sp
-
-            n = self.system.n_dofs
-            whole = sp.coo_array((load.values, (load.rows, load.columns)), shape=(n, n)).tocsr()
-            upper_of, odd = _halves(whole)
-            upper.append(upper_of)
+            even, odd = Triplets.halves(link.reduce_entries(load, n))
+            upper.append(even)
             rest.append(odd)
-        upper += self._borders(c, c.rows)
-        return Triplets.join(upper), Triplets.join([*rest, self._loose(c.follow)])
+        upper += [self._border(c.rows, link), Triplets(own, own, c.diagonal)]
+        return Triplets.join(upper), Triplets.join([*rest, self._border(c.follow, link)])
 
-    def _loose(self, follow: Triplets) -> Triplets:
-        return Triplets(follow.rows, follow.columns + self.nf, follow.values)
+    def _border(self, x: Triplets, link: LinearizedConstraints) -> Triplets:
+        """Entries of dofs by multipliers as those of unknowns."""
+        if link.couples:
+            x = Triplets.of(link.reduce_columns(x.matrix(self.system.n_dofs, self.n)))
+        return Triplets(x.rows, x.columns + self.nf, x.values)
 
-    def _borders(self, c: Coupling, rows: Triplets) -> list[Triplets]:
-        own = np.arange(self.n) + self.nf
-        return [
-            Triplets(rows.rows, rows.columns + self.nf, rows.values),
-            Triplets(own, own, c.diagonal),
-        ]
-
-    def _reduced(self, c: Coupling, load: Triplets, link: Any) -> tuple[Triplets, Triplets]:
-        """The same after elimination of dependent dofs."""
-        import scipy.sparse as sp
-
-        n = self.system.n_dofs
-        t = link.constraints.reduction.whole(link.constraints.rows_of(link.g))
-
-        def square(x: Triplets) -> Any:
-            full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, n)).tocsr()
-            return t.T @ full @ t
-
-        def side(x: Triplets) -> Triplets:
-            full = sp.coo_array((x.values, (x.rows, x.columns)), shape=(n, self.n)).tocsr()
-            found = (t.T @ full).tocoo()
-            return Triplets(found.row.astype(np.int64), found.col.astype(np.int64), found.data)
-
-        upper, odd = _halves(square(load) if len(load.values) else None)
-        geometric_stiffness = square(c.geometric_stiffness)
-        geometric_stiffness, _ = _halves(0.5 * (geometric_stiffness + geometric_stiffness.T))
-        rows = self._borders(c, side(c.rows))
-        rest = [odd, self._loose(side(c.follow))]
-        return Triplets.join([upper, geometric_stiffness, *rows]), Triplets.join(rest)
-
-    def _spare(self, c: Coupling, direct: bool) -> Ints:
+    def _spare(self, c: Coupling, link: LinearizedConstraints) -> Ints:
         """Keys of couplings that may soon be wanted, some of them more than once."""
-        dofs, own = c.near
-        if not direct or not len(dofs):
+        dofs, own = link.neighbors(c.near[0]), c.near[1]
+        if not len(dofs):
             return np.zeros(0, np.int64)
         every = np.concatenate([dofs, np.where(own >= 0, own + self.nf, -1)], axis=1)
         i, j = np.triu_indices(every.shape[1])
@@ -381,20 +319,13 @@ class SaddlePointSystem:
         return out
 
     def _solve(self, data: Floats, rest: Triplets, b: Floats) -> tuple[Floats, int]:
-        system = self.system
-        solver = system.solver
+        linear = self.system.linear
         try:
-            if not self._analyzed or system._analyzed:
-                with system.timed("order"):
-                    solver.analyze(self.indptr, self.rows, self.node, self.after)
-                self._analyzed, system._analyzed = True, False
-            with system.timed("factor"):
-                inertia = solver.factorize(data)
-            system._last = solver
-            with system.timed("solve"):
-                if not len(rest.values):
-                    self._resolve = solver.solve
-                    return solver.solve(b), -1 if inertia is None else inertia[1]
+            inertia = linear.factorize(self.pattern, data)
+            if not len(rest.values):
+                self._resolve = linear.solver.solve
+                return linear.solve(b), -1 if inertia is None else inertia[1]
+            with linear.timed("solve"):
                 x = self._gmres_all(rest, b)
             if x is not None:
                 self._resolve = lambda more: self._resolved(data, rest, more)
@@ -404,7 +335,7 @@ class SaddlePointSystem:
             # vanish for what is no such motion.
             if not len(rest.values) and self._is_null(data, error.mode):
                 raise
-        with system.timed("factor"):
+        with linear.timed("factor"):
             return self._by_lu(data, rest, b), -1
 
     def _is_null(self, data: Floats, mode: Any) -> bool:
@@ -427,7 +358,7 @@ class SaddlePointSystem:
         """:meth:`_gmres` for all columns."""
         out = np.empty_like(b)
         for k in range(b.shape[1]):
-            x = self._gmres(self.system.solver.solve, rest, b[:, k])
+            x = self._gmres(self.system.linear.solver.solve, rest, b[:, k])
             if x is None:
                 return None
             out[:, k] = x
@@ -481,17 +412,16 @@ class SaddlePointSystem:
 
         self.whole += 1
         shape = (self.size, self.size)
-        upper = sp.csc_array((data, self.rows, self.indptr), shape=shape)
         extra = sp.coo_array((rest.values, (rest.rows, rest.columns)), shape=shape)
         # Without this the choice of pivots would depend on the unit of length.
         scale = self._scale(data)
         by = sp.diags_array(scale)
-        matrix = (by @ (upper + sp.triu(upper, 1).T + extra) @ by).tocsc()
+        matrix = (by @ (self.pattern.full(data) + extra) @ by).tocsc()
         matrix.sort_indices()
         lu = Faer(symmetric=False)
         lu.analyze(matrix.indptr, matrix.indices, self.node)
         lu.factorize(matrix.data)
-        self.system._last = lu
+        self.system.linear.last = lu
 
         def solve(more: Floats) -> Floats:
             return np.asarray(scale[:, None] * lu.solve(scale[:, None] * more))
@@ -519,20 +449,4 @@ def _length(a: Floats) -> float:
     return float(np.sqrt(_product(a, a)))
 
 
-def _halves(matrix: Any) -> tuple[Triplets, Triplets]:
-    """Upper triangle of the symmetric part of a matrix, and the skew part if there is one."""
-    import scipy.sparse as sp
-
-    if matrix is None:
-        return Triplets.join([]), Triplets.join([])
-    size = float(abs(matrix).max()) if matrix.nnz else 0.0
-    even = sp.triu(0.5 * (matrix + matrix.T)).tocoo()
-    odd = (0.5 * (matrix - matrix.T)).tocoo()
-    parts = [
-        Triplets(x.row.astype(np.int64), x.col.astype(np.int64), np.asarray(x.data))
-        for x in (even, odd)
-    ]
-    return parts[0], parts[1].keep(np.abs(parts[1].values) > 1e-9 * size)
-
-
-__all__ = ["Coupling", "SaddlePointSystem", "Triplets"]
+__all__ = ["Coupling", "SaddlePointSystem"]

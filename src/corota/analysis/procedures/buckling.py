@@ -112,28 +112,21 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
         )
     change = _derivative(system, u, values, response, loads)
     largest_move = _moved(system, response, loads)
-    constrained, free = system.conditions.constrained, _free(system)
-    product = (
-        system.pattern.multiply
-        if system.constraints is None
-        else system.constraints.reduction.pattern.multiply
-    )
+    constrained, free = system.conditions.constrained, system.constraints.free
+    pattern = system.constraints.pattern
 
     def apply(x: Floats) -> Floats:
         out = np.zeros(x.shape, order="F")
         for k in range(x.shape[1]):
-            out[free, k] = -product(change, np.ascontiguousarray(x[free, k]))
+            out[free, k] = -pattern.multiply(change, np.ascontiguousarray(x[free, k]))
         out[constrained] = 0.0
         return out
 
     def count(bound: float) -> int:
         """Negative pivots of the tangent at a factor: the modes in front of it."""
         at = values + bound * change
-        if system.constraints is None:
-            system.core.mask(at, constrained)
-        else:
-            system.constraints.reduction.pattern.mask(at, constrained[free])
-        inertia = system.solver.factorize(at)
+        pattern.mask(at, constrained[free])
+        inertia = system.linear.factorize(pattern, at)
         return -1 if inertia is None else inertia[1]
 
     start = np.random.default_rng(11).standard_normal((system.n_dofs, BLOCK))
@@ -173,14 +166,9 @@ def _largest_one(system: System, shapes: Floats) -> Floats:
     return shapes
 
 
-def _free(system: System) -> slice | NDArray[np.int64]:
-    """Unknowns among the dofs: all, or those that constraints leave."""
-    return slice(None) if system.constraints is None else system.constraints.free
-
-
 def _unknowns(system: System, at: Evaluation, residual: Floats) -> Floats:
     """Values of the tangent of the unknowns, upper triangle; a copy."""
-    return at.values.copy() if at.link is None else at.link.reduce(at.values, residual)
+    return at.link.reduce(at.values.copy(), residual)
 
 
 def _perturbation(
@@ -260,8 +248,7 @@ def _derivative(
     _, stiffness = loads.external(loads.period, u, own)
     if stiffness is not None or own.any():
         at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
-        link = None if system.constraints is None else system.constraints.link(u)
-        change += _unknowns(system, replace(at, link=link), zero)
+        change += _unknowns(system, replace(at, link=system.constraints.link(u)), zero)
     return change
 
 

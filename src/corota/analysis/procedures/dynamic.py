@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -202,7 +201,7 @@ def _whole_turns(system: System, u: Floats) -> Floats | None:
     supports and constraints may know the number of turns.
     """
     mask = system.is_rotation
-    known = system.constraints is not None or system.contact_term is not None
+    known = system.link.couples or system.contact_term is not None
     if known or not (mask.any() and system.nlgeom):
         return None
     turns = np.round(float(u[mask].mean()) / (2.0 * np.pi))
@@ -288,10 +287,9 @@ def start_motion(
     last = state.carried
     goes_on = last is not None and last[0] is u and last[1] is v
     goes_on = goes_on and step.scheme == "energy_momentum"
-    if system.constraints is not None:
-        # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
-        # they keep their own velocities, which are those of its mid-point relations.
-        system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
+    # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
+    # they keep their own velocities, which are those of its mid-point relations.
+    system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
     rayleigh = _damping(system, step, u, viscous)
     resting = np.zeros_like(zero)
@@ -312,8 +310,7 @@ def start_motion(
     at.values[:] = mass
     at.internal, at.load_stiffness = internal + force + damping - resting, None
     link = at.link
-    if link is not None:
-        at.link = replace(link, curvature=0.0)
+    at.link = link.linear()
     # Dependent dofs have their centripetal accelerations besides.
     a = zero + system.predict(at, support_a)[0]
     # What nodes without mass need for their balance is no acceleration; drilling rotations near
@@ -367,8 +364,7 @@ def initial_velocity(system: System, u: Floats | None = None) -> Floats:
         out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
         out[nodes, 2] = spin
     v = system.from_nodes(out)
-    if system.constraints is not None:
-        _follow_constraints(system, u, v)
+    _follow_constraints(system, u, v)
     return v
 
 
@@ -380,7 +376,6 @@ def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
     ModelError
         If another one was given.
     """
-    assert system.constraints is not None
     given = v.copy()
     system.constraints.complete_rates(u, v)
     off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
@@ -415,7 +410,7 @@ def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Drive
     conditions, constraints = system.conditions, system.constraints
     constrained = conditions.constrained
     v, a = conditions.support_rates(time, dt)
-    if constraints is None or not constrained.any():
+    if not (len(constraints.dependent) and constrained.any()):
         return Driven(constrained, prescribed, v, a)
     u = prescribed.copy()
     constraints.complete(u)

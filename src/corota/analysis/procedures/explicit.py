@@ -125,7 +125,7 @@ def explicit_step(
             "rayleigh",
             step.where,
         )
-    if system.constraints is not None:
+    if system.link.couples:
         raise UnsupportedError(
             "central differences take no constraints and no local axes: eliminated dofs couple "
             "the masses of others, and the mass is no diagonal any more; use an implicit scheme",

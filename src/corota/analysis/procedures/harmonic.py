@@ -177,7 +177,7 @@ def _direct(lin: LinearMotion, step: SteadyState, number: int) -> Answer:
     order = np.arange(2 * n).reshape(2, n).T.ravel()
     node = np.repeat(lin.node[lin.active], 2)
     multiplier = np.repeat(lin.multiplier[lin.active], 2)
-    threads = getattr(lin.system.solver, "threads", 1)
+    threads = getattr(lin.system.linear.solver, "threads", 1)
 
     def answer(w: float, load: Complex, move: Complex) -> Complex:
         h = lin.restrict(move)

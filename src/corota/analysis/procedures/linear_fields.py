@@ -54,8 +54,7 @@ class LinearFields:
         return fields, sums
 
     def _recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
-        if self.system.constraints is not None:
-            self.system.constraints.complete(u)
+        self.system.constraints.complete(u)
         return self.system.recover(u)
 
 

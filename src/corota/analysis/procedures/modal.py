@@ -195,7 +195,7 @@ def supported(lin: LinearMotion, forces: Floats, external: Floats) -> Evaluation
     """
     system = lin.system
     base = lin.at.internal - external
-    reaction = base.copy() if lin.link is None else lin.link.gather(base)
+    reaction = np.array(lin.link.gather(base))
     reaction[lin.free] += forces[: lin.nf]
     internal = external + np.where(system.conditions.constrained, reaction, 0.0)
     return Evaluation(internal, external, np.abs(internal), system.pattern.zeros())

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.equations import Evaluation, failure
 from corota.analysis.terms.attachments import Attachments
 
@@ -38,7 +39,7 @@ class MotionState:
     u, v, a : ndarray, shape (n_dofs,)
     internal, external, inertia, damping : ndarray, shape (n_dofs,)
         Forces at `u`, each with the sign of the residual's first term but `external`.
-    link : Link or None
+    link : LinearizedConstraints
         What the constraints make of these forces.
     carried : ndarray, shape (n_dofs,), or None
         Acceleration that Newmark's relations go on with; None where that is `a`.
@@ -51,12 +52,12 @@ class MotionState:
     external: Floats
     inertia: Floats
     damping: Floats
-    link: LinearizedConstraints | None = None
+    link: LinearizedConstraints = IDENTITY
     carried: Floats | None = None
 
     def gathered(self, force: Floats) -> Floats:
         """A force with what dependent dofs pass on to their masters."""
-        return force if self.link is None else self.link.gather(force)
+        return self.link.gather(force)
 
     def reaction(self) -> Floats:
         """What supports and nothing else must carry, at held dofs."""
@@ -299,7 +300,7 @@ class NewmarkMotion:
         if s.alpha_m or s.alpha_f:
             a = (1.0 - s.alpha_m) * carried + s.alpha_m * before - s.alpha_f * b.a
             a /= 1.0 - s.alpha_f
-        elif driven.constrained.any() or self.system.constraints is not None:
+        elif driven.constrained.any() or len(self.system.constraints.eliminated):
             a = carried.copy()
         constrained = driven.constrained
         if constrained.any():
@@ -308,9 +309,9 @@ class NewmarkMotion:
             rest = (u - driven.u)[constrained]
             v[constrained] = driven.v[constrained] + self.c_v * rest
             a[constrained] = driven.a[constrained] + self.c_a * rest
-        if self.system.constraints is not None:
-            self.system.constraints.complete_rates(u, v, a)
-            carried[self.system.constraints.eliminated] = a[self.system.constraints.eliminated]
+        eliminated = self.system.constraints.eliminated
+        self.system.constraints.complete_rates(u, v, a)
+        carried[eliminated] = a[eliminated]
         carried[constrained] = a[constrained]
         return v, a, carried
 
@@ -383,8 +384,7 @@ class ConservingMotion:
         n = system.n_dofs
         force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
         values = system.borrow_tangent()
-        if system.constraints is not None:
-            system.constraints.complete(u)
+        system.constraints.complete(u)
         d = self.increment(u)
         begun = self._begun()
         x1, x0, v0 = (system.in_space(x) for x in (u, b.u, begun))
@@ -414,7 +414,7 @@ class ConservingMotion:
         force += hung
         scale += np.abs(hung)
         values[system.pattern.diagonal] += 2.0 / (dt * dt) * attached.mass
-        link = None if system.constraints is None else system.constraints.secant(b.u, u)
+        link = system.constraints.secant(b.u, u)
         at = Evaluation(force, external, scale, values, stiffness, link)
         self.inertia.weigh(at, d, 2.0 / (dt * dt))
         damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.damping, (b.u, u, dt))

@@ -416,8 +416,7 @@ class Conditions:
                     item.where,
                 )
             dofs = dofs[dofs >= 0]
-            if self.system.constraints is not None:
-                self.system.constraints.refuse_constrained(dofs, item.where)
+            self.system.constraints.refuse_constrained(dofs, item.where)
             self.constrained[dofs] = True
             self.support.set(dofs, item.value, self._amplitude(item.amplitude, item.where))
         self.fixed = np.flatnonzero(self.constrained)
@@ -457,8 +456,7 @@ class Conditions:
                 else "belongs to no element and cannot carry a force"
             )
             raise ModelError(f"node {label} {what}", item.where)
-        if self.system.constraints is not None:
-            self.system.constraints.refuse_loaded(dofs, item.where)
+        self.system.constraints.refuse_loaded(dofs, item.where)
         return dofs
 
     def _replace_forces(self, forces: list[NodalForce]) -> None:

@@ -25,7 +25,6 @@ from corota.errors import SingularError, UnsupportedError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import Evaluation, System
 
     Floats = NDArray[np.float64]
@@ -81,10 +80,8 @@ class Linearized:
         self._load = load
         with system.conditions.as_reached():
             self.at, coupling = self._evaluate(u)
-        self.link: LinearizedConstraints | None = self.at.link
-        self.free = (
-            np.arange(system.n_dofs) if system.constraints is None else system.constraints.free
-        )
+        self.link = self.at.link
+        self.free = system.constraints.free
         self.nf = len(self.free)
         self.n_multipliers = 0 if coupling is None else len(coupling.diagonal)
         self.n = self.nf + self.n_multipliers
@@ -153,17 +150,10 @@ class Linearized:
         shape = (self.system.n_dofs, self.n_multipliers)
         rows = coupling.rows
         side = sp.coo_array((rows.values, (rows.rows, rows.columns)), shape=shape).tocsc()
-        if self.link is not None:
-            side = self._whole().T @ side
+        side = self.link.reduce_columns(side)
         return sp.block_array(
             [[k, side], [side.T, sp.diags_array(coupling.diagonal)]], format="csc"
         )
-
-    def _whole(self) -> Any:
-        """All dofs in global axes by the independent ones."""
-        assert self.link is not None
-        constraints = self.link.constraints
-        return constraints.reduction.whole(constraints.rows_of(self.link.g))
 
     # -- between dofs and unknowns -----------------------------------------------------
 
@@ -192,10 +182,8 @@ class Linearized:
         if triplets is not None:
             rows, columns, entries = triplets
             matrix = matrix + sp.coo_array((entries, (rows, columns)), shape=(n, n))
-        if self.link is not None:
-            force = np.zeros(n) if residual is None else residual
-            matrix = self.link.reduce_full(matrix.tocsr(), force)
-        return matrix.tocsc()
+        force = np.zeros(n) if residual is None else residual
+        return self.link.reduce_full(matrix.tocsr(), force).tocsc()
 
     def padded(self, matrix: Any) -> Any:
         """A matrix of the independent dofs with empty rows and columns of the multipliers."""
@@ -215,7 +203,7 @@ class Linearized:
 
     def gather(self, force: Floats) -> Floats:
         """Forces at dofs along the axes of their nodes as those on the active unknowns."""
-        found = force if self.link is None else self.link.gather(force)
+        found = self.link.gather(force)
         padded = np.concatenate(
             [found[self.free], np.zeros((self.n_multipliers, *force.shape[1:]))]
         )
@@ -231,7 +219,7 @@ class Linearized:
         if np.iscomplexobj(z):
             return self.expand(z.real) + 1j * self.expand(z.imag)
         dofs = z[: self.nf]
-        return np.array(dofs) if self.link is None else self.system.expand(self.link, dofs)
+        return np.array(self.link.expand(dofs))
 
     def from_active(self, x: Any) -> Any:
         """All unknowns from the active ones, the others zero."""
@@ -248,7 +236,7 @@ class Linearized:
             In terms of nodes.
         """
         a = self.active
-        threads = getattr(self.system.solver, "threads", 1)
+        threads = getattr(self.system.linear.solver, "threads", 1)
         try:
             return Factor(matrix, symmetric, self.node[a], self.multiplier[a], threads)
         except SingularError as error:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.linear.saddle_point import Triplets
+from corota.analysis.linear.triplets import Triplets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from corota.analysis.linear.saddle_point import Coupling, SaddlePointSystem, Triplets
+from corota.analysis.linear.saddle_point import Coupling, SaddlePointSystem
+from corota.analysis.linear.triplets import Triplets
 from corota.analysis.newton import PROGRESS, GiveUp, Outcome, ResidualNorms
 from corota.analysis.terms.contact.columns import border, stacked
 from corota.analysis.terms.contact.contact import ContactState, ContactTerm
