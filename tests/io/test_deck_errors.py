@@ -17,7 +17,6 @@ CASES = [
     ("*SOLID SECTION", "*SOLID SECTON", 14, 1, "did you mean *SOLID SECTION?"),
     ("*STATIC", "*QWERTY", 20, 1, "unknown keyword *QWERTY"),
     ("*STATIC", "*VISCO", 20, 1, "not part of this version"),
-    ("*STATIC", "*STATIC, STABILIZE", 20, 10, "stabilisation changes"),
     ("*STATIC", "*STATIC, DIRCT", 20, 10, "did you mean DIRECT?"),
     ("*BOUNDARY", "*BOUNDARY, FIXED", 16, 12, "FIXED is not supported"),
     ("*BOUNDARY", "*BOUNDARY, OP=OLD", 16, 15, "expected NEW, MOD"),

@@ -16,6 +16,7 @@ from corota.io.deck.lexer import Card, Row, key
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from corota.io.deck.amplitudes import Curve
     from corota.io.deck.cards.attachments import AttachedDraft
     from corota.io.deck.cards.contact import InteractionDraft, PairDraft
     from corota.io.deck.cards.lines import LineDraft
@@ -140,6 +141,8 @@ class MaterialDraft:
     constants: list[float] = field(default_factory=list)
     law_where: Location | None = None
     law_card: Card | None = None
+    #: Rows of constants and temperature, where there are several.
+    table: list[list[float]] = field(default_factory=list)
     rho: float = 0.0
     damping: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDraft | None = None
@@ -253,6 +256,8 @@ class Deck:
     instances: dict[str, Instance] = field(default_factory=dict)
     materials: dict[str, MaterialDraft] = field(default_factory=dict)
     amplitudes: dict[str, Amplitude] = field(default_factory=dict)
+    #: Amplitudes without an end, sampled when the steps are known.
+    curves: dict[str, Curve] = field(default_factory=dict)
     time_points: dict[str, Floats] = field(default_factory=dict)
     supports: list[Draft] = field(default_factory=list)
     steps: list[StepDraft] = field(default_factory=list)

@@ -85,7 +85,9 @@ KEYWORDS: dict[str, Keyword] = {
     "ELEMENT": Keyword(mesh.element, "TYPE ELSET", place="model"),
     "NSET": Keyword(mesh.nset, "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"),
     "ELSET": Keyword(mesh.elset, "ELSET GENERATE INSTANCE INTERNAL", place="model"),
-    "SURFACE": Keyword(mesh.surface, "NAME TYPE INTERNAL FILLETRADIUS", place="model"),
+    "SURFACE": Keyword(
+        mesh.surface, "NAME TYPE INTERNAL FILLETRADIUS", "REGIONTYPE TRIM MAXRATIO", place="model"
+    ),
     "MATERIAL": Keyword(material.material, "NAME", place="model"),
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
     "DENSITY": Keyword(material.density, place="model"),
@@ -111,27 +113,55 @@ KEYWORDS: dict[str, Keyword] = {
         place="model",
     ),
     "BEAMSECTION": Keyword(
-        lines.beam_section, "ELSET MATERIAL SECTION OFFSET1 OFFSET2", place="model"
+        lines.beam_section,
+        "ELSET MATERIAL SECTION OFFSET1 OFFSET2 TEMPERATURE POISSON",
+        "LUMP ROTARYINERTIA CONTROLS ORIENTATION",
+        place="model",
     ),
     "BEAMGENERALSECTION": Keyword(
-        lines.beam_general_section, "ELSET SECTION DENSITY OFFSET1 OFFSET2", place="model"
+        lines.beam_general_section,
+        "ELSET SECTION DENSITY OFFSET1 OFFSET2",
+        "POISSON LUMP ROTARYINERTIA ZERO",
+        place="model",
     ),
     "SPRING": Keyword(lines.spring, "ELSET NONLINEAR", place="model"),
     "ORIENTATION": Keyword(material.orientation, "NAME SYSTEM", "DEFINITION", place="model"),
-    "AMPLITUDE": Keyword(step.amplitude, "NAME TIME SHIFTX SHIFTY DEFINITION VALUE"),
+    "AMPLITUDE": Keyword(
+        step.amplitude,
+        "NAME TIME SHIFTX SHIFTY DEFINITION VALUE FIXEDINTERVAL BEGIN",
+        "SMOOTH",
+    ),
     "TIMEPOINTS": Keyword(step.time_points, "NAME TIME GENERATE"),
-    "STEP": Keyword(step.step, "NLGEOM INC AMPLITUDE PERTURBATION", "NAME UNSYMM"),
+    "STEP": Keyword(
+        step.step,
+        "NLGEOM INC AMPLITUDE PERTURBATION",
+        "NAME UNSYMM EXTRAPOLATION SOLVER CONVERTSDI",
+    ),
     "ENDSTEP": Keyword(step.end_step),
-    "STATIC": Keyword(path.static, "DIRECT RIKS", "SOLVER TIMERESET"),
+    "STATIC": Keyword(
+        path.static,
+        "DIRECT RIKS STABILIZE",
+        "SOLVER TIMERESET ALLSDTOL CONTINUE FACTOR ADIABATIC LONGTERM",
+    ),
     "BUCKLE": Keyword(path.buckle, "", "SOLVER EIGENSOLVER"),
     "CONTROLS": Keyword(path.controls, "PARAMETERS RESET", "ANALYSIS TYPE"),
     "DYNAMIC": Keyword(
-        dynamic.dynamic, "ALPHA DIRECT EXPLICIT", "SOLVER RELATIVETOABSOLUTE APPLICATION NOHAF"
+        dynamic.dynamic,
+        "ALPHA BETA GAMMA DIRECT EXPLICIT APPLICATION",
+        "SOLVER RELATIVETOABSOLUTE NOHAF HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
+        "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD",
     ),
     "COMPLEXFREQUENCY": Keyword(dynamic.complex_frequency, "CORIOLIS", "SOLVER STORAGE"),
-    "FREQUENCY": Keyword(dynamic.frequency, "", "SOLVER STORAGE EIGENSOLVER NORMALIZATION"),
+    "FREQUENCY": Keyword(
+        dynamic.frequency,
+        "",
+        "SOLVER STORAGE EIGENSOLVER NORMALIZATION ACOUSTICCOUPLING RESIDUALMODES "
+        "NUMBERINTERVAL SIM",
+    ),
     "MODALDYNAMIC": Keyword(dynamic.modal_dynamic, "", "SOLVER DIRECT"),
-    "STEADYSTATEDYNAMICS": Keyword(dynamic.steady_state, "DIRECT", "SOLVER"),
+    "STEADYSTATEDYNAMICS": Keyword(
+        dynamic.steady_state, "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING"
+    ),
     "MODALDAMPING": Keyword(dynamic.modal_damping, "RAYLEIGH", "MODAL"),
     "DAMPING": Keyword(dynamic.damping, "ALPHA BETA", place="model"),
     "MASS": Keyword(attachments.mass, "ELSET", place="model"),
@@ -140,20 +170,27 @@ KEYWORDS: dict[str, Keyword] = {
     "EQUATION": Keyword(tie.equation, place="model"),
     "MPC": Keyword(tie.mpc, place="model"),
     "RIGIDBODY": Keyword(
-        tie.rigid_body, "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE", place="model"
+        tie.rigid_body,
+        "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE PINNSET TIENSET",
+        "POSITION ISOTHERMAL",
+        place="model",
     ),
     "COUPLING": Keyword(tie.coupling, "REFNODE SURFACE", "CONSTRAINTNAME", place="model"),
     "KINEMATIC": Keyword(tie.kinematic, place="model"),
-    "DISTRIBUTING": Keyword(tie.distributing, place="model"),
+    "DISTRIBUTING": Keyword(tie.distributing, ignored="COUPLING", place="model"),
     "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
     "CONTACTPAIR": Keyword(
         contact.contact_pair,
         "INTERACTION TYPE ADJUST SMALLSLIDING",
-        "EXTENSIONZONE HCRIT SMOOTH TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS",
+        "EXTENSIONZONE HCRIT SMOOTH TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS OP WEIGHT CPSET "
+        "MECHANICALCONSTRAINT GEOMETRICCORRECTION MINIMUMDISTANCE",
         place="model",
     ),
     "SURFACEINTERACTION": Keyword(
-        contact.surface_interaction, "NAME", "DEPVAR PROPERTIES UNSYMM", place="model"
+        contact.surface_interaction,
+        "NAME",
+        "DEPVAR PROPERTIES UNSYMM PADTHICKNESS TRACKINGTHICKNESS",
+        place="model",
     ),
     "SURFACEBEHAVIOR": Keyword(
         contact.surface_behavior,
@@ -184,10 +221,12 @@ KEYWORDS: dict[str, Keyword] = {
         "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
         "NSET VARIABLE CPSET SURFACE",
     ),
-    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE"),
-    "CLOAD": Keyword(step.cload, "OP AMPLITUDE LOADCASE"),
-    "DLOAD": Keyword(step.dload, "OP AMPLITUDE LOADCASE"),
-    "DSLOAD": Keyword(step.dsload, "OP AMPLITUDE FOLLOWER LOADCASE"),
+    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE", "REGIONTYPE"),
+    "CLOAD": Keyword(step.cload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
+    "DLOAD": Keyword(step.dload, "OP AMPLITUDE LOADCASE", "REGIONTYPE CONSTANTRESULTANT"),
+    "DSLOAD": Keyword(
+        step.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
+    ),
     "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
     "NODEPRINT": Keyword(output.node_print, _PRINT, "GLOBAL SUMMARY"),
     "ELPRINT": Keyword(output.el_print, _PRINT, "GLOBAL POSITION SUMMARY"),
@@ -359,13 +398,11 @@ UNSUPPORTED: dict[str, str] = {
 
 #: Parameters that change the answer and are refused by name.
 REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
-    ("STATIC", "STABILIZE"): "stabilisation changes the answer and is not offered",
     ("STATIC", "TOTALTIMEATSTART"): "the total time starts at zero",
     ("BOUNDARY", "FIXED"): "prescribe the value instead",
     ("BOUNDARY", "USER"): "no user subroutine is called; use *AMPLITUDE",
     ("BOUNDARY", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("BOUNDARY", "SUBMODEL"): "submodels are not part of this version",
-    ("CLOAD", "FOLLOWER"): "nodal forces keep their direction",
     ("CLOAD", "USER"): "no user subroutine is called; use *AMPLITUDE",
     ("CLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("CLOAD", "SUBMODEL"): "submodels are not part of this version",
@@ -377,7 +414,6 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("INITIALCONDITIONS", "USER"): "no user subroutine is called; write the values",
     ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
-    ("AMPLITUDE", "SMOOTH"): "give more points in the table",
     ("NFILL", "SINGULAR"): "move the nodes beside the crack tip by *NODE",
     ("NFILL", "TWOSTEP"): "give BIAS for single intervals",
     ("NGEN", "SYSTEM"): "give the point of the curve in global axes",

@@ -280,9 +280,11 @@ class Lexer:
             source = self._source(shown, data)
             if _next_keyword(source.data, 0) < len(source.data):
                 self._error(
-                    card.at("INPUT"), f"{numerals.shown(name)} has keywords; data lines only", card,
+                    card.at("INPUT"),
+                    f"{numerals.shown(name)} has keywords; data lines only",
+                    card,
                     hint="take it in by *INCLUDE, INPUT=",
-                )  # fmt: skip
+                )
                 return
             card.chunks.append(Chunk(source, 0, len(source.data), 1))
             del card.parameters["INPUT"]

@@ -62,6 +62,34 @@ def _common(draft: MaterialDraft) -> dict[str, Any]:
     }
 
 
+def settle_temperature(deck: Deck, temperature: float | None) -> None:
+    """Take constants that depend on temperature at the one that the whole model has.
+
+    Where it differs (``None``), such constants are refused.
+    """
+    for draft in deck.materials.values():
+        if not draft.table or draft.law_card is None:
+            continue
+        if temperature is None:
+            deck.error(
+                draft.law_card,
+                draft.law_where,
+                "constants that depend on temperature need one temperature in the whole model; "
+                "this deck changes it",
+                hint="give one set of constants at a mean temperature",
+            )
+            draft.law_card = None
+            continue
+        table = np.array(sorted(draft.table, key=lambda row: row[-1]))
+        draft.constants = [
+            float(np.interp(temperature, table[:, -1], column)) for column in table[:, :-1].T
+        ]
+        deck.note(
+            f"{draft.law_where}: the constants of {draft.name} are those at the temperature "
+            f"{temperature:g}, which the whole model has"
+        )
+
+
 def share_damping(deck: Deck) -> None:
     """Damping that all used materials have alike becomes that of the model.
 

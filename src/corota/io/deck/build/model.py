@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -11,7 +12,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.build.contact import build_contacts
-from corota.io.deck.build.materials import build_material, share_damping
+from corota.io.deck.build.materials import build_material, settle_temperature, share_damping
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of, views_in
 from corota.io.deck.build.sets import Elements, Sets
 from corota.io.deck.build.ties import build_tie
@@ -23,12 +24,13 @@ from corota.io.deck.elements import DRILLING, ELEMENTS, LINE_ELEMENTS, LINES
 from corota.io.deck.lexer import key
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
 from corota.model.local_strain import LocalStrain
+from corota.model.materials import Orthotropic
 from corota.model.model import Model
 from corota.model.sections import Section
 from corota.model.steps import Static, SteadyState
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from corota.io.deck.cards.tie import TieDraft
     from corota.io.deck.deck import Deck, Draft, SectionDraft, StepDraft
@@ -58,6 +60,10 @@ class ModelBuilder:
         """Everything."""
         self.sets.fill()
         share_damping(self.deck)
+        until = sum(step.times[1] for step in self.deck.steps)
+        for name, curve in self.deck.curves.items():
+            self.deck.amplitudes[name] = curve.sampled(until)
+        settle_temperature(self.deck, self._temperature())
         self._sections()
         model, deck = self.model, self.deck
         for tie in deck.ties:
@@ -187,6 +193,21 @@ class ModelBuilder:
                 )
                 return
             angle = named[key(draft.orientation)]
+            if math.isnan(angle):
+                if isinstance(material, Orthotropic):
+                    text = "axes that turn about a point are not part of this version"
+                    deck.error(
+                        card,
+                        card.at("ORIENTATION"),
+                        text,
+                        hint="give *ORIENTATION, SYSTEM=RECTANGULAR to parts of the body",
+                    )
+                    return
+                deck.note(
+                    f"{card.where}: {card.spelled}: the axes of an isotropic material do "
+                    "not matter; results are in global axes"
+                )
+                angle = 0.0
             if view.instance is not None:
                 angle += view.instance.angle
         groups: dict[tuple[str, str], list[Ints]] = {}
@@ -352,6 +373,53 @@ class ModelBuilder:
             "use elements Q4D or OPT, or map them: --element CPS4=Q4D",
         )
 
+    def _temperature(self) -> float | None:
+        """Temperature of the whole model in all steps; ``None`` where there are several."""
+        deck = self.deck
+        if not any(m.table for m in deck.materials.values()):
+            return 0.0
+        if any(d.kind == "temperature" for step in deck.steps for d in step.loads):
+            return None
+        found = np.zeros(self.mesh.n_nodes)
+        for item in deck.initial:
+            nodes = self._nodes(item.draft) if item.draft.kind == "initial temperature" else None
+            if nodes is not None:
+                found[self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes] = (
+                    item.draft.value[0]
+                )
+        cells = [block.nodes.ravel() for block in self.mesh.cells]
+        mine = found[np.concatenate([np.zeros(0, np.int64), *cells])]
+        return float(mine[0]) if len(mine) and (mine == mine[0]).all() else None
+
+    def _loads(self, draft: Draft) -> list[Load]:
+        if draft.kind == "surface shear":
+            return list(self._shear(draft))
+        load = self._load(draft)
+        return [] if load is None else [load]
+
+    def _shear(self, draft: Draft) -> Iterator[Load]:
+        """Tractions along the edges of a surface, towards a direction, by their tangent."""
+        name, amplitude = self._edge_set(draft), self._amplitude(draft)
+        if name is None or amplitude is None:
+            return
+        edges = self.mesh.edge_sets[name]
+        ends = np.array([nodes[:2] for nodes in self.mesh.edge_nodes(edges)])
+        along = self.mesh.points[ends[:, 1]] - self.mesh.points[ends[:, 0]]
+        along = np.asarray(along / np.hypot(along[:, :1], along[:, 1:]), np.float64)
+        size = math.hypot(*draft.value)
+        share = along @ (np.array(draft.value) / size)
+        if (np.abs(share) < 1e-6).any():
+            self.deck.row_error(
+                draft.card, draft.row, 3, "the direction of the shear is normal to an edge"
+            )
+            return
+        # Edges of one tangent go into one load.
+        vectors = np.asarray(np.round(along * np.sign(share)[:, None], 12))
+        for vector in np.unique(vectors, axis=0):
+            mine = edges[(vectors == vector).all(axis=1)]
+            x, y = (size * vector).tolist()
+            yield EdgeLoad(mine, "traction", (x, y), amplitude, where=draft.row.where)
+
     def _load(self, draft: Draft) -> Load | None:
         amplitude = self._amplitude(draft)
         where = draft.row.where
@@ -438,7 +506,7 @@ class ModelBuilder:
         behind = {id(d) for d in (*draft.supports, *draft.loads) if self._is_imaginary(d, draft)}
         supports = self._supports([d for d in draft.supports if id(d) not in behind])
         ahead = [d for d in draft.loads if id(d) not in behind]
-        loads = [load for load in map(self._load, ahead) if load is not None]
+        loads = [load for item in ahead for load in self._loads(item)]
         for request in draft.outputs:
             self._check_target(request.kind, request.where, draft)
         first, period, least, most = draft.times
@@ -446,13 +514,13 @@ class ModelBuilder:
             make = draft.make or Static
             options = draft.options or {"ramp": draft.ramp}
             if behind:
-                late = [self._load(d) for d in draft.loads if id(d) in behind]
+                late = [x for d in draft.loads if id(d) in behind for x in self._loads(d)]
                 options = {
                     **options,
                     "imaginary_supports": self._supports(
                         [d for d in draft.supports if id(d) in behind]
                     ),
-                    "imaginary_loads": [load for load in late if load is not None],
+                    "imaginary_loads": late,
                 }
             return make(
                 nlgeom=draft.nlgeom if draft.preload is None else draft.preload,

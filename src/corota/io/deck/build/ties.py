@@ -141,9 +141,11 @@ def single_node(deck: Deck, find: Find, draft: Draft, model: Model) -> int | Non
     nodes = model.mesh.nodes_of(found) if isinstance(found, str) else found
     if len(nodes) != 1:
         deck.row_error(
-            draft.card, draft.row, 0,
+            draft.card,
+            draft.row,
+            0,
             f"one node is expected; the set {draft.target} has {len(nodes)}",
-        )  # fmt: skip
+        )
         return None
     return int(nodes[0])
 

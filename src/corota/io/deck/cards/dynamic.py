@@ -16,6 +16,14 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
 
 
+#: What ``APPLICATION=`` asks for, and the ALPHA of HHT that goes with it.
+APPLICATIONS = {
+    "TRANSIENTFIDELITY": -0.05,
+    "MODERATEDISSIPATION": -1.0 / 3.0,
+    "QUASI-STATIC": 0.0,
+}
+
+
 def _procedure(deck: Deck, card: Card) -> StepDraft | None:
     now = open_step(deck, card)
     if now is not None and now.procedure is not None:
@@ -37,18 +45,44 @@ def dynamic(deck: Deck, card: Card) -> None:
     if now is None:
         return
     now.direct = card.has("DIRECT")
-    alpha = deck.parameter_number(card, "ALPHA", -0.05, -1.0 / 3.0)
+    use = deck.choice(card, "APPLICATION", APPLICATIONS, "TRANSIENTFIDELITY")
+    alpha = deck.parameter_number(card, "ALPHA", APPLICATIONS[use], -1.0 / 3.0)
     if alpha > 0.0:
         deck.error(card, card.at("ALPHA"), f"ALPHA must lie in [-1/3, 0], not {alpha:g}")
         return
+    fits = {"BETA": 0.25 * (1.0 - alpha) ** 2, "GAMMA": 0.5 - alpha}
+    for name, value in fits.items():
+        given = deck.parameter_number(card, name, value, 0.0)
+        if abs(given - value) > 1e-3:
+            deck.error(
+                card,
+                card.at(name),
+                f"{name}={given:g} does not belong to ALPHA={alpha:g} of the scheme, which takes "
+                f"{value:g}",
+                hint="leave BETA and GAMMA out, or give ALPHA alone",
+            )
+            return
     explicit = card.has("EXPLICIT")
+    quasi_static = use == "QUASI-STATIC" and not explicit
+    if use != "TRANSIENTFIDELITY" and not explicit:
+        what = (
+            "generalized-alpha with rho_inf = 0, loads that grow over the step"
+            if quasi_static
+            else "HHT with the most dissipation, ALPHA = -1/3"
+        )
+        deck.note(f"{card.where}: APPLICATION={card.value('APPLICATION')} is {what}")
     now.make = Dynamic
     now.options = {
         "alpha": alpha,
-        "scheme": "central_difference" if explicit else "hht",
+        "scheme": "central_difference"
+        if explicit
+        else "generalized_alpha"
+        if quasi_static
+        else "hht",
+        **({"rho_inf": 0.0} if quasi_static else {}),
         "mass": "lumped" if explicit else "consistent",
         # Loads act at once unless an amplitude says otherwise.
-        "ramp": _grows(now),
+        "ramp": _grows(now) or (quasi_static and not now.card.has("AMPLITUDE")),
         "rayleigh": deck.damping,
     }
     step_times(deck, card, now)

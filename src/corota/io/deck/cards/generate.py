@@ -27,8 +27,12 @@ def ngen(deck: Deck, card: Card) -> None:
     """``*NGEN[, LINE=C or P]``: first, last node, increment[, node or point of the curve]."""
     curve = deck.choice(card, "LINE", ("C", "P"), "")
     for row in card.rows():
-        numbers = _integers(deck, card, row, (("the first node", None), ("the last node", None),
-                                              ("the increment", 1)))  # fmt: skip
+        numbers = _integers(
+            deck,
+            card,
+            row,
+            (("the first node", None), ("the last node", None), ("the increment", 1)),
+        )
         if numbers is None:
             return
         first, last, by = numbers
@@ -74,8 +78,9 @@ def _extra_point(deck: Deck, card: Card, row: Row) -> Floats | None:
     if row.get(3):
         label = deck.integer(card, row, 3, "the node of the curve")
         return None if label is None else _point(deck, card, row, 3, label)
-    values = [deck.real(card, row, 4 + i, f"{'xyz'[i]} of the curve's point", 0.0)
-              for i in range(3)]  # fmt: skip
+    values = [
+        deck.real(card, row, 4 + i, f"{'xyz'[i]} of the curve's point", 0.0) for i in range(3)
+    ]
     return None if None in values else np.array([float(v or 0.0) for v in values])
 
 
@@ -296,9 +301,12 @@ def _set(deck: Deck, card: Card, row: Row, index: int, *, nodes: bool) -> Ints |
     if found is None:
         table = deck.scope.nsets if nodes else deck.scope.elsets
         deck.row_error(
-            card, row, index, f"no node set named {numerals.shown(text)} before this card",
+            card,
+            row,
+            index,
+            f"no node set named {numerals.shown(text)} before this card",
             nearest(text, table) if text else "",
-        )  # fmt: skip
+        )
     return found
 
 

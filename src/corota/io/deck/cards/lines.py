@@ -32,6 +32,24 @@ RECTANGLE, CIRCLE, TUBE = 5.0 / 6.0, 0.9, 0.5
 PLANAR = {1: 0, 2: 1, 6: 2}
 
 
+#: Sizes of the sections of ``*BEAM SECTION``.
+SIZES: dict[str, tuple[str, ...]] = {
+    "RECT": ("the size along the first axis", "the size along the second axis"),
+    "CIRC": ("the first diameter", "the second diameter"),
+    "PIPE": ("the outer radius", "the thickness"),
+    "BOX": ("the width", "the height", "wall 1", "wall 2", "wall 3", "wall 4"),
+    "I": (
+        "the place of the node",
+        "the height",
+        "the lower width",
+        "the upper width",
+        "the lower thickness",
+        "the upper thickness",
+        "the thickness of the web",
+    ),
+}
+
+
 @dataclass(slots=True)
 class LineDraft:
     """A section of line elements: ``role`` is ``beam`` or ``spring``."""
@@ -95,17 +113,27 @@ def _common(deck: Deck, card: Card, most: int) -> list[Row] | None:
 def beam_section(deck: Deck, card: Card) -> None:
     """``*BEAM SECTION, ELSET=, MATERIAL=, SECTION=RECT, CIRC or PIPE``: sizes; first axis."""
     elset, material = deck.required(card, "ELSET"), deck.required(card, "MATERIAL")
-    kind = deck.choice(card, "SECTION", ("RECT", "CIRC", "PIPE"), "")
-    rows = _common(deck, card, 2)
+    kind = deck.choice(card, "SECTION", SIZES, "")
+    rows = _common(deck, card, 3 if card.has("TEMPERATURE") else 2)
     if rows is None or not kind:
         if not kind and not card.has("SECTION"):
-            deck.error(card, card.where, "SECTION= is missing: RECT, CIRC or PIPE")
+            deck.error(card, card.where, f"SECTION= is missing: {', '.join(SIZES)}")
         return
+    for name in ("TEMPERATURE", "POISSON"):
+        if card.has(name):
+            deck.note(f"{card.where}: {card.spelled}: {name} is ignored: sections keep their shape")
     normal = _out_of_plane(deck, card, rows)
     if normal is None:
         return
     row = rows[0]
-    if kind == "CIRC" and not row.get(1):
+    names = SIZES[kind]
+    if kind == "CIRC" and not row.get(1) and _of_abaqus(deck, card):
+        deck.note(f"{row.where}: one number of a circle is its radius, as in Abaqus")
+        radius = _numbers(deck, card, row, ("the radius",))
+        if radius is None:
+            return
+        sizes: list[float] | None = [2.0 * radius[0], 2.0 * radius[0]]
+    elif kind == "CIRC" and not row.get(1):
         deck.row_error(
             card,
             row,
@@ -114,13 +142,9 @@ def beam_section(deck: Deck, card: Card) -> None:
             "give both diameters: d, d",
         )
         return
-    names = {
-        "RECT": ("the size along the first axis", "the size along the second axis"),
-        "CIRC": ("the first diameter", "the second diameter"),
-        "PIPE": ("the outer radius", "the thickness"),
-    }[kind]
-    deck.extra_fields(card, row, len(names))
-    sizes = _numbers(deck, card, row, names)
+    else:
+        deck.extra_fields(card, row, len(names))
+        sizes = _numbers(deck, card, row, names)
     if sizes is None:
         return
     if kind == "PIPE":
@@ -130,6 +154,38 @@ def beam_section(deck: Deck, card: Card) -> None:
             return
         area = math.pi * (outer**2 - inner**2)
         profile = (area, 0.25 * math.pi * (outer**4 - inner**4), TUBE * area)
+    elif kind == "BOX":
+        # Walls right, top, left, bottom of a box of width a and height b along the two axes.
+        a, b, right, top, left, bottom = sizes
+        walls = [
+            (right, b, 0.5 * (a - right), 0.0),
+            (left, b, 0.5 * (left - a), 0.0),
+            (a - left - right, top, 0.5 * (left - right), 0.5 * (b - top)),
+            (a - left - right, bottom, 0.5 * (left - right), 0.5 * (bottom - b)),
+        ]
+        if a <= left + right or b <= top + bottom:
+            deck.row_error(card, row, 2, "the walls fill the box")
+            return
+        profile = _of_walls(walls, normal)
+    elif kind == "I":
+        # Height, then width of the lower and the upper flange and the three thicknesses.
+        at, height, low, high, t_low, t_high, web = sizes
+        if height <= t_low + t_high:
+            deck.row_error(card, row, 1, "the flanges fill the height")
+            return
+        mid = height - t_low - t_high
+        walls = [
+            (low, t_low, 0.0, 0.5 * t_low),
+            (high, t_high, 0.0, height - 0.5 * t_high),
+            (web, mid, 0.0, t_low + 0.5 * mid),
+        ]
+        centre = sum(w * h * y for w, h, _, y in walls) / sum(w * h for w, h, _, _ in walls)
+        if abs(at - centre) > 1e-6 * height:
+            deck.row_error(
+                card, row, 0, f"beams lie on their nodes: the place must be the center, {centre:g}"
+            )
+            return
+        profile = _of_walls(walls, normal)
     else:
         across, depth = sizes if normal else sizes[::-1]
         if kind == "RECT":
@@ -140,6 +196,28 @@ def beam_section(deck: Deck, card: Card) -> None:
             profile = (area, area * depth**2 / 16.0, CIRCLE * area)
     if elset and material:
         deck.scope.lines.append(LineDraft("beam", card, elset, material, profile=profile))
+
+
+def _of_walls(
+    walls: list[tuple[float, float, float, float]], normal: bool
+) -> tuple[float, float, float]:
+    """Area, second moment and shear area of rectangles: width, height, and center (x, y).
+
+    The first axis is normal to the plane: bending is along the height; else along the width.
+    """
+    if not normal:
+        walls = [(h, w, y, x) for w, h, x, y in walls]
+    area = sum(w * h for w, h, _, _ in walls)
+    centre = sum(w * h * y for w, h, _, y in walls) / area
+    inertia = sum(w * h**3 / 12.0 + w * h * (y - centre) ** 2 for w, h, _, y in walls)
+    # The walls that are higher than wide carry the shear force.
+    shear = sum(w * h for w, h, _, _ in walls if h > w) or RECTANGLE * area
+    return area, inertia, shear
+
+
+def _of_abaqus(deck: Deck, card: Card) -> bool:
+    """Whether only Abaqus writes such a deck: parts, or parameters that CalculiX does not have."""
+    return bool(deck.parts) or card.has("TEMPERATURE") or card.has("POISSON")
 
 
 def beam_general_section(deck: Deck, card: Card) -> None:

@@ -100,16 +100,35 @@ def _constants(
         found.constants.append(value)
     if len(found.constants) < len(names):
         found.law_card = None
-    for number, row in enumerate(rows):
-        if number >= n_rows:
+    if law_depends(rows, n_rows):
+        if per_row != 2:
             deck.row_error(
-                card, row, 0, "constants that depend on temperature are not part of this version"
+                card,
+                rows[n_rows],
+                0,
+                "only isotropic constants may depend on temperature",
+                "give one set of constants",
             )
             return
+        for row in rows:
+            values = [
+                deck.real(card, row, i, name, 0.0)
+                for i, name in enumerate((*names, "the temperature"))
+            ]
+            if None in values:
+                return
+            found.table.append([float(v or 0.0) for v in values])
+        return
+    for number, row in enumerate(rows):
         used = per_row if number + 1 < n_rows else len(names) - per_row * (n_rows - 1)
         deck.extra_fields(card, row, used + 1)
         if row.get(used):
             deck.note(f"{row.where}: the temperature {row.get(used)} in *ELASTIC is ignored")
+
+
+def law_depends(rows: list[Row], n_rows: int) -> bool:
+    """Whether there are constants for more than one temperature."""
+    return len(rows) > n_rows
 
 
 def density(deck: Deck, card: Card) -> None:
@@ -190,7 +209,12 @@ def shell_section(deck: Deck, card: Card) -> None:
 def orientation(deck: Deck, card: Card) -> None:
     """``*ORIENTATION, NAME=``: a point on the first axis and one in the plane."""
     name = deck.required(card, "NAME")
-    deck.choice(card, "SYSTEM", ("RECTANGULAR",), "RECTANGULAR")
+    systems = ("RECTANGULAR", "CYLINDRICAL", "SPHERICAL", "ZRECTANGULAR", "USER")
+    if deck.choice(card, "SYSTEM", systems, "RECTANGULAR") != "RECTANGULAR":
+        # Whether it matters depends on the material of the section.
+        if name:
+            deck.scope.orientations[key(name)] = math.nan
+        return
     rows = list(card.rows())
     if not rows:
         deck.error(card, card.where, "a data line is missing: ax, ay, az, bx, by, bz")

@@ -24,6 +24,11 @@ _WITHOUT_EFFECT = ("LINESEARCH", "CONTACT", "CONSTRAINTS")
 
 def static(deck: Deck, card: Card) -> None:
     """``*STATIC``, or ``*STATIC, RIKS``: the path by arc length."""
+    if card.has("STABILIZE"):
+        deck.note(
+            f"{card.where}: {card.spelled}: no artificial damping is added: what is found is the "
+            "equilibrium itself, with no energy lost to damping"
+        )
     if not card.has("RIKS"):
         inp_cards_step.static(deck, card)
     else:

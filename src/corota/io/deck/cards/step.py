@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.deck.amplitudes import Curve, smooth_steps
 from corota.io.deck.deck import Draft, StepDraft, nearest
 from corota.io.deck.lexer import key
 from corota.model.loads import Amplitude
@@ -76,12 +77,15 @@ def end_step(deck: Deck, card: Card) -> None:
             hint="put *STATIC after *STEP",
         )
     elif deck.step.card.has("PERTURBATION") and deck.step.make is None:
-        deck.error(
-            deck.step.card,
-            deck.step.card.at("PERTURBATION"),
-            "PERTURBATION belongs to *BUCKLE and *FREQUENCY",
-            hint="use a step without NLGEOM for a linear analysis",
-        )
+        if deck.steps[0] is deck.step:
+            deck.note(f"{deck.step.card.where}: PERTURBATION of the first step: it is linear")
+        else:
+            deck.error(
+                deck.step.card,
+                deck.step.card.at("PERTURBATION"),
+                "a linear perturbation of a loaded state is not part of this version",
+                hint="leave PERTURBATION out: loads then go on from the step before",
+            )
     deck.step = None
 
 
@@ -133,24 +137,47 @@ def step_times(deck: Deck, card: Card, now: StepDraft) -> None:
 
 
 def amplitude(deck: Deck, card: Card) -> None:
-    """``*AMPLITUDE, NAME=``: pairs of time and factor, at most four a line."""
+    """``*AMPLITUDE, NAME=[, DEFINITION=]``: pairs of time and factor, or the curve's numbers."""
     name = deck.required(card, "NAME")
     total = deck.choice(card, "TIME", ("STEPTIME", "TOTALTIME"), "STEPTIME") == "TOTALTIME"
+    kinds = ("TABULAR", "EQUALLYSPACED", "SMOOTHSTEP", "PERIODIC", "DECAY")
+    kind = deck.choice(card, "DEFINITION", kinds, "TABULAR")
+    if deck.choice(card, "VALUE", ("RELATIVE", "ABSOLUTE"), "RELATIVE") == "ABSOLUTE":
+        deck.error(
+            card,
+            card.at("VALUE"),
+            "VALUE=ABSOLUTE is not supported",
+            hint="give the loads the size 1 and the amplitude VALUE=RELATIVE",
+        )
+        return
+    if kind in ("PERIODIC", "DECAY"):
+        _endless(deck, card, kind, name, total)
+        return
+    table = _equally_spaced(deck, card) if kind == "EQUALLYSPACED" else _pairs(deck, card)
+    if table is None or not name or _amplitude_twice(deck, card, name):
+        return
+    times, values = (np.array(column) for column in table)
+    try:
+        if kind == "SMOOTHSTEP" and len(times) > 1 and (np.diff(times) > 0.0).all():
+            times, values = smooth_steps(times, values)
+        deck.amplitudes[key(name)] = Amplitude(times, values, total, name, card.where)
+    except InputError as error:
+        deck.error(card, card.where, error.message)
+
+
+def _pairs(deck: Deck, card: Card) -> tuple[list[float], list[float]] | None:
     shift_x = deck.parameter_number(card, "SHIFTX", 0.0, -math.inf)
     shift_y = deck.parameter_number(card, "SHIFTY", 0.0, -math.inf)
-    deck.choice(card, "DEFINITION", ("TABULAR",), "TABULAR")
-    deck.choice(card, "VALUE", ("RELATIVE",), "RELATIVE")
     times: list[float] = []
     values: list[float] = []
     for row in card.rows():
-        deck.extra_fields(card, row, 8)
-        for index in range(0, min(len(row), 8), 2):
+        for index in range(0, len(row), 2):
             if not row.get(index) and not row.get(index + 1):
                 continue
             time = deck.real(card, row, index, "the time")
             value = deck.real(card, row, index + 1, "the factor")
             if time is None or value is None:
-                return
+                return None
             if times and time + shift_x <= times[-1]:
                 deck.row_error(
                     card,
@@ -158,21 +185,71 @@ def amplitude(deck: Deck, card: Card) -> None:
                     index,
                     f"the times must increase: {times[-1] - shift_x:g} is followed by {time:g}",
                 )
-                return
+                return None
             times.append(time + shift_x)
             values.append(value + shift_y)
-    if not name:
+    return times, values
+
+
+def _equally_spaced(deck: Deck, card: Card) -> tuple[list[float], list[float]] | None:
+    if not deck.required(card, "FIXEDINTERVAL", "FIXED INTERVAL"):
+        return None
+    by = deck.parameter_number(card, "FIXEDINTERVAL", 0.0, 0.0)
+    first = deck.parameter_number(card, "BEGIN", 0.0, -math.inf)
+    found = [
+        deck.real(card, row, i, "the factor")
+        for row in card.rows()
+        for i in range(len(row))
+        if row.get(i)
+    ]
+    if None in found or by <= 0.0:
+        if by <= 0.0:
+            deck.error(card, card.at("FIXEDINTERVAL"), "FIXED INTERVAL must be > 0")
+        return None
+    return [first + by * i for i in range(len(found))], [float(v or 0.0) for v in found]
+
+
+def _endless(deck: Deck, card: Card, kind: str, name: str, total: bool) -> None:
+    """``PERIODIC``: terms, omega, start, A0; pairs A, B. ``DECAY``: A0, A, start, decay time."""
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing")
         return
-    if key(name) in deck.amplitudes:
-        first = deck.amplitudes[key(name)].where
-        deck.error(card, card.at("NAME"), f"amplitude {name} is already defined in {first}")
-        return
-    try:
-        deck.amplitudes[key(name)] = Amplitude(
-            np.array(times), np.array(values), total, name, card.where
-        )
-    except InputError as error:
-        deck.error(card, card.where, error.message)
+    if kind == "PERIODIC":
+        count = deck.integer(card, rows[0], 0, "the number of terms")
+        head = [
+            deck.real(card, rows[0], i + 1, what, 0.0 if i else None)
+            for i, what in enumerate(("the frequency", "the start", "the initial value"))
+        ]
+        if count is None or None in head:
+            return
+        fields = [(row, i) for row in rows[1:] for i in range(len(row))][: 2 * max(count, 0)]
+        pairs = [deck.real(card, row, i, "a coefficient", 0.0) for row, i in fields]
+        if None in pairs:
+            return
+        if count < 1 or len(pairs) < 2 * count or head[0] == 0.0:
+            deck.error(card, card.where, f"{count} terms need as many pairs A, B and a frequency")
+            return
+        numbers = [float(v or 0.0) for v in head + pairs]
+    else:
+        names = ("the initial value", "the size", "the start", "the decay time")
+        found = [deck.real(card, rows[0], i, what) for i, what in enumerate(names)]
+        if None in found:
+            return
+        numbers = [float(v or 0.0) for v in found]
+        if numbers[3] <= 0.0:
+            deck.row_error(card, rows[0], 3, "the decay time must be > 0")
+            return
+    if name and not _amplitude_twice(deck, card, name):
+        deck.curves[key(name)] = Curve(kind, numbers, total, name, card.where)
+
+
+def _amplitude_twice(deck: Deck, card: Card, name: str) -> bool:
+    found = deck.amplitudes.get(key(name)) or deck.curves.get(key(name))
+    if found is not None:
+        text = f"amplitude {name} is already defined in {found.where}"
+        deck.error(card, card.at("NAME"), text)
+    return found is not None
 
 
 def time_points(deck: Deck, card: Card) -> None:
@@ -307,6 +384,16 @@ def cload(deck: Deck, card: Card) -> None:
     now = loads_of(deck, card, "force")
     if now is None:
         return
+    if card.has("FOLLOWER"):
+        if now.nlgeom:
+            deck.error(
+                card,
+                card.at("FOLLOWER"),
+                "FOLLOWER is not supported in steps with NLGEOM",
+                hint="nodal forces keep their direction; pressures follow their edge",
+            )
+            return
+        deck.note(f"{card.where}: without NLGEOM a force keeps its direction, FOLLOWER or not")
     for row in card.rows():
         deck.extra_fields(card, row, 3)
         dof = _dof(deck, card, row, 1)
@@ -422,14 +509,16 @@ def dsload(deck: Deck, card: Card) -> None:
                 Draft("surface pressure", card, row, row.get(0), (value,), -1, amplitude)
             )
             continue
-        if label != "TRVEC":
-            deck.row_error(card, row, 1, f"unknown load type {row.get(1)!r}; expected P or TRVEC")
+        if label not in ("TRVEC", "TRSHR"):
+            deck.row_error(
+                card, row, 1, f"unknown load type {row.get(1)!r}; expected P, TRVEC or TRSHR"
+            )
             continue
         deck.extra_fields(card, row, 6)
         x = deck.real(card, row, 3, "the direction x", 0.0)
         y = deck.real(card, row, 4, "the direction y", 0.0)
         size = math.hypot(x or 0.0, y or 0.0)
-        if follower:
+        if now.nlgeom and (follower or label == "TRSHR"):
             deck.row_error(
                 card,
                 row,
@@ -444,7 +533,15 @@ def dsload(deck: Deck, card: Card) -> None:
         else:
             vector = (value * x / size, value * y / size)
             now.loads.append(
-                Draft("surface traction", card, row, row.get(0), vector, -1, amplitude)
+                Draft(
+                    "surface shear" if label == "TRSHR" else "surface traction",
+                    card,
+                    row,
+                    row.get(0),
+                    vector,
+                    -1,
+                    amplitude,
+                )
             )
 
 

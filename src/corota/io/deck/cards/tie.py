@@ -110,23 +110,27 @@ def rigid_body(deck: Deck, card: Card) -> None:
         _rotation_node(deck, card, reference)
         if not card.has("NSET") and not card.has("ELSET"):
             return
-    if card.has("NSET") == card.has("ELSET"):
+    given = [p for p in ("NSET", "ELSET", "PINNSET", "TIENSET") if card.has(p)]
+    if not given or (card.has("NSET") and card.has("ELSET")):
         deck.error(card, card.where, "either NSET= or ELSET= is expected")
         return
-    name = deck.required(card, "NSET" if card.has("NSET") else "ELSET")
-    if reference is None or not name:
-        return
-    tie = TieDraft("kinematic", card, card.where, [reference], ready=True)
-    if card.has("NSET"):
-        tie.target = Draft("set", card, _parameter_row(card, "NSET"), name, (0.0,))
-    else:
-        tie.elset = name
     _rotation_node(deck, card, reference)
-    deck.ties.append(tie)
+    for parameter in given:
+        name = deck.required(card, parameter)
+        if reference is None or not name:
+            return
+        tie = TieDraft("kinematic", card, card.where, [reference], ready=True)
+        if parameter == "ELSET":
+            tie.elset = name
+        else:
+            tie.target = Draft("set", card, _parameter_row(card, parameter), name, (0.0,))
+        if parameter == "PINNSET":
+            tie.dofs = (0, 1)
+        deck.ties.append(tie)
 
 
-def _rotation_node(deck: Deck, card: Card, reference: Draft) -> None:
-    if card.has("ROTNODE"):
+def _rotation_node(deck: Deck, card: Card, reference: Draft | None) -> None:
+    if card.has("ROTNODE") and reference is not None:
         # Its dof 3 is the rotation in the plane, its dofs 1 and 2 those out of it.
         deck.rotation_nodes[key(card.value("ROTNODE"))] = reference.target
 

@@ -1,0 +1,74 @@
+"""Curves of ``*AMPLITUDE`` that are no tables, sampled so finely that a table says the same."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.model.loads import Amplitude
+
+if TYPE_CHECKING:
+    from corota.errors import Location
+    from corota.mesh.data import Floats
+
+#: Samples of a smooth step, and of the shortest period: straight lines miss a sine by 4e-6.
+PER_STEP, PER_PERIOD = 200, 1024
+#: Samples of one curve.
+MOST = 1_000_000
+
+
+def smooth_steps(time: Floats, value: Floats) -> tuple[Floats, Floats]:
+    """Between two points a polynomial of fifth order, flat at both."""
+    s = np.linspace(0.0, 1.0, PER_STEP + 1)[1:]
+    blend = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+    times, values = [time[:1]], [value[:1]]
+    for i in range(len(time) - 1):
+        times.append(time[i] + s * (time[i + 1] - time[i]))
+        values.append(value[i] + blend * (value[i + 1] - value[i]))
+    return np.concatenate(times), np.concatenate(values)
+
+
+@dataclass(slots=True)
+class Curve:
+    """A curve without an end: ``PERIODIC`` or ``DECAY``, sampled when the steps are known.
+
+    ``numbers`` are omega, start, initial value and pairs A, B of a Fourier series; or the
+    initial value, size, start and decay time.
+    """
+
+    kind: str
+    numbers: list[float]
+    total: bool
+    name: str
+    where: Location
+
+    def sampled(self, until: float) -> Amplitude:
+        """The curve as a table from time 0 to ``until``."""
+        if self.kind == "PERIODIC":
+            omega, start, first, *pairs = self.numbers
+            a, b = np.array(pairs[::2]), np.array(pairs[1::2])
+            n = np.arange(1, len(a) + 1)
+            shortest = 2.0 * np.pi / (abs(omega) * len(a))
+        else:
+            first, size, start, decay = self.numbers
+            shortest = 4.0 * abs(decay)
+        stop = max(until, start + shortest)
+        count = min(max(int(np.ceil((stop - start) / shortest * PER_PERIOD)), 2), MOST)
+        later = np.linspace(0.0, stop - start, count + 1)
+        if self.kind == "PERIODIC":
+            phase = omega * later[:, None] * n
+            value = first + np.cos(phase) @ a + np.sin(phase) @ b
+        else:
+            value = first + size * np.exp(-later / decay)
+        time = start + later
+        if start > 0.0:
+            # What jumps at the start jumps within a thousandth of a sample.
+            gap = 1e-3 * later[1]
+            time, value = np.append([start - gap], time), np.append([first], value)
+        return Amplitude(time, value, self.total, self.name, self.where)
+
+
+__all__ = ["Curve", "smooth_steps"]
