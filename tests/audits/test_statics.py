@@ -1432,7 +1432,8 @@ BAD = [math.nan, math.inf, -math.inf]
         "force", "moment", "pressure", "traction", "gravity", "omega", "about", "fix", "rotation",
         "thickness", "E", "nu", "yield", "temperature", "initial temperature", "initial stress",
         "expansion", "equation", "rhs", "spring", "area", "amplitude", "curve",
-        "beta0", "weights", "clearance", "friction", "period", "rho",
+        "beta0", "weights", "clearance", "friction", "period", "rho", "orientation", "local axes",
+        "point",
     ],
 )  # fmt: skip
 def test_numbers_that_are_none_are_refused(what: str, bad: float) -> None:
@@ -1442,6 +1443,8 @@ def test_numbers_that_are_none_are_refused(what: str, bad: float) -> None:
         mesh.cells.append(Cells("line2", np.array([[0, 1]]), np.array([9])))
 
     def build(mesh: Any) -> None:
+        if what == "point":
+            mesh.points = np.where(mesh.points == 2.0, bad, mesh.points)
         model = ct.Model(mesh)
         options: dict[str, Any] = {"thickness": bad} if what == "thickness" else {}
         if what == "orientation":
@@ -1499,7 +1502,9 @@ def test_numbers_that_are_none_are_refused(what: str, bad: float) -> None:
     assert not isinstance(caught.value, ct.ConvergenceError), caught.value
 
 
-@pytest.mark.parametrize("what", ["temperature", "rigid"])
+@pytest.mark.parametrize(
+    "what", ["force", "fix", "pressure", "section", "gravity", "temperature", "rigid"]
+)
 def test_empty_sets_are_refused(what: str) -> None:
     """A set without members in Python is an error, not a load that vanishes."""
     mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
@@ -1520,6 +1525,8 @@ def test_empty_sets_are_refused(what: str) -> None:
             model.fix("void")
         if what == "pressure":
             model.pressure("voids", 1.0)
+        if what == "gravity":
+            model.gravity(y=1.0, cells="voidc")
         if what == "temperature":
             model.temperature(3.0, "void")
         if what == "rigid":
@@ -2351,3 +2358,451 @@ def test_opposite_pressures_on_a_turning_body_cancel() -> None:
         assert np.allclose(S[..., 1], -6.0, atol=1e-6)
         assert np.abs(S[..., 3]).max() < 1e-6
         assert np.abs(frame.RF).max() < 1e-6
+
+
+# --- Less common results ---
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("element", ["Q4I", "Q8", "T3", "Q4D"])
+def test_internal_variables_turn_and_thickness_changes(element: str, plane: str) -> None:
+    """PE, ALPHA, STH, YRATIO after a turned plastic path: the point program's, turned by the frame.
+
+    PE is the plastic strain along the frame's axes, ALPHA the back-stress; STH = t exp(E33).
+    """
+    steel = ct.Mises(E=2000.0, nu=0.3, yield_stress=10.0, isotropic=60.0, kinematic=90.0)
+    results = drive(element, steel, plane, "logarithmic", PATH[:4])
+    frame = results.frames[-1]
+    point = Point(2000.0, 0.3, 10.0, 60.0, 90.0, plane)
+    for F in PATH[:4]:
+        point.move(strain_of(F.T @ F))
+    values = frame.fields[0].values
+    R = rotation(float(frame.fields[0].frame_rotation[0]))
+    pe = R @ point.ep[:2, :2] @ R.T
+    assert np.allclose(values["PE"][..., 0], pe[0, 0], rtol=1e-5)
+    assert np.allclose(values["PE"][..., 3], 2 * pe[0, 1], rtol=1e-5)
+    back = R @ point.beta[:2, :2] @ R.T
+    assert np.allclose(values["ALPHA"][..., 0], back[0, 0], rtol=1e-5, atol=1e-7)
+    assert np.allclose(values["ALPHA"][..., 3], back[0, 1], rtol=1e-5, atol=1e-7)
+    assert np.allclose(values["STH"], 0.7 * math.exp(point.ezz), rtol=1e-8)
+    assert np.allclose(values["YRATIO"], 1.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("element", ["T3", "T6", "Q4", "Q4I", "Q4S", "Q4R", "Q8", "Q9", "Q4DI"])
+@pytest.mark.parametrize("strain", ["linear", "logarithmic"])
+def test_heat_account_in_plane_strain(element: str, strain: str) -> None:
+    """A free body heated in plane strain stores V (E alpha T)^2/2E by the held direction alone.
+
+    ALLTH is what heat put in; ENER at the points sums to ALLSE; no work of loads.
+    """
+    E, alpha, T = 500.0, 1e-4, 30.0
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=2, cell=CELL[element])
+    model = ct.Model(mesh)
+    model.section(
+        "all", element=element, material=ct.Elastic(E=E, nu=0.3, expansion=alpha), plane="strain",
+        thickness=0.4, local_strain=strain,
+    )  # fmt: skip
+    model.fix("left", y=None, rotation=True if element in DRILLING else None)
+    model.fix("bottom", x=None, rotation=True if element in DRILLING else None)
+    model.temperature(T)
+    frame = ct.solve(model, ct.Static(increments=4), threads=1).frames[-1]
+    want = 2.0 * 0.4 * (E * alpha * T) ** 2 / (2 * E)
+    assert frame.scalars["ALLSE"] == pytest.approx(want, rel=1e-6)
+    assert frame.scalars["ALLTH"] == pytest.approx(want, rel=1e-6)
+    assert abs(frame.scalars["ALLWK"]) < 1e-9 * want
+    field = frame.fields[0]
+    assert np.sum(field.values["ENER"] * field.volume) == pytest.approx(want, rel=1e-6)
+    assert field.volume.sum() == pytest.approx(0.8, rel=1e-12)
+
+
+@pytest.mark.parametrize("dead", [False, True])
+def test_ring_buckles_under_pressure(dead: bool) -> None:
+    """Thin ring: q = 3 E'I/R^3 for pressure that follows, 4 E'I/R^3 for radial dead load.
+
+    Timoshenko and Gere, art. 7.3, and Bresse. A quarter with symmetry; plane strain, E/(1 - nu^2);
+    the load is on the outer radius.
+    """
+    r, h, E, nu, t = 10.0, 0.2, 1e5, 0.3, 0.5
+    a, b = r - h / 2, r + h / 2
+    mesh = ct.mesh.annulus(a, b, 1, 16, angle=90.0, cell="quad8")
+    model = ct.Model(mesh)
+    model.section(
+        "all", element="Q8R", material=ct.Elastic(E=E, nu=nu), plane="strain", thickness=t
+    )
+    model.fix("start", x=None)
+    model.fix("end", y=None)
+    inertia = h**3 / 12
+    if dead:
+        # Forces of a uniform pressure, fixed in space: read from a linear step with unit pressure.
+        model.pressure("outer", 1.0)
+        unit = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1].F
+        model.loads.clear()
+        for n in mesh.nodes_of("outer"):
+            model.force([int(n)], x=float(unit[n, 0]), y=float(unit[n, 1]))
+    else:
+        model.pressure("outer", 1.0)
+    factor = ct.solve(model, [ct.Buckle(modes=1)], threads=1).modes[0].factors[0]
+    want = (4.0 if dead else 3.0) * E / (1 - nu**2) * inertia / r**3 * (r / b)
+    assert factor == pytest.approx(want, rel=1.5e-2)
+
+
+@pytest.mark.parametrize(
+    ("section", "area", "inertia", "shear"),
+    [
+        ("RECT\n0.2, 0.6\n0., 0., -1.", 0.12, 0.6 * 0.2**3 / 12, 5 / 6),
+        ("RECT\n0.2, 0.6\n0., 1., 0.", 0.12, 0.2**3 * 0.6 / 12, 5 / 6),
+        ("CIRC\n0.4, 0.4\n0., 0., -1.", math.pi * 0.04, math.pi * 0.2**4 / 4, 0.9),
+        (
+            "PIPE\n0.3, 0.1\n0., 0., -1.",
+            math.pi * (0.09 - 0.04),
+            math.pi / 4 * (0.3**4 - 0.2**4),
+            0.5,
+        ),
+    ],
+)
+def test_beam_sections(
+    tmp_path: Path, section: str, area: float, inertia: float, shear: float
+) -> None:
+    """Tip of a Timoshenko cantilever, P L^3/3EI + P L/(k G A), and its stretch, at 30 degrees.
+
+    RECT has the first size along the first axis: a depth in the plane of 0.6 if that is the normal.
+    """
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    text = f"""*NODE
+1, 0., 0.
+2, {c}, {s}
+3, {2 * c}, {2 * s}
+*ELEMENT, TYPE=B31, ELSET=all
+1, 1, 2
+2, 2, 3
+*MATERIAL, NAME=m
+*ELASTIC
+1000., 0.25
+*BEAM SECTION, ELSET=all, MATERIAL=m, SECTION={section}
+*BOUNDARY
+1, 1, 6
+*STEP
+*STATIC
+*CLOAD
+3, 1, {-s}
+3, 2, {c}
+*END STEP
+*STEP
+*STATIC
+*CLOAD, OP=NEW
+3, 1, {c}
+3, 2, {s}
+*END STEP
+"""
+    results = run(tmp_path / "b.inp", text)
+    one, two = ([f for f in results.frames if f.step == k][-1] for k in (1, 2))
+    if section.startswith("RECT\n0.2, 0.6\n0., 0."):
+        inertia = 0.2 * 0.6**3 / 12
+    across = one.U[2] @ [-s, c]
+    assert across == pytest.approx(
+        8.0 / (3 * 1000.0 * inertia) + 2.0 / (shear * 400.0 * area), rel=1e-9
+    )
+    assert two.U[2] @ [c, s] == pytest.approx(2.0 / (1000.0 * area), rel=1e-9)
+    assert one.RF[0, 2] == pytest.approx(-2.0, rel=1e-9)
+
+
+def test_supports_over_steps(tmp_path: Path) -> None:
+    """A moved support stays where it is if not named, goes back linearly if named with zero.
+
+    Bars of the chain above: force EA u/L at every increment.
+    """
+    text = (
+        BARS
+        + """*STEP
+*STATIC, DIRECT
+0.5, 1.
+*BOUNDARY
+3, 1, 1, 0.2
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.5, 1.
+*CLOAD
+2, 1, 1.
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.5, 1.
+*BOUNDARY
+3, 1, 1, 0.
+*END STEP
+*STEP
+*STATIC, DIRECT
+0.5, 1.
+*BOUNDARY, OP=NEW
+1, 1, 2
+2, 2, 2
+3, 2, 2
+*END STEP
+"""
+    )
+    results = run(tmp_path / "s.inp", text)
+    frames = [f for f in results.frames if f.increment > 0]
+    u = [0.1, 0.2, 0.2, 0.2, 0.1, 0.0]
+    p = [0.0, 0.0, 0.5, 1.0, 1.0, 1.0]
+    for f, a, load in zip(frames, u, p, strict=False):
+        assert f.U[2, 0] == pytest.approx(a, abs=1e-12)
+        assert f.U[1, 0] == pytest.approx(a / 2 + load / 20.0, abs=1e-12)
+        assert f.RF[2, 0] == pytest.approx(10.0 * (a - f.U[1, 0]), abs=1e-10)
+    assert frames[-1].U[2, 0] == pytest.approx(0.1, abs=1e-10)
+    assert abs(frames[-1].RF[2, 0]) < 1e-10
+
+
+@pytest.mark.parametrize("label", [999999999, 12345678901, 4500000000000000000])
+def test_large_numbers_of_nodes_in_every_file(tmp_path: Path, label: int) -> None:
+    """A node number beyond nine digits is whole in .dat, in .csv and in the result file."""
+    text = (
+        BARS.replace("3, 4., 0.", f"{label}, 4., 0.")
+        .replace("2, 2, 3\n", f"2, 2, {label}\n")
+        .replace("3, 2, 2", f"{label}, 2, 2")
+        + f"""*NSET, NSET=tip
+{label}
+*STEP
+*STATIC
+*CLOAD
+{label}, 1, 2.
+*NODE PRINT, NSET=tip
+U
+*END STEP
+"""
+    )
+    run(tmp_path / "n.inp", text)
+    row = tables(tmp_path / "n.dat")["displacements"][-1]
+    lines = (tmp_path / "n.dat").read_text().splitlines()
+    assert any(line.split()[:1] == [str(label)] for line in lines)
+    assert row[0, 1] == pytest.approx(0.4, rel=1e-6)
+    with ct.read_results(tmp_path / "n.vtkhdf") as stored:
+        assert int(stored.mesh.node_labels[2]) == label
+
+
+def test_threads_do_not_matter() -> None:
+    """One thread and two give the same numbers to the last digit."""
+    mesh = ct.mesh.rectangle(8.0, 2.0, nx=40, ny=10)
+    frames = []
+    for threads in (1, 2):
+        model = ct.Model(mesh)
+        steel = ct.Mises(E=2000.0, nu=0.3, yield_stress=4.0, isotropic=50.0)
+        model.section("all", element="Q4I", material=steel, local_strain="logarithmic")
+        model.fix("left")
+        model.pressure("top", 0.08)
+        frames.append(ct.solve(model, ct.Static(increments=3), threads=threads).frames[-1])
+    assert np.array_equal(frames[0].U, frames[1].U)
+    assert np.array_equal(frames[0].fields[0].values["S"], frames[1].fields[0].values["S"])
+
+
+def test_invariants_of_averages_at_a_joint() -> None:
+    """MISES at a node is that of the averaged components; each section apart, or both together.
+
+    Two blocks of unlike stiffness held to a uniform strain: components known in closed form.
+    """
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    model = ct.Model(mesh)
+    stress = []
+    for k, E in enumerate((100.0, 300.0)):
+        model.section([k], element="Q4", material=ct.Elastic(E=E, nu=0.25), thickness=1.0 + k)
+        C = E / (1 - 0.25**2) * np.array([[1, 0.25, 0], [0.25, 1, 0], [0, 0, 0.375]])
+        stress.append(C @ [0.01, -0.002, 0.004])
+    for n, (x, y) in enumerate(mesh.points):
+        model.fix([n], x=0.01 * x + 0.004 * y, y=-0.002 * y)
+    results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+    joint = int(np.argmin(np.hypot(mesh.points[:, 0] - 1.0, mesh.points[:, 1])))
+
+    def mises(s: np.ndarray) -> float:
+        return math.sqrt(s[0] ** 2 - s[0] * s[1] + s[1] ** 2 + 3 * s[2] ** 2)
+
+    group = results.sections()
+    for k in range(2):
+        assert results.nodal("MISES", section=int(group[k]))[joint] == pytest.approx(
+            mises(stress[k]), rel=1e-9
+        )
+    mean = (stress[0] + stress[1]) / 2
+    assert results.nodal("S11")[joint] == pytest.approx(mean[0], rel=1e-9)
+    assert results.nodal("MISES")[joint] == pytest.approx(mises(mean), rel=1e-9)
+    e1 = 0.004 + math.hypot(0.006, 0.002)
+    assert results.nodal("EP1")[joint] == pytest.approx(e1, rel=1e-6)
+
+
+def test_heat_drives_a_path_through_snap() -> None:
+    """Arc length raises a temperature: two pinned bars rise against a dead load.
+
+    At every increment 2 EA (l/L - 1 - alpha T) y/l balances the load.
+    """
+    EA, a, h, alpha = 1000.0, 2.0, 0.3, 1e-3
+    L = math.hypot(a, h)
+    mesh = line_mesh([[-a, 0.0], [0.0, h], [a, 0.0]], [(0, 1), (1, 2)])
+    model = ct.Model(mesh)
+    model.truss([0, 1], material=ct.Elastic(E=EA / 0.5, expansion=alpha), area=0.5)
+    model.fix([0, 2])
+    from corota.model.loads import NodalForce
+
+    steps = [
+        ct.Static(loads=[NodalForce([1], 1, -0.4)], increments=2),
+        ct.Static(loads=[Temperature("", 50.0)], path=ct.ArcLength(factor=1.0)),
+    ]
+    results = ct.solve(model, steps, threads=1)
+    for f in results.frames:
+        if f.step == 2 and f.increment:
+            y = h + f.U[1, 1]
+            long = math.hypot(a, y)
+            N = EA * ((long - L) / L - alpha * 50.0 * f.factor)
+            assert 2 * N * y / long == pytest.approx(-0.4, rel=1e-6)
+    assert results.frames[-1].factor == pytest.approx(1.0, rel=1e-9)
+
+
+def test_pressure_on_a_line_of_load_control_and_path_agree() -> None:
+    """A cantilever under follower pressure: load control and arc length end in one state."""
+    ends = []
+    for path in (None, ct.ArcLength(factor=1.0), ct.DisplacementControl("right", "y", -1.0)):
+        mesh = ct.mesh.rectangle(8.0, 1.0, nx=8, ny=1, cell="quad8")
+        model = ct.Model(mesh)
+        model.section("all", element="Q8R", material=ct.Elastic(E=900.0, nu=0.3), thickness=0.6)
+        model.fix("left")
+        model.pressure("top", 0.3)
+        step = ct.Static(path=path) if path else ct.Static(increments=4)
+        results = ct.solve(model, step, threads=1)
+        ends.append(results.frames[-1])
+        if isinstance(path, ct.DisplacementControl):
+            f = results.frames[-1]
+            assert f.U[mesh.nodes_of("right"), 1].mean() == pytest.approx(-1.0, rel=1e-8)
+            model.loads.clear()
+            model.pressure("top", 0.3 * f.factor)
+            again = ct.solve(model, ct.Static(increments=3), threads=1).frames[-1]
+            assert np.allclose(again.U, f.U, atol=1e-7)
+    assert np.allclose(ends[0].U, ends[1].U, atol=1e-7)
+
+
+# --- Defects that these checks found, mended ---
+
+TURNED = """*NODE, NSET=nall
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4I, ELSET=all
+1, 1, 2, 3, 4
+*MATERIAL, NAME=m
+*ELASTIC
+100., 0.3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.5
+*TRANSFORM, NSET=t, TYPE=R
+0.8, 0.6, 0., -0.6, 0.8, 0.
+*NSET, NSET=t
+2, 3
+{equation}*BOUNDARY
+1, 1, 2
+2, 2, 2
+4, 2, 2
+*STEP
+*STATIC
+*CLOAD
+3, 2, 1.
+4, 1, 0.5
+*NODE PRINT, NSET=nall, TOTALS=YES
+U, RF
+*NODE PRINT, NSET=nall, GLOBAL=YES
+U, RF
+*END STEP
+"""
+
+
+def rows_of(path: Path, head: str) -> list[list[str]]:
+    """Rows of text below each heading of a .dat file."""
+    found: list[list[str]] = []
+    for line in path.read_text().splitlines():
+        if line.strip().startswith(head):
+            found.append([])
+        elif found and line[:10].strip().isdigit():
+            found[-1].append(line)
+    return found
+
+
+def test_dat_prints_nodes_in_their_axes(tmp_path: Path) -> None:
+    """Rows of nodes with *TRANSFORM are along their axes and end with L, as CalculiX 2.20 writes.
+
+    GLOBAL=YES gives global rows. The held direction has no displacement, the load is (0, 1).
+    """
+    frame = run(tmp_path / "t.inp", TURNED.format(equation="")).frames[-1]
+    own, everywhere = rows_of(tmp_path / "t.dat", "displacements")[:2]
+    R = np.array([[0.8, -0.6], [0.6, 0.8]])
+    for node in range(4):
+        first, second = own[node], everywhere[node]
+        assert first.endswith(" L") is (node in (1, 2))
+        assert not second.endswith("L")
+        got = np.array([float(x) for x in first.split()[1:3]])
+        want = frame.U[node] @ R if node in (1, 2) else frame.U[node]
+        assert np.allclose(got, want, atol=1e-8)
+        assert np.allclose([float(x) for x in second.split()[1:3]], frame.U[node], atol=1e-8)
+    forces = rows_of(tmp_path / "t.dat", "forces")[0]
+    assert np.allclose([float(x) for x in forces[2].split()[1:3]], [0.0, 1.0], atol=1e-9)
+    assert abs(float(forces[1].split()[1])) < 1e-12
+
+
+def test_dat_forces_hold_those_of_equations(tmp_path: Path) -> None:
+    """RF of .dat is the internal force at nodes of an equation too; it sums to nothing.
+
+    CalculiX 2.20 prints -0.0824, 1 (local) and 0.665, 0.241 at nodes 3 and 4 of this deck with its
+    own element; internal forces of a body are in balance, whatever the equation adds.
+    """
+    text = TURNED.format(equation="*EQUATION\n2\n3, 1, 1., 4, 1, -2.\n")
+    frame = run(tmp_path / "t.inp", text).frames[-1]
+    rows = rows_of(tmp_path / "t.dat", "forces")[1]
+    force = np.array([[float(x) for x in r.split()[1:3]] for r in rows])
+    assert np.abs(force.sum(axis=0)).max() < 1e-6
+    x = rows_of(tmp_path / "t.dat", "forces")[0][2].split()
+    local = np.array([float(x[1]), float(x[2])])
+    # The equation's force acts along local 1 of node 3 and, doubled, against x at node 4.
+    assert local[1] == pytest.approx(1.0, rel=1e-6)
+    assert force[3, 0] - 0.5 == pytest.approx(-2.0 * local[0], rel=1e-5)
+    assert local[0] != 0.0
+    assert np.allclose(frame.RF[2, :2], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("thin", ["low", "high"])
+def test_contact_area_in_dat_is_that_of_the_joint(tmp_path: Path, thin: str) -> None:
+    """CF: the normal force over the area is the pressure, whichever side is the thinner."""
+    from corota.model.steps import Output
+
+    low = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    high = ct.mesh.rectangle(2.0, 1.0, nx=3, ny=1, origin=(0.0, 1.0))
+    mesh = ct.mesh.assembly(low=low, high=high)
+    model = ct.Model(mesh, name="joint")
+    for body in ("low", "high"):
+        model.section(
+            body, element="Q4I", material=ct.Elastic(E=100.0, nu=0.0),
+            thickness=1.0 if body == thin else 3.0,
+        )  # fmt: skip
+    model.contact("high.bottom", "low.top", name="joint")
+    model.fix("low.bottom")
+    model.fix("high.top", y=-0.03)
+    model.fix("high", x=0.0, y=None)
+    step = ct.Static(nlgeom=False, outputs=[Output("contact print", ("CF",), "joint")])
+    results = ct.solve(model, step, observers=[ct.JobFiles(tmp_path)], threads=1)
+    numbers = [
+        [float(w) for w in line.split()]
+        for line in (tmp_path / "joint.dat").read_text().splitlines()
+        if (line.startswith("    ") and "E+" in line) or "E-" in line
+    ]  # fmt: skip
+    area, normal, _ = numbers[-1]
+    pressure = results.nodal("CPRESS")[mesh.nodes_of("high.bottom")]
+    assert area == pytest.approx(2.0, rel=1e-6)
+    assert abs(normal) / area == pytest.approx(pressure[0], rel=1e-6)
+
+
+def test_support_on_a_distributing_node_says_what_to_hold() -> None:
+    """The message names the coupled nodes, not the reference node that is held already."""
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    end = ct.mesh.add_node(mesh, 2.0, 0.5, "ref")
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=100.0, nu=0.3))
+    model.couple("right", end, kind="distributing")
+    model.fix("left")
+    model.fix([end])
+    with pytest.raises(ct.CorotaError, match="hold the nodes that it follows") as caught:
+        ct.solve(model, ct.Static(), threads=1)
+    assert "hold the reference node" not in str(caught.value)

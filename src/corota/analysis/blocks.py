@@ -129,6 +129,11 @@ def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:
 def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
     """Refuse elements of zero, negative or folded area, by their labels."""
     points, labels = model.mesh.points, model.mesh.cell_labels
+    lost = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(lost):
+        label = model.mesh.node_labels[lost[0]]
+        x, y = points[lost[0]].tolist()
+        raise ModelError(f"node {label} has no finite place: ({x}, {y})")
     for block in blocks:
         facts = elements.find(block.section.element)
         if facts.line:

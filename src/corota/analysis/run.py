@@ -330,6 +330,9 @@ class Analysis:
         if system.contact_term is not None:
             contact, sums = system.contact_term.output()
             scalars = {**scalars, **sums}
+        held = None
+        if state.reaction is None and state.at is not None and state.at.link is not None:
+            held = system.by_node(state.at.residual - system.reaction(state.at))
         frame = Frame(
             number,
             increment,
@@ -345,6 +348,7 @@ class Analysis:
             None if state.v is None else system.by_node(state.v),
             None if state.a is None else system.by_node(state.a),
             contact,
+            held,
         )
         self.results.add(frame)
         with system.timed("write"):

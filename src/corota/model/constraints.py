@@ -105,6 +105,10 @@ class LocalAxes:
     centre: tuple[float, float] | None = None
     where: Location | None = field(default=None, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        if not np.isfinite([self.angle, *(self.centre or ())]).all():
+            raise InputError("the angle and the centre of local axes must be finite", self.where)
+
 
 @dataclass
 class StraightLine:

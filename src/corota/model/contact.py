@@ -368,3 +368,31 @@ def _called(where: object) -> str:
     if isinstance(where, RigidCurve):
         return where.name or "rigid curve"
     return where if isinstance(where, str) else "edges"
+
+
+def joint_thickness(
+    points: Floats, slave: Ints, thickness: Floats, master: Ints, other: Floats
+) -> Floats:
+    """Thickness of the joint at the slave edges: the smaller of both sides.
+
+    The area of contact, and with it the contact pressure, does so not depend on which side is
+    the slave. The other side's thickness is that of its undeformed edge nearest by.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_nodes, 2)
+        Reference positions [length].
+    slave, master : ndarray of int, shapes (n, k), (m, l)
+        Nodes of the edges, both ends first.
+    thickness, other : ndarray, shapes (n,), (m,)
+        Of the slave's and the master's cells [length].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    from scipy.spatial import cKDTree  # takes longer to import than a small job to solve
+
+    ends = points[slave[:, :2]].mean(axis=1)
+    nearest = cKDTree(points[master[:, :2]].mean(axis=1)).query(ends)[1]
+    return np.minimum(thickness, other[nearest])

@@ -112,6 +112,12 @@ class Amplitude:
         return out
 
 
+def _finite(value: object, what: str, where: Location | None) -> None:
+    """Refuse a number that is none: here its place is still known."""
+    if not np.isfinite(np.asarray(value, dtype=np.float64)).all():
+        raise InputError(f"{what} must be finite, not {value}", where)
+
+
 @dataclass
 class Fixed:
     """A prescribed displacement or rotation.
@@ -134,6 +140,9 @@ class Fixed:
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        _finite(self.value, "a prescribed displacement", self.where)
+
 
 @dataclass
 class NodalForce:
@@ -144,6 +153,9 @@ class NodalForce:
     value: float
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        _finite(self.value, "a force", self.where)
 
 
 @dataclass
@@ -171,6 +183,9 @@ class EdgeLoad:
     total: bool = False
     where: Location | None = field(default=None, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        _finite(self.value, f"a {self.kind}", self.where)
+
 
 @dataclass
 class BodyForce:
@@ -195,6 +210,9 @@ class BodyForce:
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
     direction: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        _finite(self.value, f"a load by {self.kind}", self.where)
 
     @property
     def axis(self) -> NDArray[np.float64] | None:

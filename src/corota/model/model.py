@@ -60,6 +60,13 @@ if TYPE_CHECKING:
 DOFS = {"x": 0, "y": 1, "theta": 2}
 
 
+def _some(found: Ints, what: str, name: str = "") -> Ints:
+    """Refuse a set without members: what acts on it would be lost in silence."""
+    if not len(found):
+        raise InputError(f"{what} set {name!r} is empty" if name else f"no {what}s are given")
+    return found
+
+
 class Model(LineSections, InitialFields):
     """Mesh, sections, materials, supports, loads and steps.
 
@@ -173,6 +180,11 @@ class Model(LineSections, InitialFields):
         if isinstance(where, str) and where != "all" and where not in self.mesh.cell_sets:
             names = ", ".join(["all", *self.mesh.cell_sets])
             raise InputError(f"no cell set named {where!r}; the mesh has: {names}")
+        if isinstance(where, str):
+            if where != "all":
+                _some(self.mesh.cell_sets[where], "cell", where)
+        else:
+            _some(where, "cell")
         self.sections.append(
             Section(
                 where,
@@ -192,8 +204,9 @@ class Model(LineSections, InitialFields):
             if cells not in self.mesh.cell_sets:
                 names = ", ".join(self.mesh.cell_sets) or "none"
                 raise InputError(f"no cell set named {cells!r}; the mesh has: {names}")
+            _some(self.mesh.cell_sets[cells], "cell", cells)
             return cells
-        return np.atleast_1d(np.asarray(cells, dtype=np.int64))
+        return _some(np.atleast_1d(np.asarray(cells, dtype=np.int64)), "cell")
 
     def fix(
         self,
@@ -279,7 +292,7 @@ class Model(LineSections, InitialFields):
         amplitude: str = "",
     ) -> None:
         """Apply an acceleration field [length/time^2] to cells (default all)."""
-        where = cells if isinstance(cells, str) else np.asarray(cells, dtype=np.int64)
+        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
         self.loads.append(BodyForce(where, "gravity", (x, y), amplitude))
 
     def centrifugal(
@@ -306,7 +319,7 @@ class Model(LineSections, InitialFields):
         amplitude : str
             Scales the force, that is omega squared, as the ramp of a static step does.
         """
-        where = cells if isinstance(cells, str) else np.asarray(cells, dtype=np.int64)
+        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
         value = (float(omega) ** 2, float(about[0]), float(about[1]))
         self.loads.append(BodyForce(where, "centrifugal", value, amplitude))
 
@@ -471,14 +484,15 @@ class Model(LineSections, InitialFields):
 
     def _nodes(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):
-            self.mesh.nodes_of(where)
+            _some(self.mesh.nodes_of(where), "node", where)
             return where
-        return np.atleast_1d(np.asarray(where, dtype=np.int64))
+        return _some(np.atleast_1d(np.asarray(where, dtype=np.int64)), "node")
 
     def _edges(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):
             if where not in self.mesh.edge_sets:
                 names = ", ".join(self.mesh.edge_sets) or "none"
                 raise InputError(f"no edge set named {where!r}; the mesh has: {names}")
+            _some(self.mesh.edge_sets[where], "edge", where)
             return where
-        return np.asarray(where, dtype=np.int64).reshape(-1, 2)
+        return _some(np.asarray(where, dtype=np.int64).reshape(-1, 2), "edge")

@@ -88,6 +88,10 @@ class Section:
         self.thickness = float(self.thickness)
         if not (np.isfinite(self.thickness) and self.thickness > 0.0):
             raise InputError(f"the thickness must be > 0, not {self.thickness}", self.where)
+        if not np.isfinite(self.orientation):
+            raise InputError(
+                f"the orientation must be a finite angle, not {self.orientation}", self.where
+            )
         if self.mean_dilatation and self.plane != "strain":
             raise InputError(
                 "mean dilatation is for plane strain; in plane stress the thickness is free to "

@@ -41,6 +41,8 @@ class Output:
         Sums over the set beside, or instead of, the rows.
     time_points : str
         Name of a list of times in ``Model.time_points``; empty for none.
+    in_global : bool
+        Print nodal vectors in global axes where nodes have their own, too.
     """
 
     kind: Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
@@ -50,6 +52,7 @@ class Output:
     totals: Literal["no", "yes", "only"] = "no"
     time_points: str = ""
     source: Location | None = field(default=None, compare=False, repr=False)
+    in_global: bool = False
 
 
 @dataclass(kw_only=True)

@@ -90,6 +90,9 @@ class Frame:
         Contact at slave nodes, 0 elsewhere: pressure, shear traction (positive along the slave
         surface, the body on the left), gap, slip so far, status (0 open, 1 closed, 2 slipping);
         tractions per reference area.
+    constraint_force : ndarray, shape (n_nodes, 3), or None
+        Force and moment of constraints on nodes: what of the internal force neither loads nor
+        supports carry. Static increments of models with constraints only; not stored in files.
     """
 
     step: int
@@ -106,6 +109,7 @@ class Frame:
     V: Floats | None = None
     A: Floats | None = None
     C: Floats | None = None
+    constraint_force: Floats | None = None
 
 
 @dataclass

@@ -377,7 +377,7 @@ class Constraints:
             place = f" ({relation.where})" if relation.where is not None else ""
             raise ModelError(
                 f"{self.builder.name(dof)} is held, but {relation.what}{place} determines it "
-                "already; hold the reference node or another term instead",
+                f"already; hold {relation.instead} instead",
                 where,
             )
 

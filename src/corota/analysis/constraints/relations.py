@@ -40,6 +40,8 @@ class Relation(ABC):
     what: str
     where: Location | None
 
+    #: What to hold in place of a dependent dof.
+    instead = "another term of the equation"
     #: Whether the dependents are linear in the masters.
     linear = True
     #: Whether rotations are finite.
@@ -150,6 +152,7 @@ class Follow(Relation):
     axes: Floats
     nlgeom: bool = True
 
+    instead = "its reference node"
     linear = False
 
     def values(self, u: Floats) -> Floats:
@@ -227,6 +230,7 @@ class Mean(Relation):
     axes: Floats
     nlgeom: bool = True
 
+    instead = "the nodes that it follows, or make the coupling kinematic,"
     linear = False
 
     def _fit(self, u: Floats) -> tuple[Floats, float, float]:

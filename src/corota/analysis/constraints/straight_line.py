@@ -46,6 +46,7 @@ class OnLine(Relation):
     axes: Floats
     nlgeom: bool = True
 
+    instead = "the ends of the line"
     linear = False
 
     def _places(self, u: Floats) -> tuple[Floats, Floats]:

@@ -228,7 +228,7 @@ KEYWORDS: dict[str, Keyword] = {
         step.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
     ),
     "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
-    "NODEPRINT": Keyword(output.node_print, _PRINT, "GLOBAL SUMMARY"),
+    "NODEPRINT": Keyword(output.node_print, f"{_PRINT} GLOBAL", "SUMMARY"),
     "ELPRINT": Keyword(output.el_print, _PRINT, "GLOBAL POSITION SUMMARY"),
     "NODEFILE": Keyword(output.node_file, _FILE, _FILE_IGNORED),
     "NODEOUTPUT": Keyword(output.node_file, _FILE, _FILE_IGNORED),

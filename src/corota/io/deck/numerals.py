@@ -57,6 +57,11 @@ def is_integer(text: str) -> bool:
     return bool(_INTEGER.match(text))
 
 
+def is_label(text: str) -> bool:
+    """Whether a field is a whole number that a node or an element can have."""
+    return is_integer(text) and len(text) <= 20 and abs(int(text)) <= _LARGEST_LABEL
+
+
 def is_number(text: str) -> bool:
     """Whether a field is written as a decimal number."""
     return bool(_REAL.match(text))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.constraints.elimination import local_axes
 from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
@@ -51,6 +52,7 @@ ELEMENT_TITLES = {
     "EVOL": ("volume (element, volume)", "total volume"),
 }
 
+_VECTOR = "%10d %13.6E %13.6E %13.6E"
 #: Energies per volume of which these are the sums.
 DENSITY = {"ELSE": "ENER", "ELKE": "EKEDEN"}
 
@@ -109,28 +111,53 @@ def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
     mesh = model.mesh
     nodes = mesh.nodes_of(output.where) if output.where else np.arange(mesh.n_nodes)
     labels = mesh.node_labels[nodes]
+    axes = {} if output.in_global or not model.axes else local_axes(model)
     for name in (v.upper() for v in output.variables):
         title, total = NODE_TITLES[name]
-        values = _node_values(frame, name)[nodes] + 0.0  # no negative zeros
+        values = _node_values(model, frame, name)[nodes] + 0.0  # no negative zeros
         only = output.totals == "only" and total
         if not only:
             yield _head(title + " ", output, frame)
-            yield rows("%10d %13.6E %13.6E %13.6E\n", labels, *values.T)
-        if total and output.totals != "no":
+            if axes and name != "UR":
+                yield _turned_rows(nodes, labels, values, axes)
+            else:
+                yield rows(_VECTOR + "\n", labels, *values.T)
+        if total and output.totals != "no":  # in global axes
             fx, fy = (math.fsum(values[:, i].tolist()) for i in range(2))
             yield _head(total + " ", output, frame)
             yield f"       {fx:13.6E} {fy:13.6E}  0.000000E+00\n"
 
 
-def _node_values(frame: Frame, name: str) -> Floats:
-    """Rows of three numbers, shape (n_nodes, 3); RF is the internal force, as in CalculiX."""
+def _turned_rows(nodes: Ints, labels: Ints, values: Floats, axes: dict[int, Floats]) -> str:
+    """Rows of nodes in global axes, and marked ``L`` those along the nodes' own."""
+    out = []
+    for node, label, value in zip(nodes.tolist(), labels.tolist(), values, strict=True):
+        own = axes.get(node)
+        if own is None:
+            out.append(_VECTOR % (label, *value) + "\n")
+        else:
+            out.append(_VECTOR % (label, *(value[:2] @ own + 0.0), value[2]) + " L\n")
+    return "".join(out)
+
+
+def _node_values(model: Model, frame: Frame, name: str) -> Floats:
+    """Rows of three numbers, shape (n_nodes, 3); RF is the internal force, as in CalculiX.
+
+    At nodes of no element, such as reference nodes, RF is the reaction and the load: the
+    internal force is none there.
+    """
     zero = np.zeros(len(frame.U))
     if name == "UR":
         return np.column_stack([zero, zero, frame.UR])
-    if name == "V":
+    if name == "U":
+        values = frame.U
+    elif name == "V":
         values = np.zeros_like(frame.U) if frame.V is None else frame.V[:, :2]
     else:
-        values = frame.U if name == "U" else (frame.RF + frame.F)[:, :2]
+        values = (frame.RF + frame.F)[:, :2]
+        if frame.constraint_force is not None:
+            inside = np.unique(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
+            values[inside] += frame.constraint_force[inside, :2]
     return np.column_stack([values, zero])
 
 

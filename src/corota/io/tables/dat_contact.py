@@ -14,6 +14,7 @@ import numpy as np
 
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.mesh.parts import cells_of
+from corota.model.contact import RigidCurve, joint_thickness
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -120,7 +121,13 @@ def _touching(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, Flo
     for section in model.sections:
         thickness[cells_of(model.mesh, section.cells)] = section.thickness
     chord = x[ends[:, 1]] - x[ends[:, 0]]
-    share = 0.5 * thickness[_slave(model, pair)[:, 0]]
+    own = thickness[_slave(model, pair)[:, 0]]
+    master = pair.master
+    if not isinstance(master, RigidCurve):
+        edges = model.mesh.edge_sets[master] if isinstance(master, str) else np.asarray(master)
+        facing = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
+        own = joint_thickness(model.mesh.points, ends, own, facing, thickness[edges[:, 0]])
+    share = 0.5 * own
     closed = (frame.C[ends, 4] > 0.0) * share[:, None]
     weight = closed * np.hypot(*chord.T)[:, None]
     area = float(weight.sum())

@@ -12,7 +12,7 @@ from corota import _core
 from corota.errors import ModelError
 from corota.mesh import EDGES
 from corota.model import elements
-from corota.model.contact import ContactPair, RigidCurve, Tie
+from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -209,27 +209,15 @@ def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surfa
             )
         else:
             assert master is not None
-            slave.thickness[:] = common_thickness(mesh.points, slave, master)
+            slave.thickness[:] = joint_thickness(
+                mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
+            )
             core = _core.Contact.edges(
                 x, slave.nodes, slave.bulge, slave.thickness, master.nodes, master.bulge, **common
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
     return core, slave, master, reach
-
-
-def common_thickness(points: Floats, slave: Surface, master: Surface) -> Floats:
-    """Thickness of the joint at the slave edges, shape (n,): the smaller of both sides.
-
-    The area of contact, and with it the contact pressure, does so not depend on which side is
-    the slave. The other side's thickness is that of its undeformed edge nearest by.
-    """
-    from scipy.spatial import cKDTree  # takes longer to import than a small job to solve
-
-    middle = points[slave.nodes[:, :2]].mean(axis=1)
-    other = points[master.nodes[:, :2]].mean(axis=1)
-    nearest = cKDTree(other).query(middle)[1]
-    return np.minimum(slave.thickness, master.thickness[nearest])
 
 
 def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface, float]:

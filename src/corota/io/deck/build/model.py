@@ -304,7 +304,7 @@ class ModelBuilder:
             if name:
                 return name
             found = view_of(self.meshes.views, target)
-        if found and numerals.is_integer(found[1]) and len(found[1]) < 19:
+        if found and numerals.is_label(found[1]):
             node = found[0].nodes(np.array([int(found[1])]))
             if node[0] >= 0:
                 return node
@@ -322,7 +322,7 @@ class ModelBuilder:
     def _numbering(self, view: View, number: str, what: Literal["nodes", "cells"]) -> View:
         """View whose numbers are meant: the assembly's own, else those of the only instance."""
         views = self.meshes.views
-        if view is not views[0] or len(views) != 2 or len(number) > 18:
+        if view is not views[0] or len(views) != 2 or not numerals.is_label(number):
             return view
         own = view.nodes if what == "nodes" else view.cells
         return view if own(np.array([int(number)]))[0] >= 0 else views[1]

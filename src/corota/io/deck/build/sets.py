@@ -157,7 +157,7 @@ class Sets:
                 self.deck.error(None, where, f"node set {name} contains itself")
             return self.node_set(full)
         found = view_of(self.views, name)
-        if found and numerals.is_integer(found[1]):
+        if found and numerals.is_label(found[1]):
             nodes = found[0].nodes(np.array([int(found[1])]))
             if nodes[0] >= 0:
                 return nodes
@@ -224,7 +224,7 @@ class Sets:
                     self.deck.error(card, where, f"element set {target} contains itself")
                 return self.element_set(full)
             found = view_of(self.views, target)
-        if found and numerals.is_integer(found[1]) and len(found[1]) < 19:
+        if found and numerals.is_label(found[1]):
             label = np.array([int(found[1])])
             cells, lines = found[0].cells(label), found[0].lines(label)
             if cells[0] >= 0 or lines[0] >= 0:
@@ -267,7 +267,7 @@ class Sets:
     def _node_surface(self, view: View, surface: Surface) -> Ints:
         parts = [_NONE]
         for row in surface.rows:
-            if numerals.is_integer(row.target) and len(row.target) < 19:
+            if numerals.is_label(row.target):
                 label = np.array([int(row.target)])
                 nodes = view.nodes(label)
                 self._undefined(nodes, label, row.where, "node", surface.name)

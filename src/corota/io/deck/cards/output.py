@@ -27,7 +27,10 @@ ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
 
 
 def node_print(deck: Deck, card: Card) -> None:
-    """``*NODE PRINT[, NSET=]``: table of nodal values in ``<job>.dat``; else of all nodes."""
+    """``*NODE PRINT[, NSET=]``: table of nodal values in ``<job>.dat``; else of all nodes.
+
+    ``GLOBAL=YES`` prints them in global axes where nodes have their own, too.
+    """
     _request(deck, card, "node print", card.value("NSET"))
 
 
@@ -127,6 +130,7 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
                 cast("Literal['no', 'yes', 'only']", totals),
                 key(points),
                 card.where,
+                kind == "node print" and deck.choice(card, "GLOBAL", ("NO", "YES"), "NO") == "YES",
             )
         )
 
