@@ -23,10 +23,11 @@ HELPERS = {
     "fault_runs",
     "fault_world",
     "contact_problems",
+    "contact_case_models",
     "free_body_decks",
 }
 #: What takes so long that it runs only when it is named.
-LONG = {"energy_balance", "faults", "fuzz_readers", "contact_torture", "free_bodies"}
+LONG = {"contact_cases", "energy_balance", "faults", "fuzz_readers", "contact_torture", "free_bodies"}
 
 
 def names() -> list[str]:
