@@ -27,7 +27,14 @@ HELPERS = {
     "free_body_decks",
 }
 #: What takes so long that it runs only when it is named.
-LONG = {"contact_cases", "energy_balance", "faults", "fuzz_readers", "contact_torture", "free_bodies"}
+LONG = {
+    "contact_cases",
+    "energy_balance",
+    "faults",
+    "fuzz_readers",
+    "contact_torture",
+    "free_bodies",
+}
 
 
 def names() -> list[str]:
