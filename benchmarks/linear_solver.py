@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from benchmarks.common import interleaved, report
 from corota import _core
 from corota.analysis.linear import pardiso
-from corota.analysis.linear.solvers import Faer, Pardiso, SuperLU
+from corota.analysis.linear.solvers import Multifrontal, Pardiso, SuperLU
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,8 +64,8 @@ def square(side: int) -> tuple[sp.csc_array, np.ndarray[Any, Any]]:
 def contenders(n: int) -> dict[str, Callable[[], Any]]:
     """Solvers by name of the table's column."""
 
-    def reference() -> Faer:
-        solver = Faer()
+    def reference() -> Multifrontal:
+        solver = Multifrontal()
         solver._core = _core.ReferenceLdlt()
         return solver
 
@@ -78,8 +78,8 @@ def contenders(n: int) -> dict[str, Callable[[], Any]]:
         return make
 
     found: dict[str, Callable[[], Any]] = {
-        "corota 1": threaded(Faer, 1),
-        "corota 2": threaded(Faer, 2),
+        "corota 1": threaded(Multifrontal, 1),
+        "corota 2": threaded(Multifrontal, 2),
         "faer 1": reference,
     }
     if pardiso.find_mkl() is not None:

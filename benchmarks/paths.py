@@ -16,7 +16,7 @@ import time
 
 import corota as ct
 from benchmarks.common import report
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 
 #: Cells along and across a cantilever of 100 x 10: about 250,000 equations.
 SIZES = {"20k": (320, 31), "250k": (1120, 111)}
@@ -34,7 +34,7 @@ def strut(nx: int, ny: int, *, across: float, along: float) -> ct.Model:
     return model
 
 
-class Timed(Faer):
+class Timed(Multifrontal):
     """The built-in solver with a clock of its own.
 
     With one thread the clock tells processor time: others on the machine do not count.

@@ -26,7 +26,7 @@ def problem(element: str, n: int, law: Any, threads: int) -> tuple[System, Any]:
     model = ct.Model(ct.mesh.rectangle(1.0, 1.0, n, n, CELL[element]))
     model.section("all", element=element, material=law)
     model.fix("left", rotation=True if element in DRILLING else None)
-    solver = SOLVERS["faer"]()
+    solver = SOLVERS["multifrontal"]()
     solver.threads = threads  # type: ignore[attr-defined]
     system = System(model, solver, threads)
     system.begin(Static(), 0.0, np.zeros(system.n_dofs), None)

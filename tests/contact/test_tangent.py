@@ -6,7 +6,7 @@ import pytest
 
 import corota as ct
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 
@@ -24,7 +24,7 @@ def problem(method, law):
     circle = ct.RigidCurve.circle((1.3, 2.45), 1.0, reference=disc)
     model.contact("up.bottom", "low.top", method=method, friction=0.3, law=law)
     model.contact("up.top", circle, method=method, friction=0.3)
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     return ContactEquations(system, system)
 

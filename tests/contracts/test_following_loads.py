@@ -13,7 +13,7 @@ import pytest
 import corota as ct
 from corota.analysis.distributed_forces import LoadSum
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.model.steps import Buckle, Static
 from support.models import DRILLING, ELEMENTS, cell
 
@@ -54,7 +54,7 @@ def dense(system: System, values: np.ndarray, triplets: object) -> np.ndarray:
 
 
 def ready(model: ct.Model, mass: str = "consistent", nlgeom: bool = True) -> System:
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     zero = np.zeros(system.n_dofs)
     system.begin(Static(nlgeom=nlgeom), 0.0, zero, None)
     system.conditions.set_mass(mass)

@@ -10,7 +10,7 @@ import pytest
 import scipy.sparse as sp
 
 from corota.analysis.linear import pardiso
-from corota.analysis.linear.solvers import SOLVERS, Faer, LinearSolver, make_solver
+from corota.analysis.linear.solvers import SOLVERS, LinearSolver, Multifrontal, make_solver
 from corota.errors import InputError, SingularError, UnsupportedError
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def test_a_free_chain_is_refused(name: str) -> None:
 
 
 def test_the_refusal_tells_where_and_how_it_moves() -> None:
-    solver = analyzed("faer", chain(30, held=False))
+    solver = analyzed("multifrontal", chain(30, held=False))
     with pytest.raises(SingularError, match="singular") as caught:
         solver.factorize(chain(30, held=False).data)
     assert 0 <= caught.value.equation < 30
@@ -107,7 +107,7 @@ def test_threads_are_set_and_change_nothing() -> None:
     upper = chain(50)
     answers = []
     for threads in (0, 1, 2):
-        solver = Faer()
+        solver = Multifrontal()
         solver.threads = threads
         assert solver.threads == threads
         solver.analyze(upper.indptr, upper.indices, np.arange(50))
@@ -119,7 +119,7 @@ def test_threads_are_set_and_change_nothing() -> None:
 
 def test_bad_input_is_named() -> None:
     upper = chain(5)
-    solver = analyzed("faer", upper)
+    solver = analyzed("multifrontal", upper)
     values = upper.data.copy()
     values[3] = np.nan
     with pytest.raises(InputError, match=r"entry \(1, 2\) is not a finite number"):
@@ -131,7 +131,7 @@ def test_bad_input_is_named() -> None:
     solver.factorize(upper.data)
     with pytest.raises(InputError, match="right-hand side of 4 values for 5 equations"):
         solver.solve(np.ones(4))
-    with pytest.raises(InputError, match="no linear solver 'lu'; there are: faer"):
+    with pytest.raises(InputError, match="no linear solver 'lu'; there are: multifrontal"):
         make_solver("lu")
 
 

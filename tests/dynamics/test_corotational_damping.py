@@ -8,7 +8,7 @@ import pytest
 
 import corota as ct
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.terms.viscous import ViscousElements
 from tests.support.lines import chain
 
@@ -44,7 +44,7 @@ def bent(system, angle, size=0.05):
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_rigid_rates_are_not_damped_in_any_configuration(element):
     """Exactly zero by definition, at an instant and between two configurations."""
-    system = System(block(element), Faer())
+    system = System(block(element), Multifrontal())
     viscous = ViscousElements(system, 0.1)
     u = bent(system, 2.0)
     x = system.model.mesh.points + system.by_node(u)[:, :2]
@@ -78,7 +78,7 @@ def test_rigid_rates_are_not_damped_in_any_configuration(element):
 @pytest.mark.parametrize("element", ["T3", "Q4I", "Q8", "Q4D", "TRUSS"])
 def test_small_rates_meet_the_stiffness(element):
     """In the reference configuration: the stiffness of the linear problem times the rates."""
-    system = System(block(element), Faer())
+    system = System(block(element), Multifrontal())
     u = np.zeros(system.n_dofs)
     v = np.random.default_rng(1).standard_normal(system.n_dofs)
     force = ViscousElements(system, 0.1).add(u, u, v, 0.0, 0.0, np.zeros(0))

@@ -8,7 +8,7 @@ import pytest
 
 import corota as ct
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.procedures import dynamic as dynamics
 from corota.analysis.procedures.motion import Inertia
 
@@ -33,7 +33,7 @@ def lower(model: ct.Model) -> np.ndarray:
 @pytest.mark.parametrize("element", ["T3", "Q4I", "Q8", "Q9", "OPT", "Q4D"])
 def test_light_nodes_have_no_mass_and_none_is_lost(element, mass):
     model = flying(element)
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     light = lower(model)
     inertia = Inertia(system, mass, light)
     u, v = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
@@ -53,7 +53,7 @@ def test_light_nodes_have_no_mass_and_none_is_lost(element, mass):
 def test_affine_motion_is_carried_where_inner_nodes_allow_it(element):
     """Extrapolation of a spin: exact with inner nodes at two distances, along the edge always."""
     model = flying(element)
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     energy = []
     for light in (None, lower(model)):
         inertia = Inertia(system, "consistent", light)

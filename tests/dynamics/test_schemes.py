@@ -165,10 +165,10 @@ def test_central_differences_name_the_stable_increment():
     assert np.ptp(column(results, "energy balance")) <= 1e-2 * kinetic.max()
     # The increment is stable but not needlessly small: twice as long blows up.
     from corota.analysis.equations import System
-    from corota.analysis.linear.solvers import Faer
+    from corota.analysis.linear.solvers import Multifrontal
     from corota.analysis.procedures.explicit import diagonal, stable_increment
 
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     system.begin(ct.Dynamic(), 0.0, np.zeros(system.n_dofs), None)
     mass = diagonal(system)
     stable = stable_increment(system, np.zeros(system.n_dofs), mass)

@@ -130,7 +130,7 @@ def alone(element: str) -> System:
     model = ct.Model(lines(points, (facts.cell, [list(range(facts.n_nodes))])))
     profile = PROFILES.get(element, (3.0, 1.0, 0.0))
     model.sections.append(Section(np.array([0]), element, MATERIAL, profile[0], profile=profile))
-    return System(model, SOLVERS["faer"](), 1)
+    return System(model, SOLVERS["multifrontal"](), 1)
 
 
 def stiffness(system: System, values: np.ndarray) -> np.ndarray:
@@ -192,7 +192,7 @@ def test_mass_of_beams(kind: str) -> None:
     model = ct.Model(mesh)
     heavy = ct.Elastic(E=1000.0, nu=0.25, rho=2.0)
     model.beam(np.arange(4), material=heavy, area=0.3, inertia=0.01)
-    system = System(model, SOLVERS["faer"](), 1)
+    system = System(model, SOLVERS["multifrontal"](), 1)
     zero = np.zeros(system.n_dofs)
     spin = 0.4
     v = system.from_nodes(

@@ -11,7 +11,7 @@ import scipy.optimize
 import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.lanczos import largest
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.model.loads import EdgeLoad, NodalForce
 from support.frames import column, euler_load, node_at, williams_toggle
 from support.tied import with_nodes
@@ -77,7 +77,7 @@ def test_factors_are_those_of_the_dense_pencil():
     from corota.analysis.procedures.buckling import _derivative, _perturbation
 
     modes = ct.solve(model, ct.Buckle(modes=4)).modes[0]
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     system.begin(ct.Buckle(), 0.0, np.zeros(system.n_dofs), None)
     u = np.zeros(system.n_dofs)
     force, move, loads = _perturbation(system, ct.Buckle(), 1, u)
@@ -160,7 +160,7 @@ def test_pivots_count_dense_negative_eigenvalues_along_a_path(seed):
     model.mesh.points[inner] += 0.002 * rng.standard_normal((int(inner.sum()), 2))
     path = ct.ArcLength(displacement=([apex], "y", -0.7), locate=False)
     results = ct.solve(model, ct.Static(path=path), fields=False)
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     free = np.flatnonzero(~system.conditions.constrained)
     n = system.n_dofs

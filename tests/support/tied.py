@@ -69,6 +69,6 @@ def constrained(kind: str, element: str = "Q4D") -> tuple[ct.Model, int]:
 
 def system_of(model: ct.Model) -> System:
     """The system of a model, with finite rotations."""
-    system = System(model, SOLVERS["faer"](), 1)
+    system = System(model, SOLVERS["multifrontal"](), 1)
     system.constraints.set_nlgeom(True)
     return system

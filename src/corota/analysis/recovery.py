@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.newton import ElementFailure
+from corota.results.derived import add_derived
 from corota.results.results import PointFields
 
 if TYPE_CHECKING:
@@ -46,17 +47,17 @@ def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, flo
         section, strain = block.section, float(own["largest_strain"])
         if system.nlgeom and section.local_strain == "linear" and strain > largest[0]:
             largest = strain, section.material
-        fields.append(
-            PointFields(
-                block.section.element,
-                block.cells,
-                own["points"],
-                own["shape"],
-                own["rotation"],
-                own["volume"],
-                own["values"],
-            )
+        found = PointFields(
+            block.section.element,
+            block.cells,
+            own["points"],
+            own["shape"],
+            own["rotation"],
+            own["volume"],
+            own["values"],
         )
+        add_derived(found)
+        fields.append(found)
     system.largest_linear_strain = largest
     return fields, {
         "strain energy": energy,

@@ -13,7 +13,7 @@ import numpy as np
 
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import SOLVERS
+from corota.analysis.linear.solvers import make_solver
 from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
 from corota.analysis.procedures.localization import localised
@@ -21,7 +21,7 @@ from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.terms.moving_mass import mass_of_step
-from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
+from corota.errors import ConvergenceError, CorotaError, UnsupportedError
 from corota.model.local_strain import LARGE_STRAIN, advice
 from corota.results.results import Frame, Results
 
@@ -49,7 +49,7 @@ def solve(
     steps: Step | Sequence[Step] | None = None,
     *,
     observers: Iterable[Observer] = (),
-    solver: str | LinearSolver = "faer",
+    solver: str | LinearSolver = "multifrontal",
     threads: int | None = None,
     keep: Literal["all", "last"] = "all",
     fields: bool = True,
@@ -156,9 +156,7 @@ class Analysis:
                 f"{threads} threads were asked for; {most} are used, on {cores} cores"
             )
         if isinstance(solver, str):
-            if solver not in SOLVERS:
-                raise InputError(f"no solver named {solver!r}; there are {', '.join(SOLVERS)}")
-            self.solver: LinearSolver = SOLVERS[solver]()
+            self.solver: LinearSolver = make_solver(solver)
         else:
             self.solver = solver
         if hasattr(self.solver, "threads"):

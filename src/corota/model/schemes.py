@@ -68,5 +68,7 @@ SCHEMES: dict[str, Callable[[float, float], Scheme]] = {
     "generalized_alpha": generalized_alpha,
 }
 
-#: Every scheme a dynamic step may name.
-NAMES = (*SCHEMES, "energy_momentum", "central_difference")
+
+def names() -> tuple[str, ...]:
+    """Every scheme that a dynamic step may name."""
+    return (*SCHEMES, "energy_momentum", "central_difference")

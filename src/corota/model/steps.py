@@ -243,10 +243,11 @@ class Dynamic(Step):
         if self.max_increments == 1000:
             self.max_increments = 10_000_000
         super().__post_init__()
-        from corota.model.schemes import NAMES
+        from corota.model.schemes import names
 
-        if self.scheme not in NAMES:
-            raise InputError(f"no scheme {self.scheme!r}; there are {', '.join(NAMES)}", self.where)
+        if self.scheme not in names():
+            known = ", ".join(names())
+            raise InputError(f"no scheme {self.scheme!r}; there are {known}", self.where)
         if self.mass not in ("consistent", "constant", "lumped"):
             raise InputError(
                 f"mass must be consistent, constant or lumped, not {self.mass!r}", self.where

@@ -224,7 +224,7 @@ def label_bar(bar: Any, name: str, per_cell: bool, limits: tuple[float, float]) 
     """Name a color bar, tell the smallest and largest value, keep the ticks few."""
     from matplotlib.ticker import MaxNLocator
 
-    meaning = vf.MEANING.get(name, "")
+    meaning = vf.meaning(name)
     plain = name in vf.NODAL or name in LINE_ONLY
     how = ", element averages" if per_cell else "" if plain else ", averaged at nodes"
     label = f"{name}: {meaning}{how}" if meaning else name + how

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.plots.figure import INK, PALE, look, new_figure, save
 from corota.plots.path import draw_path, has_stability
-from corota.results.variables import MEANING
+from corota.results.variables import meaning
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -96,7 +96,7 @@ def curve(
 def axis_label(name: str) -> str:
     """Name of a history with its meaning."""
     variable, _, place = name.partition(" at ")
-    meaning = MEANING.get(variable)
-    if not meaning:
+    what = meaning(variable)
+    if not what:
         return name
-    return f"{variable}: {meaning}" + (f", at {place}" if place else "")
+    return f"{variable}: {what}" + (f", at {place}" if place else "")

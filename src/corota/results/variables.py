@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.results.derived import DERIVED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -154,6 +155,12 @@ MEANING = {
     "CSLIP": "contact slip [length]",
     "CSTATUS": "contact status: 0 open, 1 closed, 2 slipping",
 }
+
+
+def meaning(name: str) -> str:
+    """What a variable is, with its dimension; empty where that is not known."""
+    return MEANING.get(name) or (DERIVED[name].meaning if name in DERIVED else "")
+
 
 #: The order of operations, written into result files.
 AVERAGING = (

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota import mesh as meshes
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.run import solve
 from corota.mesh import Cells, Mesh
 from corota.model import elements
@@ -149,7 +149,7 @@ def single(element: str, x: Floats, *, E: float, nu: float, **section: Any) -> M
 
 def assemble(model: Model, u: ArrayLike, nlgeom: bool = True) -> tuple[Floats, Floats]:
     """Internal force (n_dofs,) and tangent (n_dofs, n_dofs) at displacements by node."""
-    system = System(model, Faer())
+    system = System(model, Multifrontal())
     core = system.core
     n = core.n_dofs
     force, scale = np.empty(n), np.empty(n)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Factor:
                 # vanish for what is no such motion.
                 if not multiplier.any() or _is_null(matrix, error.mode):
                     raise
-        solver = Faer(symmetric=False)
+        solver = Multifrontal(symmetric=False)
         solver.threads = threads
         matrix = matrix.tocsc()
         matrix.sort_indices()
@@ -70,7 +70,7 @@ class Factor:
     ) -> None:
         upper = sp.triu(matrix).tocsc()
         upper.sort_indices()
-        solver = Faer()
+        solver = Multifrontal()
         solver.threads = threads
         after = np.flatnonzero(multiplier) if multiplier.any() else None
         solver.analyze(upper.indptr, upper.indices, node, after)

@@ -55,7 +55,7 @@ class Pardiso:
         if path is None:
             raise UnsupportedError(
                 "the solver 'pardiso' needs Intel oneMKL: pip install 'corota[pardiso]', "
-                "or use 'faer'"
+                "or use 'multifrontal'"
             )
         self._mkl = ctypes.CDLL(str(path))
         self._symmetric = symmetric

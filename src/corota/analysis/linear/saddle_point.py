@@ -408,7 +408,7 @@ class SaddlePointSystem:
     def _by_lu(self, data: Floats, rest: Triplets, b: Floats) -> Floats:
         import scipy.sparse as sp
 
-        from corota.analysis.linear.solvers import Faer
+        from corota.analysis.linear.solvers import Multifrontal
 
         self.whole += 1
         shape = (self.size, self.size)
@@ -418,7 +418,7 @@ class SaddlePointSystem:
         by = sp.diags_array(scale)
         matrix = (by @ (self.pattern.full(data) + extra) @ by).tocsc()
         matrix.sort_indices()
-        lu = Faer(symmetric=False)
+        lu = Multifrontal(symmetric=False)
         lu.analyze(matrix.indptr, matrix.indices, self.node)
         lu.factorize(matrix.data)
         self.system.linear.last = lu

@@ -79,7 +79,7 @@ def _index(values: NDArray[Any] | None, kind: type[np.generic]) -> NDArray[Any] 
     return None if values is None else np.ascontiguousarray(values, dtype=kind)
 
 
-class Faer:
+class Multifrontal:
     """The built-in solver: LDLᵀ with inertia, or LU if not symmetric.
 
     Parameters
@@ -178,13 +178,13 @@ class SuperLU:
 
 
 SOLVERS: dict[str, Callable[..., LinearSolver]] = {
-    "faer": Faer,
+    "multifrontal": Multifrontal,
     "superlu": SuperLU,
     "pardiso": Pardiso,
 }
 
 
-def make_solver(name: str = "faer", symmetric: bool = True) -> LinearSolver:
+def make_solver(name: str = "multifrontal", symmetric: bool = True) -> LinearSolver:
     """New solver by name.
 
     Raises

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -75,7 +75,7 @@ class MaskedLu:
     """LU of unsymmetric matrices with held dofs; ordered once for a pattern."""
 
     def __init__(self) -> None:
-        self._solver = Faer(symmetric=False)
+        self._solver = Multifrontal(symmetric=False)
         self._indptr = self._indices = np.zeros(0, np.int64)
         self._held = np.zeros(0, bool)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from corota import mesh as meshes
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.model.materials import Elastic
 from corota.model.model import Model
 from corota.verification.catalogue import Problem, Value
@@ -67,7 +67,7 @@ def errors(element: str, strain: str) -> tuple[float, float]:
 def rigid(element: str) -> float:
     """Largest internal force under rigid motions over E times the size of a cell."""
     model = patch(element)
-    core = System(model, Faer()).core
+    core = System(model, Multifrontal()).core
     width = 3 if element in DRILLING else 2
     zero = np.zeros((model.mesh.n_nodes, width))
     worst = 0.0

@@ -16,7 +16,7 @@ import numpy as np
 
 from corota import mesh as meshes
 from corota.analysis.equations import System
-from corota.analysis.linear.solvers import Faer
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.procedures.dynamic import initial_velocity
 from corota.model.materials import Elastic
 from corota.model.model import Model
@@ -38,7 +38,7 @@ def block(element: str) -> Model:
 
 def momenta(element: str, mass: Any = "consistent") -> tuple[float, ...]:
     """Kinetic energy, momentum x and y, angular momentum, mass."""
-    system = System(block(element), Faer())
+    system = System(block(element), Multifrontal())
     v = initial_velocity(system)
     found = system.core.momenta(np.zeros(system.n_dofs), v, mass, False)
     return tuple(float(x) for x in found)

@@ -1,0 +1,65 @@
+"""Output variables that follow from others at the same point, and the one table of them.
+
+A variable that is put into :data:`DERIVED` is computed with the frames, and whatever shows, prints
+or writes variables at points knows it: histories, pictures, tables and result files.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from corota.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from corota.results.results import PointFields
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A variable that is a function of others.
+
+    Parameters
+    ----------
+    function : callable
+        Takes the fields of a block of elements, gives an array of shape (n, p) for its n elements
+        with p points, or None where the block has no such variable.
+    meaning : str
+        What it is, with its dimension in brackets.
+    """
+
+    function: Callable[[PointFields], NDArray[np.float64] | None]
+    meaning: str = ""
+
+
+#: Variables by name; empty unless a user adds some.
+DERIVED: dict[str, Derived] = {}
+
+
+def add_derived(block: PointFields) -> None:
+    """Compute the variables of :data:`DERIVED` for a block, in place.
+
+    Raises
+    ------
+    InputError
+        If one has not one value for each point.
+    """
+    for name, item in DERIVED.items():
+        values = item.function(block)
+        if values is None:
+            continue
+        if values.shape != block.volume.shape:
+            raise InputError(
+                f"the output variable {name!r} has shape {values.shape}; give one value for each "
+                f"point: {block.volume.shape}"
+            )
+        block.values[name] = values
+
+
+__all__ = ["DERIVED", "Derived", "add_derived"]
