@@ -25,6 +25,7 @@ HELPERS = {
     "contact_problems",
     "contact_case_models",
     "free_body_decks",
+    "mechanisms",
 }
 #: What takes so long that it runs only when it is named.
 LONG = {
