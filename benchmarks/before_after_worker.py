@@ -147,7 +147,7 @@ def strip(nx: int, ny: int, element: str, material: Any, thickness: float = 1.0)
 def bending(nx: int, ny: int, element: str) -> tuple[ct.Model, Any]:
     """Large bending of an elastic strip."""
     model = strip(nx, ny, element, ct.Elastic(E=1000.0, nu=0.3))
-    model.force("right", y=0.2 / (ny + 1))
+    model.force(model.mesh.nodes_of("right"), y=0.2 / (ny + 1))
     return model, ct.Static(increments=3)
 
 
@@ -188,7 +188,7 @@ def swinging(nx: int, ny: int, element: str, **options: Any) -> tuple[ct.Model, 
     """A strip that a sudden force sets in motion."""
     model = strip(nx, ny, element, ct.Elastic(E=1000.0, nu=0.3, rho=1e-3))
     model.amplitudes["on"] = ct.Amplitude([0.0, 100.0], [1.0, 1.0])
-    model.force("right", y=0.2 / (ny + 1), amplitude="on")
+    model.force(model.mesh.nodes_of("right"), y=0.2 / (ny + 1), amplitude="on")
     return model, ct.Dynamic(period=0.08, increments=8, **options)
 
 
@@ -205,7 +205,7 @@ def rubber(strain: Any, state: Any, plane: str) -> Any:
 def own(element: str, step: Any) -> tuple[ct.Model, Any]:
     """A material in Python."""
     model = strip(10, 2, element, ct.UserMaterial(rubber, rho=1e-3))
-    model.force("right", y=0.05)
+    model.force(model.mesh.nodes_of("right"), y=0.05)
     return model, step
 
 

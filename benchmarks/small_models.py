@@ -90,7 +90,7 @@ def measure(n: int, seconds: float) -> list[object]:
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10 * n, ny=n))
     model.section("all", element="Q4I", material=ct.Elastic(E=1.2e6, nu=0.3), thickness=0.01)
     model.fix("left")
-    model.force("right", y=-4.0 / (n + 1))
+    model.force("right", y=-4.0 / (n + 1), per_node=True)
     sampler = Sampler()
     originals = {name: getattr(_core, name) for name in CLASSES}
     signal.signal(signal.SIGPROF, sampler.tick)

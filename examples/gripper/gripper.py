@@ -18,7 +18,6 @@ import corota as ct
 from corota.cli.progress import Progress
 from corota.cli.terminal import Terminal
 
-HERE = Path(__file__).resolve().parent
 PULL = 3.3
 STROKE = 10
 
@@ -31,7 +30,7 @@ def gripper(pull: float = PULL) -> ct.Model:
     pull : float
         Displacement of the pin to the left [length].
     """
-    mesh = ct.mesh.read(HERE / "gripper.msh")
+    mesh = ct.mesh.read(ct.examples.path("gripper.msh"))
     model = ct.Model(mesh, name="gripper")
     model.section("all", element="Q4I", material=ct.Elastic(E=1600.0, nu=0.35), thickness=5.0)
     model.fix("bolts")

@@ -1,4 +1,4 @@
-"""Mesh ``gripper.geo`` with Gmsh into ``gripper.msh`` and, for decks, ``gripper_mesh.inp``."""
+"""Mesh ``gripper.geo`` with Gmsh into the package's ``gripper.msh``, and into a deck's mesh."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -24,7 +24,7 @@ def main() -> None:
     gmsh.option.setNumber("General.Verbosity", 2)
     gmsh.open(str(HERE / "gripper.geo"))
     gmsh.model.mesh.generate(2)
-    gmsh.write(str(HERE / "gripper.msh"))
+    gmsh.write(str(HERE.parents[1] / "src" / "corota" / "examples" / "gripper.msh"))
     # As decks want it: node sets of points and curves, element sets of surfaces.
     gmsh.option.setNumber("Mesh.SaveGroupsOfNodes", -11)
     gmsh.option.setNumber("Mesh.SaveGroupsOfElements", -100)

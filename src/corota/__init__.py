@@ -8,32 +8,60 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from corota import mesh
+    from corota import examples, mesh, plots
     from corota._core import __version__ as __version__
     from corota.analysis.run import solve
     from corota.errors import (
         ConvergenceError,
         CorotaError,
         DeckError,
+        Diagnostic,
+        FileError,
         InputError,
+        Interrupted,
         ModelError,
+        ResourceError,
         SingularError,
         UnsupportedError,
     )
-    from corota.io.formats import read
+    from corota.io.formats import read, write
     from corota.io.job import JobFiles
     from corota.io.result_reader import read_results
-    from corota.mesh import Mesh
-    from corota.model.contact import PressureLaw, RigidCurve
-    from corota.model.loads import Amplitude
+    from corota.mesh import Cells, Mesh
+    from corota.model.attachments import Dashpot, PointMass
+    from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
+    from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+    from corota.model.loads import (
+        Amplitude,
+        BodyForce,
+        EdgeLoad,
+        Fixed,
+        Force,
+        InitialStress,
+        InitialTemperature,
+        InitialVelocity,
+        NodalForce,
+        Temperature,
+    )
     from corota.model.local_strain import LOCAL_STRAINS
     from corota.model.materials import Elastic, Expansion, Orthotropic
-    from corota.model.model import Model
-    from corota.model.paths import ArcLength, DisplacementControl
+    from corota.model.model import Findings, Model
+    from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Modes
     from corota.model.plasticity import Mises, Voce
-    from corota.model.steps import Buckle, Dynamic, Frequency, ModalDynamic, Static, SteadyState
+    from corota.model.sections import Section
+    from corota.model.steps import (
+        Buckle,
+        Dynamic,
+        Frequency,
+        ModalDynamic,
+        Output,
+        Static,
+        SteadyState,
+    )
     from corota.model.user_material import UserMaterial
-    from corota.results.results import Results
+    from corota.results.history import History
+    from corota.results.observer import BaseObserver, Iteration, Observer
+    from corota.results.results import Frame, PointFields, Results
 
 
 #: Module of each public name; a module stands for itself.
@@ -41,73 +69,145 @@ _HOMES = {
     "__version__": "_core",  # that of Cargo.toml
     "Amplitude": "model.loads",
     "ArcLength": "model.paths",
+    "BaseObserver": "results.observer",
+    "BodyForce": "model.loads",
     "Buckle": "model.steps",
+    "Cells": "mesh",
+    "ContactPair": "model.contact",
     "ConvergenceError": "errors",
     "CorotaError": "errors",
+    "Coupling": "model.constraints",
+    "CriticalPoint": "model.paths",
+    "Dashpot": "model.attachments",
     "DeckError": "errors",
+    "Diagnostic": "errors",
     "DisplacementControl": "model.paths",
     "Dynamic": "model.steps",
+    "EdgeLoad": "model.loads",
     "Elastic": "model.materials",
+    "Equation": "model.constraints",
     "Expansion": "model.materials",
+    "FileError": "errors",
+    "Findings": "model.model",
+    "Fixed": "model.loads",
+    "Force": "model.loads",
+    "Frame": "results.results",
     "Frequency": "model.steps",
+    "History": "results.history",
+    "InitialStress": "model.loads",
+    "InitialTemperature": "model.loads",
+    "InitialVelocity": "model.loads",
     "InputError": "errors",
-    "LOCAL_STRAINS": "model.local_strain",
+    "Interrupted": "errors",
+    "Iteration": "results.observer",
     "JobFiles": "io.job",
+    "LOCAL_STRAINS": "model.local_strain",
+    "LocalAxes": "model.constraints",
     "Mesh": "mesh",
     "Mises": "model.plasticity",
     "ModalDynamic": "model.steps",
     "Model": "model.model",
     "ModelError": "errors",
+    "Modes": "model.paths",
+    "NodalForce": "model.loads",
+    "Observer": "results.observer",
     "Orthotropic": "model.materials",
+    "Output": "model.steps",
+    "PointFields": "results.results",
+    "PointMass": "model.attachments",
     "PressureLaw": "model.contact",
+    "ResourceError": "errors",
     "Results": "results.results",
     "RigidCurve": "model.contact",
+    "Section": "model.sections",
     "SingularError": "errors",
     "Static": "model.steps",
     "SteadyState": "model.steps",
+    "StraightLine": "model.constraints",
+    "Temperature": "model.loads",
+    "Tie": "model.contact",
     "UnsupportedError": "errors",
     "UserMaterial": "model.user_material",
     "Voce": "model.plasticity",
+    "examples": "",
     "mesh": "",
+    "plots": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
     "solve": "analysis.run",
+    "write": "io.formats",
 }
 
 __all__ = [
     "LOCAL_STRAINS",
     "Amplitude",
     "ArcLength",
+    "BaseObserver",
+    "BodyForce",
     "Buckle",
+    "Cells",
+    "ContactPair",
     "ConvergenceError",
     "CorotaError",
+    "Coupling",
+    "CriticalPoint",
+    "Dashpot",
     "DeckError",
+    "Diagnostic",
     "DisplacementControl",
     "Dynamic",
+    "EdgeLoad",
     "Elastic",
+    "Equation",
     "Expansion",
+    "FileError",
+    "Findings",
+    "Fixed",
+    "Force",
+    "Frame",
     "Frequency",
+    "History",
+    "InitialStress",
+    "InitialTemperature",
+    "InitialVelocity",
     "InputError",
+    "Interrupted",
+    "Iteration",
     "JobFiles",
+    "LocalAxes",
     "Mesh",
     "Mises",
     "ModalDynamic",
     "Model",
     "ModelError",
+    "Modes",
+    "NodalForce",
+    "Observer",
     "Orthotropic",
+    "Output",
+    "PointFields",
+    "PointMass",
     "PressureLaw",
+    "ResourceError",
     "Results",
     "RigidCurve",
+    "Section",
     "SingularError",
     "Static",
     "SteadyState",
+    "StraightLine",
+    "Temperature",
+    "Tie",
     "UnsupportedError",
     "UserMaterial",
     "Voce",
+    "examples",
     "mesh",
+    "plots",
     "read",
     "read_results",
     "solve",
+    "write",
 ]
 
 

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +50,31 @@ class InputError(CorotaError, ValueError):
         super().__init__(f"{where}: {message}" if where else message)
         self.message = message
         self.where = where
+
+
+def number(value: object, what: str, where: Location | None = None) -> float:
+    """A finite number.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave.
+    what : str
+        What it is, at the head of the message.
+    where : Location, optional
+
+    Raises
+    ------
+    InputError
+        If it is no number, or not finite.
+    """
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(f"{what} must be a number, not {value!r}", where) from None
+    if not math.isfinite(found) or isinstance(value, str):
+        raise InputError(f"{what} must be a finite number, not {value!r}", where)
+    return found
 
 
 @dataclass(frozen=True, slots=True)

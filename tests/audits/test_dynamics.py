@@ -359,7 +359,7 @@ def test_rack_and_pinion(scheme):
     model.beam([1], material=ct.Elastic(E=LIGHT, rho=LIGHT), area=LIGHT, inertia=LIGHT)
     model.point_mass([0], m, inertia=inertia)
     model.point_mass([1], m)
-    model.equation((1, "x", 1.0), (0, "theta", r))
+    model.equation((1, "x", 1.0), (0, "rotation", r))
     model.fix([0])
     model.fix([1], x=None, rotation=True)
     model.fix([2], rotation=True)
@@ -659,7 +659,7 @@ def test_rigid_plate_on_springs_under_a_following_force(push):
     model.section([0, 1], element="Q4", material=ct.Elastic(E=1e5, rho=8.0), thickness=0.5)
     model.spring([2], kx, "x")
     model.spring([3], ky, "y")
-    model.spring([4], kt, "theta")
+    model.spring([4], kt, "rotation")
     model.rigid(np.arange(6), pivot)
     model.pressure("right", push / (0.5 * 0.5))
     m, s = 8.0 * 0.5 * 0.5, 0.3
@@ -750,12 +750,12 @@ def test_gears_on_a_torsion_spring():
     kt, i1, i2 = 40.0, 2.0, 0.5
     model = network([[0, 0], [3, 0]], [[0, 1]], [0, 1])
     model.spring([0], 1.0)
-    model.spring([1], kt, "theta")
-    model.spring([2], 1e-9, "theta")
+    model.spring([1], kt, "rotation")
+    model.spring([2], 1e-9, "rotation")
     model.point_mass([0], 1.0, inertia=i1)
     model.point_mass([1], 1.0, inertia=i2)
     model.fix([0, 1])
-    model.equation((1, "theta", 1.0), (0, "theta", 3.0))
+    model.equation((1, "rotation", 1.0), (0, "rotation", 3.0))
     model.force([1], moment=5.0)
     results = ct.solve(model, [ct.Static(), ct.Frequency(modes=1)])
     np.testing.assert_allclose(results.frames[-1].UR, [-15.0 / kt, 45.0 / kt], rtol=1e-7)
@@ -1261,7 +1261,7 @@ def link(spring):
 @pytest.mark.parametrize("side", [1, -1])
 def test_rigid_link_with_a_torsion_spring_beyond_its_load(side):
     # P L = k phi / sin phi, a stable symmetric bifurcation at k/L.
-    model = link((0, 12.0, "theta"))
+    model = link((0, 12.0, "rotation"))
     model.force([1], y=-1.0)
     path = ct.ArcLength(factor=20.0, switch=True, side=side)
     results = ct.solve(model, ct.Static(path=path, max_increments=300))
@@ -1304,7 +1304,7 @@ def test_two_rigid_links_buckle_at_the_golden_section():
     model.equation((2, "x", 1.0), (1, "x", -1.0))
     model.equation((2, "y", 1.0), (1, "y", -1.0))
     model.spring([2], k, "theta theta")
-    model.spring([3], k, "theta")
+    model.spring([3], k, "rotation")
     model.point_mass([1, 3], m)
     model.force([3], y=-1.0)
     buckle = ct.Buckle(modes=2)
@@ -2083,7 +2083,7 @@ def test_frequency_of_a_rigid_pendulum_about_a_turned_state(turned):
     for i in range(3):
         model.point_mass([i + 1], m[i])
     model.rigid([1, 2, 3], 0)
-    model.spring([2], kt, "theta")
+    model.spring([2], kt, "rotation")
     model.fix([0])
 
     def at(phi):

@@ -1393,7 +1393,7 @@ def test_nothing_applied_gives_nothing(element: str) -> None:
     steel = ct.Mises(E=2000.0, nu=0.3, yield_stress=8.0, expansion=1e-5)
     model.section("all", element=element, material=steel, local_strain="logarithmic")
     model.fix("left")
-    model.force("right", y=0.0)
+    model.force("right", y=0.0, per_node=True)
     model.pressure("top", 0.0)
     model.temperature(0.0)
     results = ct.solve(model, [ct.Static(), ct.Static(increments=2)], threads=1)
@@ -1414,7 +1414,7 @@ def test_tiny_loads_are_linear(element: str, size: float) -> None:
         model = ct.Model(mesh)
         model.section("all", element=element, material=ct.Elastic(E=2000.0, nu=0.3))
         model.fix("left")
-        model.force("right", y=load, x=0.3 * load)
+        model.force("right", y=load, x=0.3 * load, per_node=True)
         f = ct.solve(model, ct.Static(nlgeom=nlgeom), threads=1).frames[-1]
         ends.append((f.U / load, f.RF / load, f.fields[0].values["S"] / load))
     for a, b in zip(*ends, strict=True):
@@ -1471,7 +1471,7 @@ def test_numbers_that_are_none_are_refused(what: str, bad: float) -> None:
         if what == "amplitude":
             model.amplitudes["a"] = ct.Amplitude(np.array([0.0, 1.0]), np.array([0.0, bad]))
             amplitude = "a"
-        model.force("right", y=bad if what == "force" else 0.1, amplitude=amplitude)
+        model.force("right", y=bad if what == "force" else 0.1, amplitude=amplitude, per_node=True)
         apply: dict[str, Any] = {
             "moment": lambda: model.force([1], moment=bad),
             "pressure": lambda: model.pressure("top", bad),
@@ -1518,7 +1518,7 @@ def test_empty_sets_are_refused(what: str) -> None:
         if what == "section":
             model.section("voidc", element="Q4", material=ct.Elastic(E=100.0, nu=0.3))
         model.fix("left")
-        model.force("right", y=0.1)
+        model.force("right", y=0.1, per_node=True)
         if what == "force":
             model.force("void", y=1.0)
         if what == "fix":
@@ -2257,7 +2257,7 @@ def test_laws_that_must_agree(strain: str, plane: str) -> None:
             local_strain=strain, orientation=0.4 if material is laws[2] else 0.0,
         )  # fmt: skip
         model.fix("left")
-        model.force("right", y=0.9, x=-0.4)
+        model.force("right", y=0.9, x=-0.4, per_node=True)
         model.pressure("top", 0.2)
         ends.append(ct.solve(model, ct.Static(increments=5), threads=1))
     for other in ends[1:]:
@@ -2273,7 +2273,7 @@ def test_formats_hold_the_same_displacements(tmp_path: Path) -> None:
     model = ct.Model(mesh)
     model.section("all", element="Q9", material=ct.Elastic(E=100.0, nu=0.3), thickness=2.0)
     model.fix("left")
-    model.force("right", y=0.3)
+    model.force("right", y=0.3, per_node=True)
     results = ct.solve(model, ct.Static(increments=3), threads=1)
     with ct.read_results(results.write(tmp_path / "a.vtkhdf")) as stored:
         assert np.allclose(stored.frame(2).U, results.frames[2].U, rtol=1e-14)

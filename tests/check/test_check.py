@@ -14,7 +14,7 @@ def beam(element: str = "Q4I", **options: object) -> ct.Model:
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2))
     material = ct.Elastic(E=1e5, nu=0.3)
     model.section("all", element=element, material=material, **options)  # type: ignore[arg-type]
-    model.force("right", y=-1.0)
+    model.force("right", y=-1.0, per_node=True)
     return model
 
 

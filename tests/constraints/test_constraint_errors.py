@@ -56,7 +56,7 @@ def test_reference_node_held_by_nothing_is_named() -> None:
     model, reference = beam()
     model.rigid("left", reference)
     model.fix([reference])  # turns freely
-    model.force("right", y=1.0)
+    model.force("right", y=1.0, per_node=True)
     with pytest.raises(ct.SingularError, match="can move freely"):
         ct.solve(model)
 
@@ -75,7 +75,7 @@ def test_loose_node_in_a_distributing_coupling() -> None:
 
 def test_rotation_of_a_node_without_one() -> None:
     model, _ = beam(element="Q4I")
-    model.equation((0, "theta", 1.0), (1, "theta", -1.0))
+    model.equation((0, "rotation", 1.0), (1, "rotation", -1.0))
     fails(model, "has no drilling rotation to constrain")
 
 

@@ -157,7 +157,7 @@ def test_dead_traction_on_a_bar_turned_by_a_right_angle(element: str, strain: st
     model.section("all", element=element, material=material, local_strain=strain)
     x = mesh.points
     left = mesh.nodes_of("left")
-    model.fix(left, rotation=np.pi / 2.0)
+    model.fix(left, x=None, y=None, rotation=np.pi / 2.0)
     # The left edge turns about the origin into the x axis.
     for node in left:
         model.fix([int(node)], x=-x[node, 1] - x[node, 0], y=x[node, 0] - x[node, 1])

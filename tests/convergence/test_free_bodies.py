@@ -92,7 +92,7 @@ def test_a_stiffness_beyond_double_precision_is_said_to_be_so():
         material = ct.Elastic(E=E, nu=0.3)
         model.section(np.flatnonzero(cells), element="Q4I", material=material)
     model.fix("right")
-    model.force("left", x=1e-12)
+    model.force("left", x=1e-12, per_node=True)
     with pytest.raises(ct.SingularError, match="rounding hides that in double precision"):
         ct.solve(model, Static(), threads=1, fields=False)
 

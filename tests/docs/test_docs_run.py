@@ -25,7 +25,7 @@ def solved() -> dict[str, object]:
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=8, ny=2))
     model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
     model.fix("left")
-    model.force("right", y=-0.02)
+    model.force("right", y=-0.06)
     return {"ct": ct, "model": model, "results": ct.solve(model, ct.Static(increments=2))}
 
 

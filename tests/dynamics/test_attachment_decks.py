@@ -164,7 +164,7 @@ def test_modal_steps_take_damping_of_materials():
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, nx=4, ny=1))
     model.section("all", element="Q4I", material=ct.Elastic(E=100.0, rho=1.0, rayleigh=(0.1, 0.02)))
     model.fix("left")
-    model.force("right", y=-0.01)
+    model.force("right", y=-0.01, per_node=True)
     modes = ct.Frequency(modes=3)
     keys = {"period": 5.0, "first_increment": 0.05}
     by_material = ct.solve(model, [modes, ct.ModalDynamic(**keys)], threads=1).frames[-1].U

@@ -35,7 +35,7 @@ def test_point_masses_give_the_frequency_of_an_oscillator():
 def oscillator(scheme, c=0.0, rayleigh=(0.0, 0.0), between=False, n=400):
     model = bar()
     model.point_mass("right", 2.0)
-    model.force("right", x=0.05)
+    model.force("right", x=0.05, per_node=True)
     points = model.mesh.points
     for node in model.mesh.nodes_of("right"):
         if c and between:
@@ -108,7 +108,7 @@ def test_dashpot_between_nodes_far_apart():
     model = ct.Model(ct.mesh.rectangle(2.0, 1.0, nx=4, ny=1))
     model.section("all", element="Q4I", material=ct.Elastic(E=100.0, nu=0.0, rho=1.0))
     model.fix("left")
-    model.force("right", x=1.0)
+    model.force("right", x=1.0, per_node=True)
     far = int(model.mesh.nodes_of("right")[0])
     near = int(model.mesh.nodes_of("left")[0])
     model.dashpot(near, far, c=2.0)
@@ -122,7 +122,7 @@ def test_dashpot_between_nodes_far_apart():
 def test_explicit_motion_has_point_masses_and_refuses_dashpots():
     model = bar(rho=1.0)
     model.point_mass("right", 2.0)
-    model.force("right", x=0.05)
+    model.force("right", x=0.05, per_node=True)
     results = run(model, period=0.6, scheme="central_difference")
     tip = model.mesh.nodes_of("right")[0]
     assert max(f.U[tip, 0] for f in results.frames) == pytest.approx(0.002, rel=0.01)

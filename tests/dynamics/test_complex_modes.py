@@ -245,7 +245,7 @@ def ziegler(load, damping=None):
     model = ct.Model(mesh)
     light = ct.Elastic(E=1e6, nu=0.0, rho=1e-9)
     model.beam([0, 1], material=light, area=1.0, inertia=1.0)
-    model.spring([2, 3], 1.0, "theta")
+    model.spring([2, 3], 1.0, "rotation")
     model.section([4], element="Q4", material=light)
     for dof in ("x", "y"):
         model.equation((2, dof, 1.0), (1, dof, -1.0))
@@ -258,7 +258,7 @@ def ziegler(load, damping=None):
     if damping is None:
         return modes_of(model, modes=2)
     # A dashpot turns against the ground: a node of its own has the angle of the second joint.
-    model.equation((9, "theta", 1.0), (2, "theta", -1.0), (1, "theta", 1.0))
+    model.equation((9, "rotation", 1.0), (2, "rotation", -1.0), (1, "rotation", 1.0))
     model.dashpot(0, rotation=damping)
     model.dashpot(9, rotation=damping)
     return modes_of(model, modes=2, complex_modes=True)

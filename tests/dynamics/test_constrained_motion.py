@@ -35,11 +35,11 @@ def turning_equation():
     right = model.mesh.nodes_of("right")
     model.equation(
         (reference, "x", 1.0),
-        (right[0], "theta", 0.7),
-        (right[1], "theta", -0.4),
+        (right[0], "rotation", 0.7),
+        (right[1], "rotation", -0.4),
         (right[1], "y", 0.3),
     )
-    model.equation((right[2], "theta", 1.0), (reference, "y", 0.5), (right[0], "theta", 2.0))
+    model.equation((right[2], "rotation", 1.0), (reference, "y", 0.5), (right[0], "rotation", 2.0))
     return model
 
 

@@ -95,7 +95,7 @@ def beam(element, time, value):
     model.section("all", element=element, material=ct.Elastic(E=100.0, nu=0.3, rho=1.0))
     model.fix("left")
     model.amplitudes["late"] = ct.Amplitude(np.array(time), np.array(value))
-    model.force("right", y=0.5, amplitude="late")
+    model.force("right", y=0.5, amplitude="late", per_node=True)
     return model
 
 

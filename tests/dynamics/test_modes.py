@@ -43,7 +43,7 @@ def test_tension_raises_and_compression_lowers_the_frequency():
         model = ct.Model(ct.mesh.rectangle(10.0, 0.2, nx=20, ny=1))
         model.section("all", element="Q4I", material=ct.Elastic(E=1e6, nu=0.0, rho=1.0))
         model.fix("left")
-        model.force("right", x=0.5 * force)
+        model.force("right", x=0.5 * force, per_node=True)
         steps = [ct.Static(), ct.Frequency(modes=1)]
         return ct.solve(model, steps, threads=1, fields=False).modes[-1].factors[0]
 

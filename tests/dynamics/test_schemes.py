@@ -128,7 +128,7 @@ def test_load_acts_at_once_and_doubles_the_static_deflection():
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
     model.section("all", element="Q4I", material=ct.Elastic(E=1e6, nu=0.0, rho=1.0))
     model.fix("left")
-    model.force("right", y=-0.5)
+    model.force("right", y=-0.5, per_node=True)
     static = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1].U[:, 1].min()
     first = ct.solve(model, ct.Frequency(modes=1), threads=1).modes[-1].factors[0]
     results = run(model, period=1.0 / first, increments=200, scheme="newmark", nlgeom=False)

@@ -209,7 +209,7 @@ def test_newton_stays_quadratic_in_a_heated_frame() -> None:
     model.section("all", element="Q4I", material=ct.Elastic(E, NU, expansion=ALPHA))
     model.fix("left")
     model.temperature(60.0 * mesh.points[:, 1])
-    model.force("right", y=0.1)
+    model.force("right", y=0.1, per_node=True)
     solve_quadratically(model, ct.Static(increments=2))
 
 

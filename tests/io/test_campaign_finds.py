@@ -76,7 +76,7 @@ def test_damaged_results_are_refused(tmp_path: Path) -> None:
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1), name="deck")
     model.section("all", element="Q4I", material=ct.Elastic(E=1.0, nu=0.3))
     model.fix("left")
-    model.force("right", y=1e-4)
+    model.force("right", y=1e-4, per_node=True)
     ct.solve(model, ct.Static(), observers=[ct.JobFiles(tmp_path)], threads=1)
     whole = (tmp_path / "deck.vtkhdf").read_bytes()
     rng = np.random.default_rng(3)
@@ -102,7 +102,7 @@ def test_elements_of_a_block_that_are_not_there(tmp_path: Path) -> None:
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1), name="deck")
     model.section("all", element="Q4I", material=ct.Elastic(E=1.0, nu=0.3))
     model.fix("left")
-    model.force("right", y=1e-4)
+    model.force("right", y=1e-4, per_node=True)
     ct.solve(model, ct.Static(), observers=[ct.JobFiles(tmp_path)], threads=1)
     with h5py.File(tmp_path / "deck.vtkhdf", "r+") as file:
         file["corota/points/0/cells"][2] = 205
@@ -115,7 +115,7 @@ def test_arrays_that_only_an_earlier_step_had_do_not_spoil_the_file(tmp_path: Pa
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1), name="two")
     model.section("all", element="Q4I", material=ct.Elastic(E=100.0, nu=0.3, rho=1.0))
     model.fix("left")
-    model.force("right", y=-0.1)
+    model.force("right", y=-0.1, per_node=True)
     steps = [ct.Dynamic(period=0.2, increments=2), ct.Static(increments=2)]
     results = ct.solve(model, steps, threads=1)
     writer = VtkhdfWriter(tmp_path / "two.vtkhdf", model)

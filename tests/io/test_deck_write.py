@@ -128,7 +128,7 @@ def test_a_python_model_survives_a_round_trip(tmp_path: Path) -> None:
     model.fix([7], x=None, y=0.25)
     model.pressure("top", 3.0)
     model.traction(mesh.edge_sets["right"][:1], x=1.0, y=-2.0)
-    model.force("bottom", y=-1.0)
+    model.force("bottom", y=-1.0, per_node=True)
     model.gravity(y=-9.81, cells=[0, 1])
     model.steps = [
         ct.Static(increments=4, tolerance=1e-11, max_iterations=7),

@@ -210,7 +210,7 @@ def test_lines_are_written_and_read_back(tmp_path: Path) -> None:
     model.truss([c + 2], material=steel, area=0.2)
     model.spring([c + 3], [[-1.0, -4.0], [0.0, 0.0], [1.0, 9.0]])
     model.spring([c + 4], 3.0, "x y")
-    model.spring([c + 5], 2.0, "theta")
+    model.spring([c + 5], 2.0, "rotation")
     model.spring([c + 6], 5.0, "y")
     model.fix("left", rotation=True)
     model.force([n + 1], y=-0.2)

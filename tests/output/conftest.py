@@ -134,7 +134,7 @@ def model() -> Model:
     made = Model(strip(), "beam")
     made.section("EALL", element="Q4I", material=Elastic(E=1000.0, nu=0.3), thickness=0.1)
     made.fix("LEFT")
-    made.force("RIGHT", y=-0.5)
+    made.force("RIGHT", y=-0.5, per_node=True)
     made.steps.append(
         Static(
             first_increment=0.25,

@@ -40,7 +40,7 @@ def test_an_address_limit_is_seen_before_it_is_met(tmp_path: Path, left: int, co
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, 20, 4), name="strip")
     model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
     model.fix("left")
-    model.force("right", y=-0.01)
+    model.force("right", y=-0.01, per_node=True)
     model.steps.append(ct.Static(increments=1))
     write(model, tmp_path / "strip.inp")
     done = subprocess.run(

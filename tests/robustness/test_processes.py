@@ -18,7 +18,7 @@ def tip(threads, load=1e-3, n=20):
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, n, n // 3))
     model.section("all", element="Q4", material=ct.Elastic(E=1e3, nu=0.3))
     model.fix("left")
-    model.force("right", y=-load)
+    model.force("right", y=-load, per_node=True)
     return float(ct.solve(model, ct.Static(), threads=threads).frames[-1].U.min())
 """
 
@@ -97,7 +97,7 @@ def test_solving_in_several_threads_of_one_process_gives_the_same_bits() -> None
         model = ct.Model(ct.mesh.rectangle(10.0, 1.0, 20, 4))
         model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
         model.fix("left")
-        model.force("right", y=-load)
+        model.force("right", y=-load, per_node=True)
         return float(ct.solve(model, ct.Static(increments=3), threads=2).frames[-1].U.min())
 
     loads = [1e-3 * (1 + k) for k in range(6)]
@@ -111,7 +111,7 @@ def test_more_threads_than_make_sense_are_capped() -> None:
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1))
     model.section("all", element="Q4", material=ct.Elastic(E=1e3, nu=0.3))
     model.fix("left")
-    model.force("right", y=-1e-3)
+    model.force("right", y=-1e-3, per_node=True)
     results = ct.solve(model, ct.Static(), threads=100_000)
     assert results.info["threads"] <= 1024
     assert any("threads" in note for note in results.notes)

@@ -191,7 +191,7 @@ def test_nlgeom_stays_on_in_python_and_says_so() -> None:
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2))
     model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3))
     model.fix("left")
-    model.force("right", y=-2.0)
+    model.force("right", y=-2.0, per_node=True)
     with pytest.warns(UserWarning, match="keeps the large rotations"):
         results = ct.solve(model, [ct.Static(increments=4), ct.Static(nlgeom=False)], threads=1)
     last = {frame.step: frame for frame in results.frames}

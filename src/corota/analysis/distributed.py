@@ -18,7 +18,7 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
-from corota.errors import ModelError
+from corota.errors import InputError, ModelError
 from corota.mesh import EDGES
 from corota.model import elements
 from corota.model.loads import BodyForce, EdgeLoad
@@ -192,12 +192,12 @@ class DistributedLoads:
         """Cell and side of every loaded edge, shape (n, 2)."""
         mesh = self.system.model.mesh
         if isinstance(item.edges, str):
-            if item.edges not in mesh.edge_sets:
-                known = ", ".join(mesh.edge_sets) or "none"
-                raise ModelError(f"no surface named {item.edges!r}; there are: {known}", item.where)
-            faces = mesh.edge_sets[item.edges]
+            try:
+                faces = mesh.edge_pairs(item.edges)
+            except InputError as error:
+                raise ModelError(error.message, item.where) from None
         else:
-            faces = np.asarray(item.edges, np.int64).reshape(-1, 2)
+            faces = mesh.edge_pairs(item.edges)
         if not self._cells:
             self._cells = {
                 int(c): (b, r)

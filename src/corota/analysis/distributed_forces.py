@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from corota.errors import ModelError
+from corota.errors import InputError, ModelError
+from corota.mesh import selection
 from corota.model import elements
 
 if TYPE_CHECKING:
@@ -102,15 +103,14 @@ class BodyLoad:
         inside = np.ones(mesh.n_cells, bool)
         if not isinstance(item.cells, str):
             inside[:] = False
-            inside[item.cells] = True
+            inside[selection.indices(item.cells, "cell", mesh.n_cells, item.where)] = True
         elif item.cells not in ("", "all"):
-            if item.cells not in mesh.cell_sets:
-                known = ", ".join(mesh.cell_sets) or "none"
-                raise ModelError(
-                    f"no element set named {item.cells!r}; there are: {known}", item.where
-                )
+            try:
+                name = mesh.set_name(item.cells, "cell")
+            except InputError as error:
+                raise ModelError(error.message, item.where) from None
             inside[:] = False
-            inside[mesh.cell_sets[item.cells]] = True
+            inside[mesh.cell_sets[name]] = True
         self.masks = [inside[b.cells] for b in system.blocks]
         facts = [elements.find(b.section.element) for b in system.blocks]
         for block, mask in zip(system.blocks, self.masks, strict=True):

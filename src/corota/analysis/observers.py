@@ -54,6 +54,12 @@ class Observers:
         for o in self.each:
             o.cut_back(step, increment, attempt, reason, dt)
 
+    def note(self, step: int, text: str) -> None:
+        """Say what a step does that was not asked for in so many words."""
+        for o in self.each:
+            if (tell := getattr(o, "note", None)) is not None:
+                tell(step, text)
+
     def end(self, results: Results, error: Exception | None) -> None:
         """Finish."""
         for o in self.each:

@@ -22,7 +22,7 @@ from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, UnsupportedError
-from corota.model.local_strain import LARGE_STRAIN, advice
+from corota.model.local_strain import ADVICE, LARGE_STRAIN
 from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def solve(
     >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
     >>> model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
     >>> model.fix("left")
-    >>> model.force("right", y=-0.1)
+    >>> model.force("right", y=-0.2)
     >>> results = ct.solve(model, ct.Static(), threads=1)
     >>> bool(results.frames[-1].U[:, 1].min() < -0.7)
     True
@@ -235,6 +235,8 @@ class Analysis:
         nlgeom = system.nlgeom
         system.mass = mass_of_step(self.steps, number)
         system.begin(step, state.time, state.u, reaction)
+        state.notes += system.conditions.notes
+        system.conditions.notes = []
         if state.at is None or nlgeom != system.nlgeom:
             state.at = system.evaluate(state.u, 0.0)
         assert state.energies is not None
@@ -310,8 +312,8 @@ class Analysis:
             if material is not None and strain > LARGE_STRAIN:
                 self._warn(
                     "strain",
-                    f"local strain reaches {strain:.1%} in step {number}, increment {increment}; "
-                    f"the linear local strain is meant for a few percent: {advice(material)}",
+                    f"local strain reaches {strain:.1%} in step {number}, increment {increment}. "
+                    + ADVICE,
                 )
             for block, own in zip(system.blocks, fields, strict=True):
                 if "flow" not in self.warned and (found := localised(block, own)):
@@ -325,8 +327,9 @@ class Analysis:
             assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
         contact = None
+        pairs: dict[str, Floats] = {}
         if system.contact_term is not None:
-            contact, sums = system.contact_term.output()
+            contact, sums, pairs = system.contact_term.output()
             scalars = {**scalars, **sums}
         held = None
         if state.reaction is None and state.at is not None and state.at.link is not None:
@@ -347,6 +350,7 @@ class Analysis:
             None if state.a is None else system.by_node(state.a),
             contact,
             held,
+            pairs,
         )
         self.results.add(frame)
         with system.timed("write"):

@@ -9,10 +9,10 @@ import numpy as np
 
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied
 
 if TYPE_CHECKING:
-    from corota.model.loads import Load
+    from corota.model.loads import AppliedLoad
     from corota.model.model import Model
 
 
@@ -21,7 +21,8 @@ def check_data(model: Model) -> list[Diagnostic]:
     mesh = model.mesh
     kinds = ", ".join(f"{len(c)} {c.kind}" for c in mesh.cells) or "no cells"
     found = [Diagnostic("note", f"{mesh.n_nodes} nodes, {kinds}, {len(model.steps)} steps")]
-    loads = model.loads + [load for step in model.steps for load in step.loads]
+    every = [*model.loads, *(load for step in model.steps for load in step.loads)]
+    loads = applied(every, mesh)
     found += _effects(model, loads)
     found += _unused(model, loads)
     for number, step in enumerate(model.steps, start=1):
@@ -47,7 +48,7 @@ def check_data(model: Model) -> list[Diagnostic]:
     return found
 
 
-def _effects(model: Model, loads: list[Load]) -> list[Diagnostic]:
+def _effects(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:
     found = []
     mesh = model.mesh
     bare = np.ones(mesh.n_nodes, bool)
@@ -84,7 +85,7 @@ def _effects(model: Model, loads: list[Load]) -> list[Diagnostic]:
     return found
 
 
-def _unused(model: Model, loads: list[Load]) -> list[Diagnostic]:
+def _unused(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:
     used: set[str] = set()
 
     def use(where: object) -> None:
@@ -102,6 +103,20 @@ def _unused(model: Model, loads: list[Load]) -> list[Diagnostic]:
             use(load.edges)
         else:
             use(load.cells)
+    for pair in model.contacts:
+        use(pair.slave)
+        use(pair.master)
+    for tie in model.ties:
+        use(tie.slave)
+        use(tie.master)
+    for constraint in model.constraints:
+        use(getattr(constraint, "nodes", None))
+    for axes in model.axes:
+        use(axes.nodes)
+    for mass in model.point_masses:
+        use(mass.nodes)
+    for velocity in model.velocities:
+        use(velocity.nodes)
     for start in model.initial_temperatures:
         use(start.nodes)
     for stress in model.initial_stresses:

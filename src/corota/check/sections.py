@@ -12,12 +12,14 @@ from corota.errors import Diagnostic, InputError
 from corota.mesh.data import EDGES
 from corota.mesh.parts import cells_of, part_of_cells
 from corota.model import elements
+from corota.model.local_strain import ADVICE
 from corota.model.materials import Elastic
 
 if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints, Mesh
     from corota.model.model import Model
     from corota.model.sections import Section
+    from corota.model.steps import Step
 
 #: Squared outline over area above which a part counts as slender (a strip 4 times its width).
 SLENDER = 25.0
@@ -34,7 +36,7 @@ def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
         count[cells] += 1
         wrong = _wrong_shape(mesh, section, cells)
         fits = fits and wrong is None
-        found += [wrong] if wrong else _locking(mesh, section, cells)
+        found += [wrong] if wrong else _locking(mesh, section, cells, model.steps)
     labels = mesh.cell_labels
     for code, text, hint in (
         (count == 0, "no section", "give one to every cell"),
@@ -65,7 +67,7 @@ def _wrong_shape(mesh: Mesh, section: Section, cells: Ints) -> Diagnostic | None
     return None
 
 
-def _locking(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
+def _locking(mesh: Mesh, section: Section, cells: Ints, steps: list[Step]) -> list[Diagnostic]:
     found = []
     name = section.element
     material = section.material
@@ -82,6 +84,14 @@ def _locking(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
                 f"{name} locks in plane strain at Poisson's ratio {material.nu:g}",
                 section.where,
                 hint="use Q4I or Q8R",
+            )
+        )
+    if material.flows and section.local_strain == "linear" and any(s.nlgeom for s in steps):
+        found.append(
+            Diagnostic(
+                "note",
+                f"{material.name or 'a material'} flows under the linear local strain. {ADVICE}",
+                section.where,
             )
         )
     if element.bending_cells:

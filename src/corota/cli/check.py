@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from corota.cli.info import model_lines, model_record
+from corota.cli.info import model_record
 from corota.cli.reading import read_input
 from corota.errors import CorotaError, Diagnostic
+from corota.model.summary import model_lines
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal

@@ -106,6 +106,9 @@ class Progress(BaseObserver):
             )
         )
 
+    def note(self, step: int, text: str) -> None:
+        self.terminal.line(self.terminal.color(f"  step {step}: {text}", "yellow"))
+
     def end(self, results: Results, error: Exception | None) -> None:
         self.terminal.status("")
 

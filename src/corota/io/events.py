@@ -128,6 +128,9 @@ class Events(BaseObserver):
             }
         )
 
+    def note(self, step: int, text: str) -> None:
+        self._emit({"event": "note", "step": step, "note": text})
+
     def end(self, results: Results, error: Exception | None) -> None:
         record: dict[str, Any] = {
             "event": "end",

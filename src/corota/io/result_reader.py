@@ -31,6 +31,12 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 _KINDS = {number: kind for kind, number in VTK_TYPES.items()}
+#: Arrays at nodes that a frame holds in its own attributes.
+_NODAL_ARRAYS = {
+    "displacement", "rotation", "reaction", "reaction moment", "external force",
+    "external moment", "velocity", "angular velocity", "acceleration", "angular acceleration",
+    *vf.CONTACT,
+}  # fmt: skip
 #: Scalars of a frame that are its own attributes.
 _OWN = ("step", "increment", "time", "step time", "load factor")
 
@@ -144,7 +150,8 @@ class FileFrames(Sequence[Frame]):
 
     def _read(self, number: int) -> Frame:
         group = self._file["corota/frames"]
-        scalars = {name: float(group[name][number]) for name in group}
+        found = {name: float(group[name][number]) for name in group}
+        scalars = {name: value for name, value in found.items() if not np.isnan(value)}
         force, outer = (self.at_points(n, number) for n in ("reaction", "external force"))
         moment, turn = (self.at_points(n, number) for n in ("reaction moment", "external moment"))
         moving = {}
@@ -156,6 +163,7 @@ class FileFrames(Sequence[Frame]):
         if vf.CONTACT[0] in self._file["VTKHDF/PointData"]:
             columns = [self.at_points(name, number) for name in vf.CONTACT]
             moving["C"] = np.column_stack(columns)
+        fields = [self._fields(block, number) for block in range(len(self._blocks))]
         return Frame(
             int(scalars["step"]),
             int(scalars["increment"]),
@@ -166,10 +174,32 @@ class FileFrames(Sequence[Frame]):
             self.at_points("rotation", number),
             np.column_stack([force[:, :2], moment]),
             np.column_stack([outer[:, :2], turn]),
-            [self._fields(block, number) for block in range(len(self._blocks))],
+            fields,
             {k: v for k, v in scalars.items() if k not in _OWN},
             **moving,
+            pairs=self._pairs(number),
+            averages={} if fields else self._averages(number),
         )
+
+    def _pairs(self, number: int) -> dict[str, Floats]:
+        """Contact of each pair, where pairs share nodes."""
+        head = f"{vf.CONTACT[0]}: "
+        names = [n.removeprefix(head) for n in self._file["VTKHDF/PointData"] if n.startswith(head)]
+        return {
+            pair.replace("|", "/"): np.column_stack(
+                [self.at_points(f"{column}: {pair}", number) for column in vf.CONTACT]
+            )
+            for pair in names
+        }
+
+    def _averages(self, number: int) -> dict[str, Floats]:
+        """What the file holds at nodes of values whose points it does not hold."""
+        of_pairs = tuple(f"{column}: " for column in vf.CONTACT)
+        return {
+            name: self.at_points(name, number)
+            for name in self._file["VTKHDF/PointData"]
+            if name not in _NODAL_ARRAYS and not name.startswith(of_pairs)
+        }
 
     def _fields(self, block: int, number: int) -> PointFields:
         group = self._blocks[block]

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.mesh import selection
+from corota.names import choose, did_you_mean, listed, match
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -60,6 +62,22 @@ class Cells:
     nodes: Ints
     labels: Ints
 
+    def __post_init__(self) -> None:
+        self.kind = choose(self.kind, N_NODES, "kind of cell")
+        self.nodes, self.labels = np.asarray(self.nodes), np.asarray(self.labels)
+        if self.nodes.size and not np.issubdtype(self.nodes.dtype, np.integer):
+            raise InputError(f"nodes of cells are whole numbers, not {self.nodes.dtype}")
+        wanted = N_NODES[self.kind]
+        if self.nodes.ndim != 2 or self.nodes.shape[1] != wanted:
+            raise InputError(
+                f"a {self.kind} has {wanted} nodes: its table has shape (n, {wanted}), not "
+                f"{self.nodes.shape}"
+            )
+        if self.labels.shape != (len(self.nodes),):
+            raise InputError(
+                f"{len(self.nodes)} cells need as many labels, not {self.labels.shape}"
+            )
+
     def __len__(self) -> int:
         return len(self.nodes)
 
@@ -106,6 +124,13 @@ class Mesh:
             raise InputError("a coordinate exceeds 1e100")
         if len(self.node_labels) == 0:
             self.node_labels = np.arange(1, self.n_nodes + 1)
+        for block in self.cells:
+            low, high = block.nodes.min(initial=0), block.nodes.max(initial=-1)
+            if low < 0 or high >= self.n_nodes:
+                raise InputError(
+                    f"a {block.kind} has node {low if low < 0 else high}; there are "
+                    f"{self.n_nodes}, counted from 0"
+                )
 
     @property
     def n_nodes(self) -> int:
@@ -197,21 +222,70 @@ class Mesh:
         ends = np.sort(ends, axis=1)
         return np.asarray(ends[:, 0] * np.int64(self.n_nodes) + ends[:, 1])
 
+    def set_name(self, name: str, *kinds: str) -> str:
+        """A set's own name from one in other letters' case.
+
+        Parameters
+        ----------
+        name : str
+        *kinds : str
+            ``"node"``, ``"edge"``, ``"cell"``: the kinds of sets that will do; all by default.
+
+        Raises
+        ------
+        InputError
+            If there is no such set: with the nearest name, and all of them.
+        """
+        kinds = kinds or ("node", "edge", "cell")
+        names = dict.fromkeys(n for kind in kinds for n in getattr(self, f"{kind}_sets"))
+        found = match(str(name), names)
+        if found is not None:
+            return found
+        other = dict.fromkeys([*self.node_sets, *self.edge_sets, *self.cell_sets])
+        hint = did_you_mean(name, names)
+        if not hint and name in other:
+            kind = next(k for k in ("node", "edge", "cell") if name in getattr(self, f"{k}_sets"))
+            hint = f"; there is {'an' if kind == 'edge' else 'a'} {kind} set of that name"
+        what = f"{kinds[0]} set" if len(kinds) == 1 else "set"
+        raise InputError(f"no {what} named {name!r}; the mesh has: {listed(names)}{hint}")
+
     def nodes_of(self, name: str) -> Ints:
-        """Node indices of a node, edge or cell set (first found in that order)."""
+        """Node indices of a node, edge or cell set (first found in that order), in any case."""
+        name = self.set_name(name)
         if name in self.node_sets:
             return self.node_sets[name]
         if name in self.edge_sets:
             return self.edge_set_nodes(self.edge_sets[name])
-        if name in self.cell_sets:
-            rows, offsets = self.cell_sets[name], self.offsets
-            parts = [np.zeros(0, np.int64)]
-            for number, cells in enumerate(self.cells):
-                inside = (rows >= offsets[number]) & (rows < offsets[number + 1])
-                parts.append(cells.nodes[rows[inside] - offsets[number]].ravel())
-            return np.asarray(np.unique(np.concatenate(parts)))
-        names = [*self.node_sets, *self.edge_sets, *self.cell_sets]
-        raise InputError(f"no set named {name!r}; the mesh has: {', '.join(names) or 'none'}")
+        rows, offsets = self.cell_sets[name], self.offsets
+        parts = [np.zeros(0, np.int64)]
+        for number, cells in enumerate(self.cells):
+            inside = (rows >= offsets[number]) & (rows < offsets[number + 1])
+            parts.append(cells.nodes[rows[inside] - offsets[number]].ravel())
+        return np.asarray(np.unique(np.concatenate(parts)))
+
+    def node_indices(self, where: str | ArrayLike) -> Ints:
+        """Node indices of a set, of indices or of a mask, checked; shape (n,).
+
+        Raises
+        ------
+        InputError
+            If there is no such set, or these are no indices of nodes of the mesh.
+        """
+        if isinstance(where, str):
+            return self.nodes_of(where)
+        return selection.indices(where, "node", self.n_nodes)
+
+    def edge_pairs(self, where: str | ArrayLike) -> Ints:
+        """Edges of an edge set, or pairs (cell, local edge), checked; shape (n, 2).
+
+        Raises
+        ------
+        InputError
+            If there is no such set, or these are no edges of the mesh.
+        """
+        if isinstance(where, str):
+            return self.edge_sets[self.set_name(where, "edge")]
+        return selection.pairs(where, self.n_cells)
 
     def edge_set_nodes(self, edges: Ints) -> Ints:
         """Node indices of edges (n, 2), each once, in ascending order."""

@@ -50,8 +50,8 @@ def rectangle(
     """Mesh a rectangle with equal cells.
 
     The sides are named ``left``, ``right``, ``bottom`` and ``top``, each as a node set and as
-    an edge set; all cells are ``all``. ``model.fix`` and ``model.force`` take the nodes (a force
-    is then per node), ``model.traction`` and ``model.pressure`` the edges.
+    an edge set; all cells are ``all``. ``model.fix`` takes the nodes; ``model.force`` (as a
+    resultant), ``model.traction`` and ``model.pressure`` take the edges.
 
     Parameters
     ----------

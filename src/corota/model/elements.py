@@ -5,9 +5,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING
 
 from corota import _core
-from corota.errors import InputError
+from corota.names import choose
+
+if TYPE_CHECKING:
+    from corota.errors import Location
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ def known(name: str) -> Element | None:
     return _all().get(name)
 
 
-def find(name: str) -> Element:
+def find(name: str, where: Location | None = None) -> Element:
     """Facts of the element of that name.
 
     Raises
@@ -103,7 +107,4 @@ def find(name: str) -> Element:
     InputError
         If there is none.
     """
-    try:
-        return _all()[name]
-    except KeyError:
-        raise InputError(f"no element named {name!r}; there are {', '.join(_all())}") from None
+    return _all()[choose(name, _all(), "element", where)]

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
-from corota.model.loads import InitialStress, InitialTemperature, Temperature
+from corota.model.loads import InitialStress, InitialTemperature
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    from corota.model.loads import Load
 
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
@@ -22,15 +20,14 @@ if TYPE_CHECKING:
 class InitialFields:
     """What :class:`corota.Model` knows of temperatures and initial stresses."""
 
-    loads: list[Load]
     initial_temperatures: list[InitialTemperature]
     initial_stresses: list[InitialStress]
 
-    def _nodes(self, where: str | ArrayLike) -> str | Ints:
-        raise TypeError("a part of Model")
+    if TYPE_CHECKING:  # methods of the whole
 
-    def _cells(self, cells: str | ArrayLike) -> str | Ints:
-        raise TypeError("a part of Model")
+        def _nodes(self, where: str | ArrayLike) -> str | Ints: ...
+
+        def _cells(self, cells: str | ArrayLike) -> str | Ints: ...
 
     def initial_temperature(self, value: ArrayLike, nodes: str | ArrayLike = "") -> None:
         """Set the temperature at which there is no thermal strain; 0 where none is given.
@@ -44,23 +41,6 @@ class InitialFields:
         """
         where = "" if isinstance(nodes, str) and not nodes else self._nodes(nodes)
         self.initial_temperatures.append(InitialTemperature(where, _temperature(value)))
-
-    def temperature(
-        self, value: ArrayLike, nodes: str | ArrayLike = "", amplitude: str = ""
-    ) -> None:
-        """Bring nodes to a temperature, in which materials with an ``expansion`` expand.
-
-        Parameters
-        ----------
-        value : float or array_like
-            One temperature, or one for each node, at the end of the step.
-        nodes : str or array_like of int
-            Node, edge or cell set ("" for all), or node indices.
-        amplitude : str
-            Name in ``Model.amplitudes``; empty: a ramp in static steps.
-        """
-        where = "" if isinstance(nodes, str) and not nodes else self._nodes(nodes)
-        self.loads.append(Temperature(where, _temperature(value), amplitude))
 
     def initial_stress(
         self,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
+from corota.mesh.parts import cells_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -25,8 +26,9 @@ class LineSections:
     mesh: Mesh
     sections: list[Section]
 
-    def _cells(self, cells: str | ArrayLike) -> str | Ints:
-        raise TypeError("a part of Model")
+    if TYPE_CHECKING:  # a method of the whole
+
+        def _cells(self, cells: str | ArrayLike) -> str | Ints: ...
 
     def truss(self, cells: str | ArrayLike, *, material: Material, area: float) -> None:
         """Make two-node lines bars that carry an axial force only.
@@ -79,11 +81,11 @@ class LineSections:
             Force per length, or moment per angle; or pairs of elongation and force, with the
             force constant outside.
         dofs : str, optional
-            Fixed directions that the spring joins: ``"x"``, ``"y"`` or ``"theta"``, or two of
+            Fixed directions that the spring joins: ``"x"``, ``"y"`` or ``"rotation"``, or two of
             them for the two nodes. By default it acts along the line of its nodes.
         """
+        from corota.model.dofs import dof_indices
         from corota.model.materials import Elastic
-        from corota.model.model import DOFS
         from corota.model.sections import Section
 
         given = np.asarray(stiffness, dtype=np.float64)
@@ -95,10 +97,10 @@ class LineSections:
         pairs = [] if given.ndim == 0 else given.tolist()
         name, ends = "SPRING", (0, 0)
         if dofs is not None:
-            chosen = [DOFS[d] for d in dofs.split()]
+            chosen = dof_indices(dofs)
             ends = (chosen[0], chosen[-1])
             found = self._cells(cells)
-            every = self.mesh.cell_sets[found] if isinstance(found, str) else found
+            every = cells_of(self.mesh, found)
             kinds = {self.mesh.cells[self.mesh.locate(int(c))[0]].kind for c in every}
             name = ("SPRING1" if kinds == {"point1"} else "SPRING2") + "R" * (2 in ends)
         table = tuple((e, f) for e, f in pairs)

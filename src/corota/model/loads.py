@@ -9,10 +9,17 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.errors import InputError, Location
+from corota.errors import InputError, Location, number
+from corota.mesh import selection
+from corota.model.dofs import dof_index
+from corota.names import choose
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
+
+    from corota.mesh import Mesh
 
     Ints = NDArray[np.int64]
 
@@ -112,10 +119,44 @@ class Amplitude:
         return out
 
 
-def _finite(value: object, what: str, where: Location | None) -> None:
-    """Refuse a number that is none: here its place is still known."""
-    if not np.isfinite(np.asarray(value, dtype=np.float64)).all():
-        raise InputError(f"{what} must be finite, not {value}", where)
+def selected(where: object, what: str, source: Location | None) -> str | Ints:
+    """A set's name, or indices that are checked as far as they can be without a mesh."""
+    if isinstance(where, str):
+        return where
+    if what == "edge":
+        return selection.pairs(where, where=source)  # type: ignore[arg-type]
+    found = selection.indices(where, what, where=source)  # type: ignore[arg-type]
+    mask = np.asarray(where)
+    if mask.dtype == np.bool_:
+        return mask  # its length is checked with the mesh
+    return found
+
+
+def _amplitude(name: object, where: Location | None) -> str:
+    if not isinstance(name, str):
+        raise InputError(
+            f"an amplitude is named as in Model.amplitudes, not {type(name).__name__}", where
+        )
+    return name
+
+
+def finite(value: object, what: str, where: Location | None) -> float | NDArray[np.float64]:
+    """A finite number or array of them.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    if np.ndim(value) == 0:  # type: ignore[arg-type]
+        return number(value, what, where)
+    try:
+        found = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{what} must be numbers", where) from None
+    if not np.isfinite(found).all():
+        raise InputError(f"{what} must be finite", where)
+    return found
 
 
 @dataclass
@@ -125,9 +166,9 @@ class Fixed:
     Parameters
     ----------
     nodes : str or array_like of int
-        Node, edge or cell set, or node indices.
-    dof : int
-        0 and 1 displacement [length], 2 drilling rotation [rad].
+        Node, edge or cell set, node indices, or a mask of nodes.
+    dof : {"x", "y", "rotation"} or int
+        Kept as 0 and 1 for displacement [length], 2 for the drilling rotation [rad].
     value : float
         Reached at the end of the step, along the amplitude or a ramp.
     amplitude : str
@@ -141,21 +182,130 @@ class Fixed:
     where: Location | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _finite(self.value, "a prescribed displacement", self.where)
+        self.nodes = selected(self.nodes, "node", self.where)
+        self.dof = dof_index(self.dof, self.where)
+        self.value = number(self.value, "a prescribed displacement", self.where)
+        self.amplitude = _amplitude(self.amplitude, self.where)
 
 
 @dataclass
 class NodalForce:
-    """A dead force [force] or drilling moment [force*length] at each node of a set."""
+    """A dead force [force] or drilling moment [force*length] at each node of a set.
+
+    Parameters
+    ----------
+    nodes : str or array_like of int
+        Node, edge or cell set, node indices, or a mask of nodes.
+    dof : {"x", "y", "rotation"} or int
+        Kept as 0, 1 or 2.
+    value : float or ndarray, shape (n,)
+        At each node, or one for each of the nodes.
+    amplitude : str
+        Name in ``Model.amplitudes``; empty: ramp in static steps.
+    """
 
     nodes: str | Ints
     dof: int
-    value: float
+    value: float | NDArray[np.float64]
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _finite(self.value, "a force", self.where)
+        self.nodes = selected(self.nodes, "node", self.where)
+        self.dof = dof_index(self.dof, self.where)
+        self.value = finite(self.value, "a force", self.where)
+        self.amplitude = _amplitude(self.amplitude, self.where)
+
+
+@dataclass
+class Force:
+    """A dead force, meant as a resultant on edges and per node on nodes.
+
+    What it is becomes known with the mesh: see :meth:`on`.
+
+    Parameters
+    ----------
+    at : str or array_like of int
+        Edge or node set, node indices, or a mask of nodes. A name of both an edge set and a node
+        set means the edges.
+    x, y : float
+        Force [force].
+    moment : float
+        Drilling moment [force*length].
+    spread : {"", "total", "per node"}
+        Whether the values are the resultant or hold for each node; by default the resultant on
+        edges and per node on nodes.
+    amplitude : str
+        Name in ``Model.amplitudes``; empty: ramp in static steps.
+    """
+
+    at: str | Ints
+    x: float = 0.0
+    y: float = 0.0
+    moment: float = 0.0
+    spread: Literal["", "total", "per node"] = ""
+    amplitude: str = ""
+    where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        self.at = selected(self.at, "node", self.where)
+        self.x = number(self.x, "the force x", self.where)
+        self.y = number(self.y, "the force y", self.where)
+        self.moment = number(self.moment, "the moment", self.where)
+        self.amplitude = _amplitude(self.amplitude, self.where)
+
+    def on(self, mesh: Mesh) -> list[NodalForce | EdgeLoad]:
+        """The loads that it consists of on a mesh.
+
+        A resultant on edges is a traction, and a moment is shared by the nodes as a moment per
+        length; a total on nodes is shared equally.
+
+        Parameters
+        ----------
+        mesh : Mesh
+
+        Raises
+        ------
+        InputError
+            If there is no such set or node.
+        """
+        at = self.at
+        if isinstance(at, str):
+            at = mesh.set_name(at)
+            if at in mesh.edge_sets and self.spread != "per node":
+                return self._on_edges(mesh, at)
+            if not len(mesh.nodes_of(at)):
+                raise InputError(f"node set {at!r} is empty", self.where)
+        else:
+            mesh.node_indices(at)
+        share = 1.0
+        if self.spread == "total":
+            share = 1.0 / len(mesh.node_indices(at))
+        return [
+            NodalForce(at, dof, share * value, self.amplitude, self.where)
+            for dof, value in enumerate((self.x, self.y, self.moment))
+            if value != 0.0
+        ]
+
+    def _on_edges(self, mesh: Mesh, name: str) -> list[NodalForce | EdgeLoad]:
+        edges = mesh.edge_sets[name]
+        if not len(edges):
+            raise InputError(f"edge set {name!r} is empty", self.where)
+        found: list[NodalForce | EdgeLoad] = []
+        if self.x != 0.0 or self.y != 0.0:
+            value = (self.x, self.y)
+            found.append(
+                EdgeLoad(name, "traction", value, self.amplitude, total=True, where=self.where)
+            )
+        if self.moment != 0.0:
+            nodes = mesh.edge_set_nodes(edges)
+            weight = np.zeros(mesh.n_nodes)
+            for ends in mesh.edge_nodes(edges):
+                weight[ends[:2]] += 0.5 * np.hypot(*(mesh.points[ends[1]] - mesh.points[ends[0]]))
+            shares = self.moment * weight[nodes] / weight.sum()
+            taking = shares != 0.0
+            found.append(NodalForce(nodes[taking], 2, shares[taking], self.amplitude, self.where))
+        return found
 
 
 @dataclass
@@ -184,7 +334,11 @@ class EdgeLoad:
     where: Location | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _finite(self.value, f"a {self.kind}", self.where)
+        self.edges = selected(self.edges, "edge", self.where)
+        choose(self.kind, ("pressure", "traction"), "load on edges", self.where)
+        what = "a pressure" if self.kind == "pressure" else "a traction"
+        self.value = tuple(number(v, what, self.where) for v in self.value)
+        self.amplitude = _amplitude(self.amplitude, self.where)
 
 
 @dataclass
@@ -212,7 +366,10 @@ class BodyForce:
     direction: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        _finite(self.value, f"a load by {self.kind}", self.where)
+        self.cells = selected(self.cells, "cell", self.where)
+        choose(self.kind, ("gravity", "centrifugal"), "load on cells", self.where)
+        self.value = tuple(number(v, self.kind, self.where) for v in self.value)
+        self.amplitude = _amplitude(self.amplitude, self.where)
 
     @property
     def axis(self) -> NDArray[np.float64] | None:
@@ -242,6 +399,10 @@ class InitialVelocity:
     dof: int | None = None
     where: Location | None = field(default=None, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        self.nodes = selected(self.nodes, "node", self.where)
+        self.value = tuple(number(v, "an initial velocity", self.where) for v in self.value)
+
 
 @dataclass
 class Temperature:
@@ -260,6 +421,11 @@ class Temperature:
     value: float | NDArray[np.float64]
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        self.nodes = selected(self.nodes, "node", self.where)
+        self.value = finite(self.value, "temperatures", self.where)
+        self.amplitude = _amplitude(self.amplitude, self.where)
 
 
 @dataclass
@@ -298,15 +464,64 @@ class InitialStress:
     where: Location | None = field(default=None, compare=False, repr=False)
 
 
-Load = NodalForce | EdgeLoad | BodyForce | Temperature
+#: What acts once the mesh is known.
+AppliedLoad = NodalForce | EdgeLoad | BodyForce | Temperature
+Load = AppliedLoad | Force
 #: Loads that ``OP=NEW`` takes away together: those of *CLOAD, of *DLOAD and *DSLOAD, and of
 #: *TEMPERATURE.
 LoadKind = Literal["force", "distributed", "temperature"]
 LOAD_KINDS: tuple[LoadKind, ...] = ("force", "distributed", "temperature")
 
 
-def kind_of(load: Load) -> LoadKind:
+def kind_of(load: AppliedLoad) -> LoadKind:
     """The kind of a load that ``OP=NEW`` concerns."""
     if isinstance(load, NodalForce):
         return "force"
     return "temperature" if isinstance(load, Temperature) else "distributed"
+
+
+def check_loads(loads: object, where: Location | None = None) -> None:
+    """Refuse what is no load.
+
+    Raises
+    ------
+    InputError
+        Naming the object and what is accepted.
+    """
+    for item in _items(loads, "loads", where):
+        if not isinstance(item, NodalForce | EdgeLoad | BodyForce | Temperature | Force):
+            raise InputError(
+                f"{item!r} is no load; use the methods force, traction, pressure, gravity, "
+                "centrifugal and temperature of a step or a model, or Force, NodalForce, "
+                "EdgeLoad, BodyForce, Temperature",
+                where,
+            )
+
+
+def check_supports(supports: object, where: Location | None = None) -> None:
+    """Refuse what is no support.
+
+    Raises
+    ------
+    InputError
+        Naming the object and what is accepted.
+    """
+    for item in _items(supports, "supports", where):
+        if not isinstance(item, Fixed):
+            raise InputError(
+                f"{item!r} is no support; use the method fix of a step or a model, or Fixed", where
+            )
+
+
+def _items(given: object, what: str, where: Location | None) -> Iterable[object]:
+    if not isinstance(given, (list, tuple)):
+        raise InputError(f"{what} is a list, not {type(given).__name__}", where)
+    return given
+
+
+def applied(loads: Iterable[Load], mesh: Mesh) -> list[AppliedLoad]:
+    """Loads as they act on a mesh: each :class:`Force` by what it consists of."""
+    found: list[AppliedLoad] = []
+    for load in loads:
+        found += load.on(mesh) if isinstance(load, Force) else [load]
+    return found

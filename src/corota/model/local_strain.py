@@ -11,7 +11,6 @@ from corota.errors import InputError
 
 if TYPE_CHECKING:
     from corota.errors import Location
-    from corota.model.materials import Material
 
 LocalStrain = Literal["linear", "logarithmic", "green_lagrange", "simplified", "modified"]
 
@@ -23,6 +22,12 @@ LOCAL_STRAINS = ("linear", "logarithmic", "green_lagrange")
 ALIASES = {"simplified": "linear", "modified": "logarithmic"}
 #: Local strain above which the linear measure is no longer a good one.
 LARGE_STRAIN = 0.05
+#: Which measure to take: the one text of messages, of the check and of the documents.
+ADVICE = (
+    "Up to local strains of 5 % the default, local_strain='linear', is right. Beyond, take "
+    "local_strain='logarithmic' for materials that flow; for elastic ones compare "
+    "'green_lagrange' with 'logarithmic'. Decks say LOCAL STRAIN=LOGARITHMIC or GREEN LAGRANGE."
+)
 
 
 def local_strain(name: str, where: Location | None = None) -> str:
@@ -53,16 +58,6 @@ def local_strain(name: str, where: Location | None = None) -> str:
             where,
         )
     return found
-
-
-def advice(material: Material) -> str:
-    """Which measure to take where the local strain is more than a few percent."""
-    if material.flows:
-        return "take local_strain='logarithmic' (LOCAL STRAIN=LOGARITHMIC)"
-    return (
-        "compare with local_strain='green_lagrange' or 'logarithmic' "
-        "(LOCAL STRAIN=GREEN LAGRANGE or LOGARITHMIC)"
-    )
 
 
 def _plain(name: str) -> str:

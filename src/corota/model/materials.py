@@ -27,8 +27,12 @@ def isotropic_compliance(E: float, nu: float) -> NDArray[np.float64]:
 
 
 def _positive(value: float, name: str, where: Location | None) -> None:
-    if not (math.isfinite(value) and value > 0.0):
-        raise InputError(f"{name} must be a positive number, not {value}", where)
+    try:
+        good = math.isfinite(value) and value > 0.0
+    except TypeError:
+        good = False
+    if not good:
+        raise InputError(f"{name} must be a positive number, not {value!r}", where)
 
 
 @dataclass(frozen=True)

@@ -3,16 +3,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from corota.errors import InputError
+from corota.errors import InputError, number
+from corota.mesh import selection
 from corota.model.attachments import Dashpot, PointMass
 from corota.model.constraints import Constraint, Coupling, Equation, LocalAxes, StraightLine
 from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+from corota.model.dofs import DOFS as DOFS
+from corota.model.dofs import dof_index, dof_indices
 from corota.model.initial import InitialFields
 from corota.model.line_sections import LineSections
+from corota.model.loading import Loading
 from corota.model.loads import (
     Amplitude as Amplitude,
 )
@@ -48,7 +52,9 @@ from corota.model.sections import Section as Section
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from corota.errors import Diagnostic
     from corota.mesh import Mesh
+    from corota.model.loads import Force
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
     from corota.model.steps import Step
@@ -56,18 +62,8 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     Where = str | ArrayLike
 
-#: Degrees of freedom of a node by name.
-DOFS = {"x": 0, "y": 1, "theta": 2}
 
-
-def _some(found: Ints, what: str, name: str = "") -> Ints:
-    """Refuse a set without members: what acts on it would be lost in silence."""
-    if not len(found):
-        raise InputError(f"{what} set {name!r} is empty" if name else f"no {what}s are given")
-    return found
-
-
-class Model(LineSections, InitialFields):
+class Model(Loading, LineSections, InitialFields):
     """Mesh, sections, materials, supports, loads and steps.
 
     Parameters
@@ -176,15 +172,8 @@ class Model(LineSections, InitialFields):
         """
         from copy import deepcopy
 
-        where = cells if isinstance(cells, str) else np.asarray(cells, dtype=np.int64)
-        if isinstance(where, str) and where != "all" and where not in self.mesh.cell_sets:
-            names = ", ".join(["all", *self.mesh.cell_sets])
-            raise InputError(f"no cell set named {where!r}; the mesh has: {names}")
-        if isinstance(where, str):
-            if where != "all":
-                _some(self.mesh.cell_sets[where], "cell", where)
-        else:
-            _some(where, "cell")
+        everything = isinstance(cells, str) and cells.lower() in ("", "all")
+        where = "all" if everything else self._cells(cells)
         self.sections.append(
             Section(
                 where,
@@ -198,130 +187,6 @@ class Model(LineSections, InitialFields):
                 beta0=beta0,
             )
         )
-
-    def _cells(self, cells: str | ArrayLike) -> str | Ints:
-        if isinstance(cells, str):
-            if cells not in self.mesh.cell_sets:
-                names = ", ".join(self.mesh.cell_sets) or "none"
-                raise InputError(f"no cell set named {cells!r}; the mesh has: {names}")
-            _some(self.mesh.cell_sets[cells], "cell", cells)
-            return cells
-        return _some(np.atleast_1d(np.asarray(cells, dtype=np.int64)), "cell")
-
-    def fix(
-        self,
-        nodes: str | ArrayLike,
-        *,
-        x: float | None = 0.0,
-        y: float | None = 0.0,
-        rotation: float | bool | None = None,
-        amplitude: str = "",
-    ) -> None:
-        """Hold or move nodes; ``None`` leaves a direction free.
-
-        Parameters
-        ----------
-        nodes : str or array_like of int
-            Node, edge or cell set, or node indices.
-        x, y : float or None
-            Displacement at the end of a step [length].
-        rotation : float, bool or None
-            ``True`` holds the drilling rotation, a number prescribes it [rad].
-        """
-        where = self._nodes(nodes)
-        turn = 0.0 if rotation is True else None if rotation is False else rotation
-        for dof, value in enumerate((x, y, turn)):
-            if value is not None:
-                self.supports.append(Fixed(where, dof, float(value), amplitude))
-
-    def force(
-        self,
-        where: str | ArrayLike,
-        *,
-        x: float = 0.0,
-        y: float = 0.0,
-        moment: float = 0.0,
-        amplitude: str = "",
-    ) -> None:
-        """Apply a dead force or a drilling moment.
-
-        On a node set the values hold for each node (as ``*CLOAD``); on an edge set they are
-        totals, spread consistently over its length.
-
-        Parameters
-        ----------
-        where : str or array_like of int
-            Node or edge set, or node indices.
-        x, y : float
-            Force [force].
-        moment : float
-            Drilling moment at each node [force*length].
-        """
-        if (
-            isinstance(where, str)
-            and where not in self.mesh.node_sets
-            and where in self.mesh.edge_sets
-        ):
-            self.loads.append(EdgeLoad(where, "traction", (x, y), amplitude, total=True))
-            return
-        nodes = self._nodes(where)
-        for dof, value in enumerate((x, y, moment)):
-            if value != 0.0:
-                self.loads.append(NodalForce(nodes, dof, float(value), amplitude))
-
-    def traction(
-        self,
-        edges: str | ArrayLike,
-        *,
-        x: float = 0.0,
-        y: float = 0.0,
-        amplitude: str = "",
-    ) -> None:
-        """Apply a dead traction [force/length^2] on edges."""
-        self.loads.append(EdgeLoad(self._edges(edges), "traction", (x, y), amplitude))
-
-    def pressure(self, edges: str | ArrayLike, p: float, amplitude: str = "") -> None:
-        """Apply a pressure [force/length^2] on edges, positive into the element."""
-        self.loads.append(EdgeLoad(self._edges(edges), "pressure", (p,), amplitude))
-
-    def gravity(
-        self,
-        x: float = 0.0,
-        y: float = 0.0,
-        cells: str | ArrayLike = "",
-        amplitude: str = "",
-    ) -> None:
-        """Apply an acceleration field [length/time^2] to cells (default all)."""
-        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
-        self.loads.append(BodyForce(where, "gravity", (x, y), amplitude))
-
-    def centrifugal(
-        self,
-        omega: float,
-        about: tuple[float, float] = (0.0, 0.0),
-        cells: str | ArrayLike = "",
-        amplitude: str = "",
-    ) -> None:
-        """Apply the centrifugal force of a steady spin to cells (default all).
-
-        The model is seen from a frame that turns with it: the force grows with the current
-        distance from the axis in geometrically nonlinear steps, with that of the undeformed body
-        in linear ones. Modes and buckling see its stiffness. Coriolis forces are left out.
-
-        Parameters
-        ----------
-        omega : float
-            Angular velocity [rad/time]; its sign does not matter.
-        about : tuple of float
-            Where the axis meets the plane [length].
-        cells : str or array_like of int
-            Cell set ("" for all), or global cell indices.
-        amplitude : str
-            Scales the force, that is omega squared, as the ramp of a static step does.
-        """
-        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
-        value = (float(omega) ** 2, float(about[0]), float(about[1]))
-        self.loads.append(BodyForce(where, "centrifugal", value, amplitude))
 
     def velocity(
         self,
@@ -375,9 +240,9 @@ class Model(LineSections, InitialFields):
         """
         if (second is None) == bool(c) or (second is not None and (x or y or rotation)):
             raise InputError("a dashpot between nodes takes c; one to the ground x, y, rotation")
-        other = None if second is None else int(second)
+        other = None if second is None else self._node(second)
         self.dashpots.append(
-            Dashpot(int(first), other, float(c), (float(x), float(y), float(rotation)))
+            Dashpot(self._node(first), other, float(c), (float(x), float(y), float(rotation)))
         )
 
     def equation(self, *terms: tuple[int, str, float], rhs: float = 0.0) -> None:
@@ -386,11 +251,17 @@ class Model(LineSections, InitialFields):
         Parameters
         ----------
         *terms : tuple of (int, str, float)
-            Node index, ``"x"``, ``"y"`` or ``"theta"``, coefficient; the first term is
+            Node index, ``"x"``, ``"y"`` or ``"rotation"``, coefficient; the first term is
             eliminated.
         rhs : float
         """
-        self.constraints.append(Equation([(int(n), DOFS[d], float(c)) for n, d, c in terms], rhs))
+        found = []
+        for term in terms:
+            if not isinstance(term, (tuple, list)) or len(term) != 3:
+                raise InputError(f"a term is (node, dof, coefficient), not {term!r}")
+            node, dof, factor = term
+            found.append((self._node(node), dof_index(dof), number(factor, "a coefficient")))
+        self.constraints.append(Equation(found, number(rhs, "the right-hand side")))
 
     def couple(
         self,
@@ -398,22 +269,26 @@ class Model(LineSections, InitialFields):
         reference: int,
         *,
         kind: Literal["kinematic", "distributing"] = "kinematic",
-        dofs: str = "x y theta",
+        dofs: str = "x y rotation",
         weights: ArrayLike | None = None,
     ) -> None:
         """Couple nodes with a reference node (see :class:`corota.model.constraints.Coupling`)."""
         where = self._nodes(nodes)
-        chosen = tuple(DOFS[d] for d in dofs.split())
+        chosen = dof_indices(dofs)
         given = None if weights is None else np.asarray(weights, dtype=np.float64)
-        self.constraints.append(Coupling(where, int(reference), kind, chosen, given))
+        self.constraints.append(Coupling(where, self._node(reference), kind, chosen, given))
 
     def rigid(self, nodes: str | ArrayLike, reference: int) -> None:
         """Make nodes one rigid body with a reference node, in any rotation."""
-        self.constraints.append(Coupling(self._nodes(nodes), int(reference), name="rigid body"))
+        self.constraints.append(
+            Coupling(self._nodes(nodes), self._node(reference), name="rigid body")
+        )
 
     def straight(self, nodes: str | ArrayLike, first: int, last: int) -> None:
         """Keep nodes on the straight line through two others; they may slide along it."""
-        self.constraints.append(StraightLine(self._nodes(nodes), int(first), int(last)))
+        self.constraints.append(
+            StraightLine(self._nodes(nodes), self._node(first), self._node(last))
+        )
 
     def local_axes(
         self,
@@ -482,17 +357,110 @@ class Model(LineSections, InitialFields):
         """Join two edge sets whose nodes need not match (:class:`corota.model.contact.Tie`)."""
         self.ties.append(Tie(self._edges(slave), self._edges(master), tolerance, name))
 
+    def copy(self) -> Model:
+        """A model of its own that may be changed: a variant, or the next run of a sweep.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> base = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> variant = base.copy()
+        >>> variant.fix("left")
+        >>> len(base.supports), len(variant.supports)
+        (0, 2)
+        """
+        from copy import deepcopy
+
+        return deepcopy(self)
+
+    def check(self) -> Findings:
+        """Look for what will fail, mislead or surprise, without solving more than the start.
+
+        Returns
+        -------
+        Findings
+            A list of :class:`corota.errors.Diagnostic`, errors first; printed as text.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> model.section(element="Q4I", material=ct.Elastic(E=1.0, nu=0.3))
+        >>> model.fix("left", y=None)
+        >>> print(model.check().errors[0].message)
+        a free body: it can move along y
+        """
+        from corota.check import check
+
+        return Findings(check(self))
+
+    def summary(self) -> str:
+        """Nodes, elements, sets, sections, supports, loads and steps as text.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1), name="strip")
+        >>> print(model.summary().splitlines()[0])
+        strip: 22 nodes, 10 elements
+        """
+        from corota.model.summary import model_lines
+
+        return "\n".join(model_lines(self))
+
+    def plot(self, **options: Any) -> Any:
+        """Draw mesh, sets, supports, loads and contact; see :func:`corota.plots.model`."""
+        from corota import plots
+
+        return plots.model(self, **options)
+
+    def _add_force(self, force: Force) -> None:
+        self.loads += force.on(self.mesh)
+
+    def _node(self, node: object) -> int:
+        return selection.one(node, "node", self.mesh.n_nodes)
+
     def _nodes(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):
-            _some(self.mesh.nodes_of(where), "node", where)
-            return where
-        return _some(np.atleast_1d(np.asarray(where, dtype=np.int64)), "node")
+            name = self.mesh.set_name(where)
+            if not len(self.mesh.nodes_of(name)):
+                raise InputError(f"node set {name!r} is empty")
+            return name
+        return selection.indices(where, "node", self.mesh.n_nodes)
+
+    def _cells(self, cells: str | ArrayLike) -> str | Ints:
+        if isinstance(cells, str):
+            if cells == "all" and cells not in self.mesh.cell_sets:
+                return cells
+            name = self.mesh.set_name(cells, "cell")
+            if not len(self.mesh.cell_sets[name]):
+                raise InputError(f"cell set {name!r} is empty")
+            return name
+        return selection.indices(cells, "cell", self.mesh.n_cells)
 
     def _edges(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):
-            if where not in self.mesh.edge_sets:
-                names = ", ".join(self.mesh.edge_sets) or "none"
-                raise InputError(f"no edge set named {where!r}; the mesh has: {names}")
-            _some(self.mesh.edge_sets[where], "edge", where)
-            return where
-        return _some(np.asarray(where, dtype=np.int64).reshape(-1, 2), "edge")
+            name = self.mesh.set_name(where, "edge")
+            if not len(self.mesh.edge_sets[name]):
+                raise InputError(f"edge set {name!r} is empty")
+            return name
+        return selection.pairs(where, self.mesh.n_cells)
+
+
+class Findings(list["Diagnostic"]):
+    """What a check found, errors first; ``print`` shows it as text."""
+
+    @property
+    def errors(self) -> list[Diagnostic]:
+        """What a run refuses."""
+        return [d for d in self if d.severity == "error"]
+
+    @property
+    def warnings(self) -> list[Diagnostic]:
+        """What looks wrong and does not stop a run."""
+        return [d for d in self if d.severity == "warning"]
+
+    def __str__(self) -> str:
+        return "\n".join(str(d) for d in self)
+
+    __repr__ = __str__

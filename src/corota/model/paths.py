@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.errors import InputError
-from corota.model.model import DOFS
+from corota.model.dofs import dof_index
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -18,27 +18,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Where = str | int | ArrayLike
 
-#: Dofs by the names that a user may write.
-_DOFS = {**DOFS, "rotation": 2}
-
 
 class Label(int):
     """A node by its number in the deck, where an index from 0 would be taken otherwise."""
-
-
-def dof_index(dof: str | int) -> int:
-    """Number of a dof from ``"x"``, ``"y"``, ``"rotation"`` or a number from 0.
-
-    Raises
-    ------
-    InputError
-        If it is none of these.
-    """
-    if dof in (0, 1, 2):
-        return int(dof)
-    if dof not in _DOFS:
-        raise InputError(f"no degree of freedom {dof!r}; there are 'x', 'y' and 'rotation'")
-    return _DOFS[str(dof)]
 
 
 @dataclass(kw_only=True)
@@ -238,4 +220,4 @@ class Modes:
             self.growth = np.zeros(len(self.factors))
 
 
-__all__ = ["ArcLength", "CriticalPoint", "DisplacementControl", "Label", "Modes", "dof_index"]
+__all__ = ["ArcLength", "CriticalPoint", "DisplacementControl", "Label", "Modes"]

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
-from corota.errors import InputError, Location
+from corota.errors import InputError, Location, number
 from corota.model import elements
 from corota.model.local_strain import local_strain
+from corota.model.materials import Material
+from corota.names import choose
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.model.local_strain import LocalStrain
-    from corota.model.materials import Material
 
     Ints = NDArray[np.int64]
 
@@ -69,6 +70,14 @@ class Section:
     table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
+        self.element = elements.find(self.element, self.where).name
+        if not isinstance(self.material, Material):
+            raise InputError(
+                f"a section needs a material such as Elastic or Mises, not {self.material!r}",
+                self.where,
+            )
+        plane = choose(self.plane, ("stress", "strain"), "plane state", self.where)
+        self.plane = cast("Literal['stress', 'strain']", plane)
         self.local_strain = cast("LocalStrain", local_strain(self.local_strain, self.where))
         if self.local_strain == "green_lagrange" and self.material.flows:
             raise InputError(
@@ -85,8 +94,9 @@ class Section:
                 "elongation rising",
                 self.where,
             )
-        self.thickness = float(self.thickness)
-        if not (np.isfinite(self.thickness) and self.thickness > 0.0):
+        self.thickness = number(self.thickness, "the thickness", self.where)
+        self.orientation = number(self.orientation, "the orientation", self.where)
+        if not self.thickness > 0.0:
             raise InputError(f"the thickness must be > 0, not {self.thickness}", self.where)
         if not np.isfinite(self.orientation):
             raise InputError(
@@ -98,7 +108,7 @@ class Section:
                 "change and nothing locks: leave it out",
                 self.where,
             )
-        fact = elements.known(self.element.upper())
+        fact = elements.known(self.element)
         if self.mean_dilatation and fact and fact.n_internal_modes > 1:
             raise InputError(
                 f"{self.element} does not lock: its incompatible modes give the volume its "

@@ -7,8 +7,10 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from corota.errors import InputError
-from corota.model.loads import LOAD_KINDS
+from corota.errors import InputError, number
+from corota.model.loading import Loading
+from corota.model.loads import LOAD_KINDS, check_loads, check_supports
+from corota.names import choose
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
     #: Share of critical damping of all modes, or (first, last, share) of ranges of modes.
     ModalDamping = float | Sequence[tuple[int, int, float]]
+
+#: Kinds of mass matrices.
+MASSES = ("consistent", "constant", "lumped")
 
 
 @dataclass
@@ -56,8 +61,11 @@ class Output:
 
 
 @dataclass(kw_only=True)
-class Step:
+class Step(Loading):
     """Common data of all steps.
+
+    Supports and loads of a step are given by its methods ``fix``, ``force``, ``traction``,
+    ``pressure``, ``gravity``, ``centrifugal`` and ``temperature``, as those of a model are.
 
     Parameters
     ----------
@@ -99,6 +107,9 @@ class Step:
 
     def __post_init__(self) -> None:
         self._kinds()
+        check_supports(self.supports, self.where)
+        check_loads(self.loads, self.where)
+        self.period = number(self.period, "the period of a step", self.where)
         if not (math.isfinite(self.period) and self.period > 0.0):
             raise InputError(f"the period of a step must be > 0, not {self.period}", self.where)
         for name in ("first_increment", "smallest_increment", "largest_increment"):
@@ -245,13 +256,8 @@ class Dynamic(Step):
         super().__post_init__()
         from corota.model.schemes import names
 
-        if self.scheme not in names():
-            known = ", ".join(names())
-            raise InputError(f"no scheme {self.scheme!r}; there are {known}", self.where)
-        if self.mass not in ("consistent", "constant", "lumped"):
-            raise InputError(
-                f"mass must be consistent, constant or lumped, not {self.mass!r}", self.where
-            )
+        self.scheme = choose(self.scheme, names(), "scheme", self.where)
+        choose(self.mass, MASSES, "kind of mass", self.where)
         if min(self.rayleigh) < 0.0:
             raise InputError(f"damping must be >= 0, not {self.rayleigh}", self.where)
 
@@ -309,6 +315,7 @@ class Frequency(Step):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        choose(self.mass, MASSES, "kind of mass", self.where)
         if self.modes < 1:
             raise InputError(f"at least one mode is needed, not {self.modes}", self.where)
 
@@ -389,6 +396,9 @@ class SteadyState(Step):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        choose(self.mass, MASSES, "kind of mass", self.where)
+        check_supports(self.imaginary_supports, self.where)
+        check_loads(self.imaginary_loads, self.where)
         if not 0.0 <= self.lowest < self.highest:
             raise InputError(
                 f"the range of frequencies must rise, not {self.lowest} to {self.highest}",

@@ -68,6 +68,7 @@ def contact_line(
     chosen = _pair(results, pair)
     state = results.frame(frame)
     assert state.C is not None
+    contact = state.pairs.get(chosen.name, state.C)
     runs = _contours(results, chosen)
     with look():
         if ax is None:
@@ -77,7 +78,7 @@ def contact_line(
             figure = ax.figure
         low, high = np.inf, -np.inf
         for nodes, way in runs:
-            pressure, shear, _, _, status = state.C[nodes].T
+            pressure, shear, _, _, status = contact[nodes].T
             touching = status > 0.0
             if touching.any():
                 low = min(low, float(way[touching].min()))

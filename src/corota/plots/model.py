@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.mesh import EDGES
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
 from corota.plots.figure import COLORS, INK, extent_size, look, new_figure, save
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid
@@ -188,7 +188,7 @@ def _supports(ax: Any, subject: Model, size: float) -> None:
     marker: str | int
     for support in held:
         where = support.nodes
-        nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
+        nodes = mesh.node_indices(where)
         nodes = np.unique(nodes)
         for node in nodes[_spread(mesh.points[nodes], size)]:
             if (int(node), support.dof) in drawn:
@@ -220,22 +220,26 @@ def _supports(ax: Any, subject: Model, size: float) -> None:
 
 def _loads(ax: Any, subject: Model, size: float) -> None:
     mesh = subject.mesh
-    loads = [*subject.loads, *(load for step in subject.steps for load in step.loads)]
-    forces = [abs(v.value) for v in loads if isinstance(v, NodalForce) and v.dof < 2]
+    every = [*subject.loads, *(load for step in subject.steps for load in step.loads)]
+    loads = applied(every, mesh)
+    forces = [
+        float(np.abs(v.value).max()) for v in loads if isinstance(v, NodalForce) and v.dof < 2
+    ]
     largest = max(forces, default=1.0) or 1.0
     for load in loads:
         if isinstance(load, NodalForce):
             where = load.nodes
-            nodes = mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
+            nodes = mesh.node_indices(where)
+            value = float(np.sum(load.value))
             nodes = np.unique(nodes)
             for node in nodes[_spread(mesh.points[nodes], size)]:
                 at = mesh.points[node]
                 if load.dof == 2:
-                    sign = "$\\circlearrowleft$" if load.value > 0 else "$\\circlearrowright$"
+                    sign = "$\\circlearrowleft$" if value > 0 else "$\\circlearrowright$"
                     ax.plot(*at, marker=sign, markersize=14, color=LOAD, linestyle="", zorder=5)
                     continue
-                share = 0.05 + 0.06 * abs(load.value) / largest
-                direction = np.eye(2)[load.dof] * np.sign(load.value)
+                share = 0.05 + 0.06 * abs(value) / largest
+                direction = np.eye(2)[load.dof] * np.sign(value)
                 _arrow(ax, at, direction * share * size, LOAD)
         elif isinstance(load, EdgeLoad):
             _edge_load(ax, subject, load, size)

@@ -53,12 +53,12 @@ class History:
         return self.values[index]
 
     def max(self) -> float:
-        """Largest value."""
-        return float(self.values.max())
+        """Largest value, of the frames that have one."""
+        return float(np.nanmax(self.values))
 
     def min(self) -> float:
-        """Smallest value."""
-        return float(self.values.min())
+        """Smallest value, of the frames that have one."""
+        return float(np.nanmin(self.values))
 
     def plot(
         self,

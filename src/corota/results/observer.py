@@ -33,7 +33,7 @@ class Iteration:
 class Observer(Protocol):
     """Sees an analysis from outside; every method is optional for implementers.
 
-    Derive from :class:`Silent` to write only those you need.
+    Derive from :class:`BaseObserver` to write only those you need.
     """
 
     def start(self, model: Model, steps: list[Step]) -> None: ...
@@ -41,6 +41,7 @@ class Observer(Protocol):
     def iteration(self, info: Iteration) -> None: ...
     def increment(self, frame: Frame) -> None: ...
     def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None: ...
+    def note(self, step: int, text: str) -> None: ...
     def end(self, results: Results, error: Exception | None) -> None: ...
 
 
@@ -61,6 +62,9 @@ class BaseObserver:
 
     def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None:
         """Give up an attempt; ``dt`` is the next one's increment."""
+
+    def note(self, step: int, text: str) -> None:
+        """Hear what a step does that was not asked for in so many words."""
 
     def end(self, results: Results, error: Exception | None) -> None:
         """Finish, with the error if there was one."""

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 from corota.errors import InputError
+from corota.names import choose
 from corota.results.observer import BaseObserver, Iteration, Observer
 
 if TYPE_CHECKING:
@@ -93,6 +94,11 @@ class Frame:
     constraint_force : ndarray, shape (n_nodes, 3), or None
         Force and moment of constraints on nodes: what of the internal force neither loads nor
         supports carry. Static increments of models with constraints only; not stored in files.
+    pairs : dict of str to ndarray, shape (n_nodes, 5)
+        The same for each contact pair, where there are several.
+    averages : dict of str to ndarray
+        Stress, strain and others at the nodes by the names they have in result files; of frames
+        of files that hold no values at quadrature points.
     """
 
     step: int
@@ -110,6 +116,8 @@ class Frame:
     A: Floats | None = None
     C: Floats | None = None
     constraint_force: Floats | None = None
+    pairs: dict[str, Floats] = field(default_factory=dict)
+    averages: dict[str, Floats] = field(default_factory=dict)
 
 
 @dataclass
@@ -265,8 +273,8 @@ class Results:
         name : str
             A nodal or point variable, ``"time"``, ``"load factor"``, ``"step"``, ``"increment"``,
             or a scalar of the frames such as ``"strain energy"``.
-        at : str, int or sequence of int, optional
-            Set, node index or indices; everywhere by default.
+        at : str, int or array_like, optional
+            Set, node index or indices, or a mask of nodes; everywhere by default.
         combine : {"auto", "sum", "mean", "max"}
             How the nodes make one number. ``"auto"``: forces are summed; displacements at a
             place are averaged, those of the whole model take the value of the largest size;
@@ -294,6 +302,7 @@ class Results:
         import numpy as np
 
         from corota.results.history import History
+        from corota.results.variables import UNKNOWN
 
         simple = {
             "time": "time",
@@ -307,26 +316,51 @@ class Results:
             values = [float(getattr(f, simple[name])) for f in self.frames]
             return History("load factor" if name == "factor" else name, np.array(values), self)
         if any(name in f.scalars for f in self.frames):
-            values = [f.scalars.get(name, 0.0) for f in self.frames]
+            missing = np.nan if name in UNKNOWN else 0.0
+            values = [f.scalars.get(name, missing) for f in self.frames]
             return History(name, np.array(values), self)
-        values = [self._one(name, i, at, combine) for i in range(len(self.frames))]
-        label = name.upper() if name.upper() in self.variables() else name
-        where = f" at {at}" if at is not None else ""
-        return History(label + where, np.array(values), self)
+        choose(combine, ("auto", "sum", "mean", "max"), "way to combine")
+        name = self._known(name)
+        nodes = None if at is None else self.mesh.node_indices(at)
+        values = [self._one(name, i, nodes, combine) for i in range(len(self.frames))]
+        where = "" if at is None else f" at {_place(at)}"
+        return History(name + where, np.array(values), self)
 
-    def _one(self, name: str, index: int, at: Any, combine: str) -> float:
+    def _known(self, name: str) -> str:
+        """Name of a variable of any frame.
+
+        Raises
+        ------
+        InputError
+            With all names that there are, scalars of frames too.
+        """
+        from corota.results.variables import match_name
+
+        if not self.frames:
+            raise InputError("there are no frames yet")
+        valid = list(dict.fromkeys([*self.variables(-1), *self.variables(0)]))
+        try:
+            return match_name(name, valid)
+        except InputError as error:
+            scalars = sorted({key for f in (self.frames[0], self.frames[-1]) for key in f.scalars})
+            raise InputError(
+                f"{error.message}; of the whole: time, step time, load factor, step, increment, "
+                + ", ".join(scalars)
+            ) from None
+
+    def _one(self, name: str, index: int, at: Ints | None, combine: str) -> float:
         import numpy as np
 
-        from corota.results.variables import NODAL, canonical, point_value
+        from corota.results.variables import NODAL, point_value
 
         frame = self.frame(index)
-        name = canonical(name, frame)
+        if name in NODAL and getattr(frame, NODAL[name][0]) is None:
+            return float("nan")  # such as a velocity before the first dynamic step
         if at is None and name not in NODAL and combine in ("auto", "max"):
             return max(float(point_value(b, name).max()) for b in frame.fields)
         values = self.nodal(name, index)
         if at is not None:
-            nodes = self.mesh.nodes_of(at) if isinstance(at, str) else np.atleast_1d(at)
-            values = values[nodes]
+            values = values[at]
         if combine == "auto":
             force = name in NODAL and name[0] in "RFM"
             combine = "sum" if force else "mean" if at is not None else "size"
@@ -336,10 +370,21 @@ class Results:
             return float(values.sum())
         return float(values.mean() if combine == "mean" else values.max())
 
-    def plot(self, name: str = "MISES", **options: Any) -> Any:
-        """Draw a contour on the deformed shape; see :func:`corota.plots.contour`."""
+    def plot(self, name: str = "", **options: Any) -> Any:
+        """Draw a contour on the deformed shape; see :func:`corota.plots.contour`.
+
+        Parameters
+        ----------
+        name : str
+            Variable; by default ``MISES``, or ``U`` where nothing is stressed.
+        **options
+            Those of :func:`corota.plots.contour`.
+        """
         from corota import plots
 
+        if not name:
+            stressed = "MISES" in self.variables(options.get("frame", -1))
+            name = "MISES" if stressed and self.nodal("MISES").any() else "U"
         return plots.contour(self, name, **options)
 
     def write(self, path: str | PathLike[str]) -> Path:
@@ -397,3 +442,14 @@ class Results:
         )
         notes = "".join(f"<li>{escape(n)}</li>" for n in self.notes)
         return f"<table>{cells}</table>" + (f"<ul>{notes}</ul>" if notes else "")
+
+
+def _place(at: Any) -> str:
+    """A place in few words: a set's name, a node, or how many nodes."""
+    import numpy as np
+
+    if isinstance(at, str):
+        return at
+    array = np.atleast_1d(np.asarray(at))
+    count = int(array.sum()) if array.dtype == bool else len(array)
+    return f"node {array[0]}" if count == 1 and array.dtype != bool else f"{count} nodes"

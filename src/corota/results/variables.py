@@ -52,6 +52,9 @@ NODAL: dict[str, tuple[str, int]] = {
     "CSTATUS": ("C", 4),
 }
 
+#: Scalars of frames that say nothing where they are missing; others are 0 there.
+UNKNOWN = ("stable", "negative pivots")
+
 #: Columns of the contact values at nodes.
 CONTACT = ("CPRESS", "CSHEAR", "COPEN", "CSLIP", "CSTATUS")
 
@@ -228,7 +231,7 @@ def match_name(name: str, valid: list[str]) -> str:
         if candidate.lower() == wanted.lower():
             return candidate
     near = get_close_matches(wanted.upper(), valid, n=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
+    hint = f"; did you mean {near[0]}?" if near else "."
     raise InputError(f"no result variable named {name!r}{hint} There are: {', '.join(valid)}")
 
 
@@ -380,6 +383,9 @@ class Averaging:
                 values = block.values[name][pick]
                 if values.ndim == 2:
                     at = np.einsum("np,kp->nk", values, matrix)
+                    if (values >= 0.0).all():
+                        # Energy densities and the like: a straight line must not make them < 0.
+                        np.maximum(at, 0.0, out=at)
                     sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
                     continue
                 for column in range(values.shape[2]):

@@ -254,6 +254,14 @@ def _go_along_path(
     kept = [control.time / step.period]
 
     def keep(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
+        if len(kept) == 1:
+            text = (
+                f"load control stalls at load factor {kept[0]:.6g}; arc length takes over from "
+                f"increment {before + 1} (column 'arc length' of the histories): the load factor "
+                "adapts, and step time only counts on within the period"
+            )
+            state.notes.append(f"step {number}: {text}")
+            observers.note(number, text)
         kept.append(factor)
         save(state, increment, factor, scalars)
 
@@ -268,6 +276,7 @@ def _go_along_path(
             path,
             factor=control.time / step.period,
             increment=before,
+            takes_over=True,
         )
     except (ConvergenceError, SingularError, ModelError) as error:
         if state.u is not here:

@@ -21,10 +21,20 @@ from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.load_history import LoadHistory
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.errors import ModelError, UnsupportedError
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
+from corota.model.dofs import DOFS
+from corota.model.loads import (
+    BodyForce,
+    EdgeLoad,
+    NodalForce,
+    Temperature,
+    applied,
+    check_loads,
+    check_supports,
+    kind_of,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -82,6 +92,8 @@ class Conditions:
         #: Temperatures of nodes, absolute.
         self.temperature = LoadHistory(len(system.free.start))
         self.temperature.begin[:] = self.temperature.end[:] = system.free.start
+        #: What is to be said of the step.
+        self.notes: list[str] = []
         self.names = ["", *system.model.amplitudes]
         #: Amplitudes that count total time go on in later steps.
         self._runs_on = np.array([False, *(a.total_time for a in system.model.amplitudes.values())])
@@ -118,7 +130,9 @@ class Conditions:
         self.abrupt = step.procedure in ABRUPT
         model = self.system.model
         with_model = first or step.new_supports
-        self._set_supports([*(model.supports if with_model else []), *step.supports])
+        for supports in (model.supports if with_model else [], step.supports):
+            self._refuse_conflicts(supports)
+            self._set_supports(supports)
         if step.procedure in PERTURBATION:
             # What perturbs a state is none of the loads that later steps start from.
             self.end_time = 0.0
@@ -144,7 +158,7 @@ class Conditions:
             self.distributed.remove()
         if step.renews("temperature"):
             self.temperature.remove(self.system.free.start)
-        model = self.system.model.loads
+        model = applied(self.system.model.loads, self.system.model.mesh)
         again = [x for x in model if not self._loaded or step.renews(kind_of(x))]
         self._loaded = True
         self._set_loads([*again, *step.loads])
@@ -421,7 +435,47 @@ class Conditions:
             self.support.set(dofs, item.value, self._amplitude(item.amplitude, item.where))
         self.fixed = np.flatnonzero(self.constrained)
 
-    def _set_loads(self, loads: list[Load]) -> None:
+    def _refuse_conflicts(self, supports: list[Fixed]) -> None:
+        """Refuse a dof that is given two values at once; the same one twice is one.
+
+        Of decks the later value counts, with a note.
+
+        Raises
+        ------
+        ModelError
+            Naming the node, the direction and both values.
+        """
+        check_supports(supports)
+        n = self.system.n_dofs
+        value, amplitude, given = np.zeros(n), np.zeros(n, np.int64), np.zeros(n, bool)
+        for item in supports:
+            nodes = self._nodes(item.nodes)
+            dofs = self.system.dofs(nodes, item.dof)
+            nodes, dofs = nodes[dofs >= 0], dofs[dofs >= 0]
+            index = self._amplitude(item.amplitude, item.where)
+            twice = given[dofs] & ((value[dofs] != item.value) | (amplitude[dofs] != index))
+            if twice.any():
+                at = int(np.flatnonzero(twice)[0])
+                label = self.system.model.mesh.node_labels[nodes[at]]
+                name = list(DOFS)[item.dof]
+                other, own = value[dofs[at]], item.value
+                what = f"two values, {other:g} and {own:g}" if other != own else "two amplitudes"
+                dof = f"{name} (dof {(1, 2, 6)[item.dof]})"
+                if item.where is not None:  # a deck: as CalculiX does, but not without a word
+                    self.notes.append(
+                        f"{item.where}: node {label} is given {what}, in {dof}; the later counts"
+                    )
+                    break
+                raise ModelError(
+                    f"node {label} is given {what}, in {dof}: leave "
+                    "one of the supports out, or put the later one into a step of its own",
+                    item.where,
+                )
+            value[dofs], amplitude[dofs], given[dofs] = item.value, index, True
+
+    def _set_loads(self, given: Sequence[Load]) -> None:
+        check_loads(given)
+        loads = applied(given, self.system.model.mesh)
         forces = [item for item in loads if isinstance(item, NodalForce)]
         self._replace_forces(forces)
         for item in forces:
@@ -481,6 +535,4 @@ class Conditions:
         np.add.at(target, self._force_dofs(item), item.value)
 
     def _nodes(self, where: str | Ints) -> Ints:
-        if isinstance(where, str):
-            return self.system.model.mesh.nodes_of(where)
-        return np.asarray(where, np.int64)
+        return self.system.model.mesh.node_indices(where)

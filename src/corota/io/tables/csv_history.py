@@ -35,7 +35,7 @@ def support_sets(model: Model, steps: Sequence[Step]) -> dict[str, Ints]:
     every: list[Ints] = []
     for support in [*model.supports, *(s for step in steps for s in step.supports)]:
         where = support.nodes
-        nodes = model.mesh.nodes_of(where) if isinstance(where, str) else np.asarray(where)
+        nodes = model.mesh.node_indices(where)
         every.append(nodes)
         if isinstance(where, str):
             found[where] = np.unique(nodes)

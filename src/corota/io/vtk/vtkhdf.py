@@ -85,6 +85,10 @@ def point_data(frame: Frame, averaging: vf.Averaging) -> dict[str, Floats]:
             data[f"angular {name}"] = moving[:, 2]
     if frame.C is not None:
         data |= dict(zip(vf.CONTACT, frame.C.T, strict=True))
+    for pair, values in frame.pairs.items():
+        data |= {f"{n}: {pair}": v for n, v in zip(vf.CONTACT, values.T, strict=True)}
+    if not frame.fields and frame.averages:
+        return data | frame.averages
     names = sorted({k for b in frame.fields for k in b.values})
     mean = averaging.average(frame.fields, [k for k in names if k != "MISES"])
     if "S" in mean:
@@ -127,6 +131,11 @@ def _scalars(frame: Frame) -> dict[str, Floats]:
         "load factor": frame.factor,
     }
     return {k: np.array([float(v)]) for k, v in (basic | frame.scalars).items()}
+
+
+def _missing(place: str, name: str) -> float:
+    """What stands where a frame lacks an array."""
+    return np.nan if place == "corota/frames" and name in vf.UNKNOWN else 0.0
 
 
 class VtkhdfWriter:
@@ -251,12 +260,14 @@ class VtkhdfWriter:
                 names |= {(place, name): values for name, values in arrays.items()}
         for (place, name), like in names.items():
             rows = [data.get(place, {}).get(name) for _, data in self._taken]
-            full = [np.zeros_like(like) if r is None else r for r in rows]
+            full = [np.full_like(like, _missing(place, name)) if r is None else r for r in rows]
             self._series(place, name, like, end)[first * len(like) :] = np.concatenate(full)
         for (place, name), like in self._known.items():
             if (place, name) not in names:
                 # An array of an earlier step, such as velocities: zero from here on.
                 self._series(place, name, like, end)
+                if np.isnan(_missing(place, name)):
+                    self._file[place][name][first:] = np.nan
         # Shapes only: the numbers are on disk.
         self._known |= {
             key: np.broadcast_to(np.zeros(1, like.dtype), like.shape) for key, like in names.items()
@@ -287,7 +298,12 @@ class VtkhdfWriter:
             else:
                 size = min(rows, max(1, _CHUNK // row))
             group.create_dataset(
-                name, (0, *rest), like.dtype, maxshape=(None, *rest), chunks=(max(1, size), *rest)
+                name,
+                (0, *rest),
+                like.dtype,
+                maxshape=(None, *rest),
+                chunks=(max(1, size), *rest),
+                fillvalue=_missing(place, name),
             )
         group[name].resize(end * rows, axis=0)
         if place.startswith("VTKHDF"):

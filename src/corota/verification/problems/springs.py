@@ -60,7 +60,7 @@ def column(load: float, nudge: float) -> Model:
     """A stiff column on a torsion spring; `nudge` is a moment on its foot."""
     model = Model(parts([(0.0, 0.0), (0.0, LENGTH)], ("line2", [[0, 1]]), ("point1", [[0]])))
     model.beam([0], material=Elastic(E=1e9, nu=0.0), area=1.0, inertia=1.0)
-    model.spring([1], STIFFNESS, "theta")
+    model.spring([1], STIFFNESS, "rotation")
     model.fix([0])
     model.force([1], y=-load)
     if nudge:
@@ -87,7 +87,7 @@ def measure() -> Iterator[Value]:
         yield Value(f"force of the curve at {x:g}", force, stretched(x), 1e-9)
     model = Model(parts([(0.0, 0.0), (1.0, 0.0)], ("line2", [[0, 1]]), ("point1", [[0]])))
     model.beam([0], material=Elastic(E=1e9, nu=0.0), area=1.0, inertia=1.0)
-    model.spring([1], STIFFNESS, "theta")
+    model.spring([1], STIFFNESS, "rotation")
     model.fix([0])
     model.force([1], moment=100.0)
     turn = run(model, Static(increments=2)).frames[-1].UR[0]

@@ -18,7 +18,8 @@ from corota.analysis.procedures.path.corrector import Point
 from corota.analysis.procedures.path.equations import path_system
 from corota.analysis.procedures.path.tracer import End, PathStalled, PathTracer, Plan
 from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
-from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label, dof_index
+from corota.model.dofs import dof_index
+from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label
 from corota.results.observer import Iteration
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ def path_step(
     *,
     factor: float = 0.0,
     increment: int = 0,
+    takes_over: bool = False,
 ) -> CriticalPoint | None:
     """Run a step, or the rest of one, along its path.
 
@@ -60,6 +62,8 @@ def path_step(
         Load factor of the committed state.
     increment : int
         Increments of the step so far.
+    takes_over : bool
+        Whether the step began by load control: its time then stays within the period.
 
     Returns
     -------
@@ -75,6 +79,7 @@ def path_step(
     """
     system.conditions.check_proportional()
     run = PathStep(system, step, number, state, observers, save, factor, increment)
+    run.takes_over = takes_over
     return run.run(path)
 
 
@@ -95,6 +100,9 @@ class PathStep:
         self.system, self.step, self.number, self.state = system, step, number, state
         self.observers, self.save = observers, save
         self.factor, self.increment = factor, increment
+        self.takes_over = False
+        #: Where the path began, and how far it has gone, in units of the period [time].
+        self.begin, self.arc = state.step_time, 0.0
         self.along = path_system(system, state.notes)
         #: The critical point that was found last, as the path and as results know it.
         self.located: tuple[Critical, CriticalPoint] | None = None
@@ -165,18 +173,28 @@ class PathStep:
         assert state.energies is not None
         state.energies.add_quasi_static(u, state.u, at)
         state.u, state.at = u, at
-        state.step_time += found.size * self.step.period
+        before, period = state.step_time, self.step.period
+        self.arc += found.size * period
+        state.step_time = self.begin + self.arc
+        if self.takes_over:
+            # The rest of the period, whatever the length of the path.
+            rest = period - self.begin
+            ends = found.last and found.point.factor >= 1.0 - 1e-9
+            share = 1.0 if ends else self.arc / (rest + self.arc)
+            state.step_time = self.begin + share * rest
         state.negative = found.negative
         self.factor = found.point.factor
         self.increment += 1
         scalars = {
-            "dt": found.size * self.step.period,
+            "dt": state.step_time - before,
             "iterations": float(found.iterations),
             "attempts": float(found.attempts),
             "residual": system.residual_norms(at, u).size,
             "external work": state.energies.work,
             "negative pivots": float(found.negative),
         }
+        if self.takes_over:
+            scalars["arc length"] = 1.0
         if found.negative < 0 and self.along.not_conservative not in state.notes:
             state.notes.append(self.along.not_conservative)
         if found.negative >= 0:
@@ -304,15 +322,13 @@ class PathStep:
         weights: list[float] = []
         mesh = self.system.model.mesh
         for where, name, weight in terms:
-            if isinstance(where, str):
-                nodes = mesh.nodes_of(where)
-            elif isinstance(where, Label):
+            if isinstance(where, Label):
                 nodes = np.flatnonzero(mesh.node_labels == where)
+                if not nodes.size:
+                    raise InputError(f"no node {where} to control or end a path")
             else:
-                nodes = np.atleast_1d(np.asarray(where, np.int64))
+                nodes = mesh.node_indices(where)
             dof = dof_index(name)
-            if nodes.size == 0 or nodes.min() < 0 or nodes.max() >= mesh.n_nodes:
-                raise InputError(f"no such nodes to control or end a path: {where!r}")
             found = self.system.dofs(nodes, dof)
             if (found < 0).any():
                 label = mesh.node_labels[nodes[found < 0][0]]

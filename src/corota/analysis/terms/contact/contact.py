@@ -314,7 +314,7 @@ class ContactTerm:
             pair.core.restore()
             pair.frozen = False
 
-    def output(self) -> tuple[Floats, dict[str, float]]:
+    def output(self) -> tuple[Floats, dict[str, float], dict[str, Floats]]:
         """Contact at the nodes of the committed state, and sums of the pairs.
 
         Returns
@@ -323,6 +323,8 @@ class ContactTerm:
             See :attr:`corota.results.Frame.C`.
         sums : dict of str to float
             Force on the slave surface, its moment about the origin, and energies.
+        pairs : dict of str to ndarray, shape (n_nodes, 5)
+            See :attr:`corota.results.Frame.pairs`.
         """
         from corota.analysis.terms.contact.output import output
 

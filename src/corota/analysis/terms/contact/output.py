@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def output(contact_term: ContactTerm) -> tuple[Floats, dict[str, float]]:
-    """See :meth:`corota.analysis.terms.contact.contact.Touching.output`."""
+def output(contact_term: ContactTerm) -> tuple[Floats, dict[str, float], dict[str, Floats]]:
+    """See :meth:`corota.analysis.terms.contact.contact.ContactTerm.output`."""
     n = len(contact_term.system.per_node)
     values = np.zeros((n, 5))
     sums: dict[str, float] = {}
+    several = sum(not pair.tied for pair in contact_term.pairs) > 1
+    each = {p.name: np.zeros((n, 5)) for p in contact_term.pairs if several and not p.tied}
     contact_state = contact_term.at
     friction = law = 0.0
     x = contact_term.positions(contact_term.u)
@@ -39,6 +41,8 @@ def output(contact_term: ContactTerm) -> tuple[Floats, dict[str, float]]:
         if pair.tied:
             rows[:] = 0.0
         _spread(values, pair, rows, seen)
+        if pair.name in each:
+            _spread(each[pair.name], pair, rows, seen)
         fx, fy, moment = resultant(pair, terms, p, q, x)
         sums[f"{pair.name}: force x"] = fx
         sums[f"{pair.name}: force y"] = fy
@@ -54,7 +58,7 @@ def output(contact_term: ContactTerm) -> tuple[Floats, dict[str, float]]:
     sums["friction energy"] = friction
     sums["contact energy"] = law
     sums["stabilisation energy"] = contact_term.damping_work
-    return values, sums
+    return values, sums, each
 
 
 def _spread(values: Floats, pair: Pair, rows: Floats, seen: NDArray[np.bool_]) -> None:

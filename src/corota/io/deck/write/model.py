@@ -19,7 +19,7 @@ from corota.io.deck.write.mesh import TYPES
 from corota.io.deck.write.thermal import expansion_cards, initial_cards, temperatures
 from corota.mesh import EDGES
 from corota.mesh.parts import cells_of
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, kind_of
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied, kind_of
 from corota.model.materials import Elastic, Orthotropic
 from corota.model.steps import Static
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from corota.mesh.data import Ints, Mesh
-    from corota.model.loads import Fixed, Load, LoadKind
+    from corota.model.loads import AppliedLoad, Fixed, LoadKind
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -90,8 +90,9 @@ class _Writer:
         tail += initial_cards(self, model)
         tail += _boundary(self, model.supports, False)
         for number, step in enumerate(steps):
-            again = [x for x in model.loads if number == 0 or step.renews(kind_of(x))]
-            loads = again + step.loads
+            own = applied(model.loads, model.mesh)
+            again = [x for x in own if number == 0 or step.renews(kind_of(x))]
+            loads = again + applied(step.loads, model.mesh)
             tail += self._step(step, loads, number)
         yield f"*HEADING\n{model.title or model.name}\n"
         yield from self._mesh()
@@ -200,7 +201,7 @@ class _Writer:
             yield f"*TIME POINTS, NAME={_plain(name)}\n"
             yield "".join(f"{_number(time)}\n" for time in times.tolist())
 
-    def _step(self, step: Step, loads: list[Load], number: int) -> Iterator[str]:
+    def _step(self, step: Step, loads: list[AppliedLoad], number: int) -> Iterator[str]:
         if type(step) is not Static:
             raise UnsupportedError(
                 f"step {number + 1}: {type(step).__name__} cannot be written to a deck"
@@ -247,12 +248,17 @@ class _Writer:
             yield "\n" + ", ".join(request.variables) + "\n"
         yield "*END STEP\n"
 
-    def _load(self, load: Load) -> Iterator[str]:
+    def _load(self, load: AppliedLoad) -> Iterator[str]:
         option = f", AMPLITUDE={_plain(load.amplitude)}" if load.amplitude else ""
         if isinstance(load, NodalForce):
             yield f"*CLOAD{option}\n"
-            for target in self.nodes(load.nodes):
-                yield f"{target}, {_dof(load.dof)}, {_number(load.value)}\n"
+            if np.ndim(load.value):  # a value for each node
+                labels = self.mesh.node_labels[self.mesh.node_indices(load.nodes)].tolist()
+                rows = list(zip(map(str, labels), np.asarray(load.value).tolist(), strict=True))
+            else:
+                rows = [(target, float(load.value)) for target in self.nodes(load.nodes)]
+            for target, value in rows:
+                yield f"{target}, {_dof(load.dof)}, {_number(value)}\n"
         elif isinstance(load, EdgeLoad):
             name = self.edge_set(load.edges)
             if load.kind == "pressure":

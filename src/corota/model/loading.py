@@ -1,0 +1,205 @@
+"""How supports and loads are given: the same methods of a model and of a step."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from corota.errors import InputError, number
+from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, selected
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from corota.model.loads import Load
+
+    Ints = NDArray[np.int64]
+
+
+class Loading:
+    """Methods that add to ``supports`` and ``loads``.
+
+    A model checks places by its mesh at once; those of a step are checked when it runs.
+    """
+
+    supports: list[Fixed]
+    loads: list[Load]
+
+    def _nodes(self, where: str | ArrayLike) -> str | Ints:
+        return selected(where, "node", None)
+
+    def _edges(self, where: str | ArrayLike) -> str | Ints:
+        return selected(where, "edge", None)
+
+    def _cells(self, cells: str | ArrayLike) -> str | Ints:
+        return selected(cells, "cell", None)
+
+    def _add_force(self, force: Force) -> None:
+        self.loads.append(force)
+
+    def fix(
+        self,
+        nodes: str | ArrayLike,
+        *,
+        x: float | None = 0.0,
+        y: float | None = 0.0,
+        rotation: float | bool | None = None,
+        amplitude: str = "",
+    ) -> None:
+        """Hold or move nodes; ``None`` leaves a direction free.
+
+        Parameters
+        ----------
+        nodes : str or array_like of int
+            Node, edge or cell set, node indices, or a mask of nodes.
+        x, y : float or None
+            Displacement at the end of a step [length].
+        rotation : float, bool or None
+            ``True`` holds the drilling rotation, a number prescribes it [rad].
+        amplitude : str
+            Name in ``Model.amplitudes``; empty: ramp in static steps.
+
+        Raises
+        ------
+        InputError
+            If there is no such place, or a value is not finite.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> step = ct.Static()
+        >>> step.fix("left")
+        >>> step.fix("pin", x=-0.5, y=None)
+        >>> [(s.nodes, s.dof, s.value) for s in step.supports]
+        [('left', 0, 0.0), ('left', 1, 0.0), ('pin', 0, -0.5)]
+        """
+        where = self._nodes(nodes)
+        turn = 0.0 if rotation is True else None if rotation is False else rotation
+        given = [(dof, value) for dof, value in enumerate((x, y, turn)) if value is not None]
+        if not given:
+            raise InputError("fix holds nothing: give x, y or rotation")
+        for dof, value in given:
+            self.supports.append(Fixed(where, dof, value, amplitude))
+
+    def force(
+        self,
+        where: str | ArrayLike,
+        *,
+        x: float = 0.0,
+        y: float = 0.0,
+        moment: float = 0.0,
+        total: bool = False,
+        per_node: bool = False,
+        amplitude: str = "",
+    ) -> None:
+        """Apply a dead force or a drilling moment.
+
+        On an edge set the values are the resultant, spread consistently over the length of the
+        edges, whatever the mesh. On nodes they hold for each node. A name that is both, as the
+        sides of :func:`corota.mesh.rectangle` are, means the edges.
+
+        Parameters
+        ----------
+        where : str or array_like of int
+            Edge or node set, node indices, or a mask of nodes.
+        x, y : float
+            Force [force].
+        moment : float
+            Drilling moment [force*length].
+        total : bool
+            The values are the resultant on nodes too, shared equally.
+        per_node : bool
+            The values hold for each node of an edge set too, as those of ``*CLOAD``.
+        amplitude : str
+            Name in ``Model.amplitudes``; empty: ramp in static steps.
+
+        Raises
+        ------
+        InputError
+            If there is no such place, or a value is not finite.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=4))
+        >>> model.force("right", y=-5.0)  # 5 in all
+        >>> model.force([0, 1], y=-5.0)  # 5 at each of the two
+        """
+        if total and per_node:
+            raise InputError("a force is either total or per_node")
+        if not isinstance(where, str):
+            where = self._nodes(where)
+        spread = "total" if total else "per node" if per_node else ""
+        self._add_force(Force(where, x, y, moment, spread, amplitude))  # type: ignore[arg-type]
+
+    def traction(
+        self,
+        edges: str | ArrayLike,
+        *,
+        x: float = 0.0,
+        y: float = 0.0,
+        amplitude: str = "",
+    ) -> None:
+        """Apply a dead traction [force/length^2] on edges."""
+        self.loads.append(EdgeLoad(self._edges(edges), "traction", (x, y), amplitude))
+
+    def pressure(self, edges: str | ArrayLike, p: float, amplitude: str = "") -> None:
+        """Apply a pressure [force/length^2] on edges, positive into the element."""
+        self.loads.append(EdgeLoad(self._edges(edges), "pressure", (p,), amplitude))
+
+    def gravity(
+        self,
+        x: float = 0.0,
+        y: float = 0.0,
+        cells: str | ArrayLike = "",
+        amplitude: str = "",
+    ) -> None:
+        """Apply an acceleration field [length/time^2] to cells (default all)."""
+        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
+        self.loads.append(BodyForce(where, "gravity", (x, y), amplitude))
+
+    def centrifugal(
+        self,
+        omega: float,
+        about: tuple[float, float] = (0.0, 0.0),
+        cells: str | ArrayLike = "",
+        amplitude: str = "",
+    ) -> None:
+        """Apply the centrifugal force of a steady spin to cells (default all).
+
+        The model is seen from a frame that turns with it: the force grows with the current
+        distance from the axis in geometrically nonlinear steps, with that of the undeformed body
+        in linear ones. Modes and buckling see its stiffness. Coriolis forces are left out.
+
+        Parameters
+        ----------
+        omega : float
+            Angular velocity [rad/time]; its sign does not matter.
+        about : tuple of float
+            Where the axis meets the plane [length].
+        cells : str or array_like of int
+            Cell set ("" for all), cell indices, or a mask of cells.
+        amplitude : str
+            Scales the force, that is omega squared, as the ramp of a static step does.
+        """
+        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
+        value = (number(omega, "omega") ** 2, float(about[0]), float(about[1]))
+        self.loads.append(BodyForce(where, "centrifugal", value, amplitude))
+
+    def temperature(
+        self, value: ArrayLike, nodes: str | ArrayLike = "", amplitude: str = ""
+    ) -> None:
+        """Bring nodes to a temperature, in which materials with an ``expansion`` expand.
+
+        Parameters
+        ----------
+        value : float or array_like
+            One temperature, or one for each node, at the end of the step.
+        nodes : str or array_like of int
+            Node, edge or cell set ("" for all), node indices, or a mask of nodes.
+        amplitude : str
+            Name in ``Model.amplitudes``; empty: a ramp in static steps.
+        """
+        where = "" if isinstance(nodes, str) and not nodes else self._nodes(nodes)
+        self.loads.append(Temperature(where, value, amplitude))  # type: ignore[arg-type]
