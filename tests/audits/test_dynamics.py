@@ -1303,7 +1303,7 @@ def test_two_rigid_links_buckle_at_the_golden_section():
     model.rigid([3], 2)
     model.equation((2, "x", 1.0), (1, "x", -1.0))
     model.equation((2, "y", 1.0), (1, "y", -1.0))
-    model.spring([2], k, "theta theta")
+    model.spring([2], k, "rotation rotation")
     model.spring([3], k, "rotation")
     model.point_mass([1, 3], m)
     model.force([3], y=-1.0)

@@ -76,11 +76,9 @@ class Loading:
         """
         where = self._nodes(nodes)
         turn = 0.0 if rotation is True else None if rotation is False else rotation
-        given = [(dof, value) for dof, value in enumerate((x, y, turn)) if value is not None]
-        if not given:
-            raise InputError("fix holds nothing: give x, y or rotation")
-        for dof, value in given:
-            self.supports.append(Fixed(where, dof, value, amplitude))
+        for dof, value in enumerate((x, y, turn)):
+            if value is not None:
+                self.supports.append(Fixed(where, dof, value, amplitude))
 
     def force(
         self,
