@@ -107,7 +107,7 @@ def test_a_name_that_is_none_is_answered_with_the_nearest(
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, "1", None, [1.0, 2.0]])
 def test_values_that_are_no_numbers_are_refused_when_given(model: ct.Model, value: object) -> None:
     calls = [
-        lambda: model.fix([0], x=value, y=None),
+        lambda: model.fix([0], x="free" if value is None else value, y=None),
         lambda: model.force([0], y=value),
         lambda: model.traction("right", y=value),
         lambda: model.pressure("right", value),
