@@ -36,6 +36,10 @@ def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, flo
                     "found: its strain is beyond what its material and plane allow, as a "
                     "thickness that vanishes; look at loads, moduli and units"
                 )
+        if system.nlgeom and "M1" in own["values"]:
+            # Moments of the ends balance the shear force over the current length of a beam.
+            values = own["values"]
+            values["V"] = values["V"] / (1.0 + values["E"][..., :2].sum(axis=-1))
         energy += own["total_energy"]
         artificial += own["artificial_energy"]
         if (work := own["values"].get("PWORK")) is not None:
