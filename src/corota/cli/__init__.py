@@ -1,4 +1,4 @@
-"""Command line: ``corota run|check|plot|info|convert|verify``; heavy imports wait until needed."""
+"""The command line, ``corota COMMAND``; heavy imports wait until they are needed."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

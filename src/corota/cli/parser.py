@@ -73,6 +73,13 @@ def make_parser() -> Parser:
     )
     _reading(run)
 
+    demo = command("demo", "Run an example that comes with Corota; needs no file and no network.")
+    demo.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
+    demo.add_argument("--list", action="store_true", help="name the examples and run none")
+    demo.add_argument(
+        "-o", "--output", metavar="DIR", default="", help="folder; else corota-demo/NAME"
+    )
+
     check = command("check", "Read and validate without solving; count and warn.")
     check.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
     _reading(check)
