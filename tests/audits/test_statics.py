@@ -296,13 +296,13 @@ right, 1, 1
 {mesh.node_labels[mesh.nodes_of("left")[0]]}, 2, 2
 {hold}*STEP, NLGEOM, INC=400
 *STATIC, DIRECT
-0.005, 1.
+0.01, 1.
 *TEMPERATURE
 every, {T}
 *END STEP
 *STEP, NLGEOM, INC=400
 *STATIC, DIRECT
-0.005, 1.
+0.01, 1.
 *TEMPERATURE, OP=NEW
 *END STEP
 """
