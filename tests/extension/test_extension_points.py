@@ -30,7 +30,7 @@ def strip(material: Any, element: str = "Q4I", nx: int = 6) -> ct.Model:
     model = ct.Model(ct.mesh.rectangle(6.0, 1.0, nx, 1))
     model.section("all", element=element, material=material)
     model.fix("left", rotation=True if element == "Q4D" else None)
-    model.force("right", y=0.2)
+    model.force(model.mesh.nodes_of("right"), y=0.2)
     return model
 
 
@@ -119,7 +119,7 @@ def test_python_plasticity_gives_what_mises_of_the_core_gives(scheme: str) -> No
         model = ct.Model(ct.mesh.rectangle(6.0, 1.0, 6, 1))
         model.section("all", element="Q4", material=material, plane="strain")
         model.fix("left")
-        model.force("right", y=1.5 if scheme == "static" else 0.75)
+        model.force(model.mesh.nodes_of("right"), y=1.5 if scheme == "static" else 0.75)
         found.append(ct.solve(model, step, threads=1))
     core, own = (np.array([f.U for f in r.frames]) for r in found)
     assert max(found[0].history("PEEQ")) > 0.005
@@ -164,7 +164,7 @@ def test_time_scheme(monkeypatch: pytest.MonkeyPatch) -> None:
         model.loads.clear()
         time = np.linspace(0.0, 0.4, 401)
         model.amplitudes["push"] = ct.Amplitude(time, np.sin(np.pi * time / 0.4) ** 2)
-        model.force("right", y=0.02, amplitude="push")
+        model.force(model.mesh.nodes_of("right"), y=0.02, amplitude="push")
         step = ct.Dynamic(period=0.4, increments=n, scheme="wbz", tolerance=1e-11)
         return float(ct.solve(model, step, threads=1).frames[-1].U[-1, 1])
 

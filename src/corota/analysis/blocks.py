@@ -110,7 +110,7 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
 def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:
     """Refuse lines without length and laws that line elements do not take."""
     labels, section = model.mesh.cell_labels, block.section
-    if section.material.law != "elastic":
+    if not section.material.for_lines:
         raise ModelError(
             f"element {labels[block.cells[0]]}: {section.element} takes isotropic elastic "
             f"material, not {section.material.law!r}",

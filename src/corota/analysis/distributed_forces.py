@@ -114,7 +114,7 @@ class BodyLoad:
         self.masks = [inside[b.cells] for b in system.blocks]
         facts = [elements.find(b.section.element) for b in system.blocks]
         for block, mask in zip(system.blocks, self.masks, strict=True):
-            massless = block.section.element.startswith("SPRING")
+            massless = elements.find(block.section.element).spring
             if mask.any() and block.section.material.rho <= 0.0 and not massless:
                 name = block.section.material.name or block.section.material.law
                 raise ModelError(

@@ -64,6 +64,11 @@ class Element:
     about_mean: bool = False
 
     @property
+    def spring(self) -> bool:
+        """Whether it is a spring: it has no mass, no section and no axial strain."""
+        return self.line and self.name.startswith("SPRING")
+
+    @property
     def drilling(self) -> bool:
         """Whether its nodes have rotations; planar elements."""
         return self.dofs_per_node == 3 and not self.line

@@ -128,6 +128,8 @@ class Material:
     law = ""
     #: Whether the law has plastic flow.
     flows = False
+    #: Whether trusses and beams take it.
+    for_lines = False
 
     def compliance(self) -> NDArray[np.float64]:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).
@@ -190,6 +192,7 @@ class Elastic(Material):
     nu: float = 0.0
 
     law = "elastic"
+    for_lines = True
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.plots.figure import INK
 
@@ -56,17 +57,17 @@ def draw_lines(ax: Any, subject: Model, size: float) -> None:
     mesh = subject.mesh
     drawn: dict[str, list[Floats]] = {"beam": [], "truss": [], "spring": [], "dashpot": []}
     for section in subject.sections:
-        name = section.element
-        if name not in ("BEAM", "TRUSS") and not name.startswith("SPRING"):
+        facts = elements.find(section.element)
+        if not facts.line:
             continue
         for cell in _cells(subject, section):
             block, row = mesh.locate(cell)
             ends = mesh.points[mesh.cells[block].nodes[row]]
-            if name in ("BEAM", "TRUSS"):
-                drawn[name.lower()].append(ends)
+            if not facts.spring:
+                drawn[facts.name.lower()].append(ends)
             elif len(ends) == 2 and np.ptp(ends, axis=0).any():
                 drawn["spring"].append(zigzag(ends[0], ends[1], HEIGHT * size))
-            elif name.endswith("R"):
+            elif facts.dofs_per_node == 3:
                 ax.plot(
                     *ends[0],
                     "o",

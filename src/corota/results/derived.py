@@ -8,7 +8,7 @@ or writes variables at points knows it: histories, pictures, tables and result f
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from corota.errors import InputError
 
@@ -18,7 +18,16 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from corota.results.results import PointFields
+    Floats = NDArray[np.float64]
+
+
+class PointValues(Protocol):
+    """What a derived variable sees of a block: :class:`corota.results.results.PointFields`."""
+
+    @property
+    def values(self) -> dict[str, Floats]: ...
+    @property
+    def volume(self) -> Floats: ...
 
 
 @dataclass(frozen=True)
@@ -34,7 +43,7 @@ class Derived:
         What it is, with its dimension in brackets.
     """
 
-    function: Callable[[PointFields], NDArray[np.float64] | None]
+    function: Callable[[PointValues], Floats | None]
     meaning: str = ""
 
 
@@ -42,7 +51,7 @@ class Derived:
 DERIVED: dict[str, Derived] = {}
 
 
-def add_derived(block: PointFields) -> None:
+def add_derived(block: PointValues) -> None:
     """Compute the variables of :data:`DERIVED` for a block, in place.
 
     Raises
@@ -62,4 +71,4 @@ def add_derived(block: PointFields) -> None:
         block.values[name] = values
 
 
-__all__ = ["DERIVED", "Derived", "add_derived"]
+__all__ = ["DERIVED", "Derived", "PointValues", "add_derived"]

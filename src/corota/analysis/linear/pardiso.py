@@ -16,7 +16,8 @@ from corota.errors import ResourceError, SingularError, UnsupportedError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.linear.solvers import Floats, Inertia
+    Inertia = tuple[int, int, int]
+    Floats = NDArray[np.float64]
 
 #: Matrix types of PARDISO: real symmetric indefinite, real unsymmetric.
 _SYMMETRIC, _UNSYMMETRIC = -2, 11

@@ -215,7 +215,7 @@ def check_density(system: System) -> None:
     """Refuse materials without mass."""
     for block in system.blocks:
         material = block.section.material
-        if material.rho <= 0.0 and not block.section.element.startswith("SPRING"):
+        if material.rho <= 0.0 and not elements.find(block.section.element).spring:
             raise ModelError(
                 f"material {material.name or material.law!r} has no density, which motion needs; "
                 "add one (*DENSITY, rho=)",

@@ -120,7 +120,7 @@ class FreeStrains:
             for index, block in enumerate(blocks):
                 rows = np.flatnonzero(order[block.cells] >= 0)
                 facts = elements.find(block.section.element)
-                if not len(rows) or block.section.element.startswith("SPRING"):
+                if not len(rows) or facts.spring:
                     continue
                 shape = (len(block.cells), facts.n_points)
                 stress = found[index]
@@ -264,7 +264,7 @@ def _block(
         compliance,
         facts.line,
         section.plane == "strain",
-        section.material.law == "mises" and section.plane == "strain",
+        section.material.flows and section.plane == "strain",
         stress,
     )
 

@@ -1,0 +1,121 @@
+"""Our own iterative methods beside those of SciPy, on the systems that analyses solve.
+
+GMRES on the unsymmetric part of frictional contact, block Lanczos on the pencil of linear buckling.
+Both take each other's place inside an analysis, with the same products and factorizations; times
+are of this thread's processor. docs/design.md says what follows from the figures.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+import warnings
+from typing import Any
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, eigs, gmres
+
+import corota as ct
+from benchmarks.before_after_worker import contact
+from benchmarks.common import report
+from corota.analysis.linear import saddle_point
+from corota.analysis.procedures import buckling
+
+
+def gmres_row(n: int) -> list[object]:
+    """Both methods on every system of a job in frictional contact, `n` elements along the face."""
+    own = saddle_point.SaddlePointSystem._gmres
+    seconds, steps = [0.0, 0.0], [0, 0]
+    systems = size = 0
+
+    def both(this: Any, solve: Any, rest: Any, b: Any) -> Any:
+        nonlocal systems, size
+        before, start = this.steps, time.thread_time()
+        found = own(this, solve, rest, b)
+        seconds[0] += time.thread_time() - start
+        if found is None:
+            return None
+        steps[0] += this.steps - before
+        systems, size = systems + 1, this.size
+        start = time.thread_time()
+        r, scale = solve(b), np.ones(size)
+        for part in (slice(0, this.nf), slice(this.nf, size)):
+            scale[part] = np.abs(r[part]).max(initial=0.0) or 1.0
+
+        def apply(v: Any) -> Any:
+            product = np.zeros(size)
+            np.add.at(product, rest.rows, rest.values * (v * scale)[rest.columns])
+            steps[1] += 1
+            return v + solve(product) / scale
+
+        operator = LinearOperator((size, size), matvec=apply, dtype=float)
+        most, enough = saddle_point.GMRES_STEPS, saddle_point.GMRES_TOLERANCE
+        gmres(operator, r / scale, rtol=enough, atol=0.0, restart=most, maxiter=1)
+        seconds[1] += time.thread_time() - start
+        return found
+
+    saddle_point.SaddlePointSystem._gmres = both  # type: ignore[method-assign]
+    try:
+        model, step = contact(n, 0.3)
+        ct.solve(model, step, threads=1, fields=False)
+    finally:
+        saddle_point.SaddlePointSystem._gmres = own  # type: ignore[method-assign]
+    return ["GMRES", size, systems, *steps, *(1e3 * s for s in seconds), seconds[1] / seconds[0]]
+
+
+def lanczos_row(ny: int) -> list[object]:
+    """Both methods on four buckling factors of a strip with `ny` elements through its height."""
+    own, row = buckling.largest, []
+
+    def both(apply: Any, solve: Any, start: Any, count: int, tolerance: float = 1e-6) -> Any:
+        solves = [0, 0]
+
+        def counted(x: Any) -> Any:
+            solves[0] += 1
+            return solve(x)
+
+        begin = time.thread_time()
+        found = own(apply, counted, start, count, tolerance)
+        middle = time.thread_time()
+
+        def product(v: Any) -> Any:
+            solves[1] += 1
+            return solve(np.asfortranarray(apply(np.asfortranarray(v.reshape(-1, 1)))))[:, 0]
+
+        # The pencil has no sign, so that ARPACK's symmetric method has no inner product for it.
+        operator = LinearOperator((len(start),) * 2, matvec=product, dtype=float)
+        eigs(operator, k=count + 2, which="LR", v0=solve(start)[:, 0], tol=1e-10)
+        seconds = middle - begin, time.thread_time() - middle
+        row[:] = ["block Lanczos", len(start), 1, *solves, *(1e3 * s for s in seconds)]
+        row.append(seconds[1] / seconds[0])
+        return found
+
+    buckling.largest = both
+    try:
+        model = ct.Model(ct.mesh.rectangle(20.0, 1.0, 20 * ny, ny))
+        model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+        model.fix("left")
+        model.force(model.mesh.nodes_of("right"), x=-1.0 / (ny + 1))
+        ct.solve(model, ct.Buckle(modes=4), threads=1)
+    finally:
+        buckling.largest = own
+    return row
+
+
+def main() -> int:
+    """Print the table."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--contact", nargs="+", type=int, default=[24, 57])
+    options.add_argument("--buckling", nargs="+", type=int, default=[4, 12, 24])
+    chosen = options.parse_args()
+    warnings.simplefilter("ignore")
+    rows = [gmres_row(n) for n in chosen.contact] + [lanczos_row(n) for n in chosen.buckling]
+    head = ["method", "unknowns", "systems", "own solves", "SciPy's", "own [ms]", "SciPy [ms]"]
+    report("Own methods beside SciPy's", [*head, "ratio"], rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
