@@ -44,13 +44,15 @@ impl Field {
 }
 
 /// Nodal force of a field on an element with nodes at `x + u`, and its derivative, blocks
-/// `a <= b`. Without `coupled` the mass has no part that belongs to rotations.
+/// `a <= b`, zero without `tangent`. Without `coupled` the mass has no part that belongs to
+/// rotations.
 pub fn force<const N: usize, const M: usize>(
     mass: &Mass<f64, N>,
     coupled: bool,
     x: &Nodal<f64, N, 2>,
     u: &Nodal<f64, N, M>,
     field: Field,
+    tangent: bool,
 ) -> (Nodal<f64, N, M>, Blocks<f64, N, M>) {
     let (mut f, mut k) = (nodal::<f64, N, M>(), blocks::<f64, N, M>());
     let mut pull = [[0.0; 2]; N];
@@ -68,7 +70,7 @@ pub fn force<const N: usize, const M: usize>(
         }
     }
     if coupled && M == 3 {
-        bulges(mass, x, u, field, &pull, &mut f, &mut k);
+        bulges(mass, x, u, field, &pull, &mut f, tangent.then_some(&mut k));
     }
     (f, k)
 }
@@ -81,7 +83,7 @@ fn bulges<const N: usize, const M: usize>(
     field: Field,
     pull: &[[f64; 2]; N],
     f: &mut Nodal<f64, N, M>,
-    k: &mut Blocks<f64, N, M>,
+    k: Option<&mut Blocks<f64, N, M>>,
 ) {
     let spin = Spin::new(x, u, &mass.s);
     let next = |e: usize| (e + 1) % N;
@@ -114,6 +116,8 @@ fn bulges<const N: usize, const M: usize>(
             f[n][i] += spin.gamma[n][i] * couple;
         }
     }
+    let Some(k) = k else { return };
+    let varies = field.omega2 != 0.0;
     for q in 0..N {
         for j in 0..M {
             // Turn of the frame, relative growth of D, differences of rotations.
@@ -124,27 +128,32 @@ fn bulges<const N: usize, const M: usize>(
                 differs[q] += 1.0;
                 differs[(q + N - 1) % N] -= 1.0;
             }
-            let mut dy = [[0.0; 2]; N];
-            for e in 0..N {
-                for i in 0..2 {
-                    dy[e][i] = differs[e] * spin.w[e][i] + differ[e] * turn * spin.sw[e][i];
+            // How the pull on the edges changes, which is the same everywhere without a spin.
+            let mut d_edge = [[0.0; 2]; N];
+            if varies {
+                let mut dy = [[0.0; 2]; N];
+                for e in 0..N {
+                    for i in 0..2 {
+                        dy[e][i] = differs[e] * spin.w[e][i] + differ[e] * turn * spin.sw[e][i];
+                    }
+                }
+                for e in 0..N {
+                    for i in 0..2 {
+                        for b in 0..N {
+                            d_edge[e][i] += field.omega2 * mass.ee[e][b] * dy[b][i];
+                            k[b][q][i][j] += field.omega2 * mass.ne[b][e] * dy[e][i];
+                        }
+                        if i == j {
+                            d_edge[e][i] += field.omega2 * mass.ne[q][e];
+                        }
+                    }
                 }
             }
             let mut d_couple = -couple_w * turn;
             for e in 0..N {
-                let mut d_edge = [0.0; 2];
-                for i in 0..2 {
-                    for b in 0..N {
-                        d_edge[i] += field.omega2 * mass.ee[e][b] * dy[b][i];
-                        k[b][q][i][j] += field.omega2 * mass.ne[b][e] * dy[e][i];
-                    }
-                    if i == j {
-                        d_edge[i] += field.omega2 * mass.ne[q][e];
-                    }
-                }
                 d_couple += differs[e] * dot(spin.sw[e], on_edge[e]);
-                d_couple += differ[e] * dot(spin.sw[e], d_edge);
-                let moment = turn * dot(spin.sw[e], on_edge[e]) + dot(spin.w[e], d_edge);
+                d_couple += differ[e] * dot(spin.sw[e], d_edge[e]);
+                let moment = turn * dot(spin.sw[e], on_edge[e]) + dot(spin.w[e], d_edge[e]);
                 k[e][q][M - 1][j] += moment;
                 k[next(e)][q][M - 1][j] -= moment;
             }

@@ -36,6 +36,9 @@ pub struct Problem {
     fixed: FixedDofs,
     assemble_tuner: ThreadAutotuner,
     recover_tuner: ThreadAutotuner,
+    inertia_tuner: ThreadAutotuner,
+    conserving_tuner: ThreadAutotuner,
+    body_tuner: ThreadAutotuner,
     active: Vec<bool>,
 }
 
@@ -76,6 +79,9 @@ impl Problem {
             fixed: FixedDofs::default(),
             assemble_tuner: ThreadAutotuner::default(),
             recover_tuner: ThreadAutotuner::default(),
+            inertia_tuner: ThreadAutotuner::default(),
+            conserving_tuner: ThreadAutotuner::default(),
+            body_tuner: ThreadAutotuner::default(),
             active: Vec::new(),
         })
     }
@@ -83,12 +89,18 @@ impl Problem {
     /// Use so many threads from now on; results do not depend on it.
     pub fn set_threads(&mut self, n: usize) {
         (self.assemble_tuner, self.recover_tuner) = Default::default();
+        (self.inertia_tuner, self.conserving_tuner, self.body_tuner) = Default::default();
         self.threads = n;
     }
 
     /// The threads of this process; none for one.
     fn pool(&self) -> Option<Arc<rayon::ThreadPool>> {
         if self.threads > 1 { pool::get(self.threads) } else { None }
+    }
+
+    /// The threads, where two chunks can run side by side; else a pool costs more than it brings.
+    fn pool_if_apart(&self) -> Option<Arc<rayon::ThreadPool>> {
+        if self.colours.iter().any(|c| c.len() > 1) { self.pool() } else { None }
     }
 
     /// Use these instructions from now on; results differ by rounding.
@@ -114,8 +126,7 @@ impl Problem {
         let tangent = !values.is_empty();
         let context =
             Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent, lanes: self.lanes };
-        let apart = self.colours.iter().any(|c| c.len() > 1);
-        let pool = self.pool();
+        let pool = self.pool_if_apart();
         let (colours, active) = (&mut self.colours, &self.active);
         let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
@@ -145,16 +156,14 @@ impl Problem {
             }
             failed
         };
-        // A pool costs more than it brings where no two chunks can run side by side.
-        let pool = pool.as_deref().filter(|_| apart);
-        let mut failed = share(&mut self.assemble_tuner, pool, &self.blocks, work);
+        let mut failed = share(&mut self.assemble_tuner, pool.as_deref(), &self.blocks, work);
         failed.sort_unstable();
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
     }
 
     /// Add inertia forces to `force` and `scale`, and effective tangents to `values`.
     pub fn inertia(
-        &self,
+        &mut self,
         u: &[f64],
         motion: &Motion<'_>,
         force: &mut [f64],
@@ -169,20 +178,15 @@ impl Problem {
             scale: Shared::new(scale),
             values: Shared::new(values),
         };
-        let pool = self.pool();
-        for colour in &self.colours {
-            let evaluate = |c: &dyn Chunk| {
-                if self.active.get(c.block()) != Some(&false) {
-                    c.inertia(&context, motion, &sink);
-                }
-            };
-            match pool.as_deref() {
-                Some(pool) if colour.len() > 1 => {
-                    pool.install(|| colour.par_iter().for_each(|c| evaluate(c.as_ref())));
-                }
-                _ => colour.iter().for_each(|c| evaluate(c.as_ref())),
+        let (colours, active) = (&self.colours, &self.active);
+        let evaluate = |c: &dyn Chunk| {
+            if active.get(c.block()) != Some(&false) {
+                c.inertia(&context, motion, &sink);
             }
-        }
+        };
+        let pool = self.pool_if_apart();
+        let work = |pool: bool| each_chunk(colours, pool, &evaluate);
+        share(&mut self.inertia_tuner, pool.as_deref(), &self.blocks, work);
     }
 
     /// Forces of a conserving step to `u`: internal and inertia in `force`, internal alone in
@@ -211,23 +215,26 @@ impl Problem {
             scale: Shared::new(&mut unused),
             values: Shared::new(&mut []),
         };
-        let mut failed = Vec::new();
-        let pool = self.pool();
-        for colour in &mut self.colours {
+        let pool = self.pool_if_apart();
+        let colours = &mut self.colours;
+        let work = |pool: bool| {
             let evaluate = |c: &mut Box<dyn Chunk>| {
                 let block = c.block();
                 let bad = c.conserving(&context, between, &sink, &alone);
                 bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
             };
-            match pool.as_deref() {
-                Some(pool) if colour.len() > 1 => {
-                    let bad: Vec<_> =
-                        pool.install(|| colour.par_iter_mut().map(evaluate).collect());
+            let mut failed = Vec::new();
+            for colour in colours {
+                if pool && colour.len() > 1 {
+                    let bad: Vec<_> = colour.par_iter_mut().map(evaluate).collect();
                     failed.extend(bad.into_iter().flatten());
+                } else {
+                    failed.extend(colour.iter_mut().flat_map(evaluate));
                 }
-                _ => failed.extend(colour.iter_mut().flat_map(evaluate)),
             }
-        }
+            failed
+        };
+        let failed = share(&mut self.conserving_tuner, pool.as_deref(), &self.blocks, work);
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
     }
 
@@ -321,7 +328,7 @@ impl Problem {
     /// step that ends there, and, unless `values` is empty, `load.share` times its derivative;
     /// element masks by block.
     pub fn body_force(
-        &self,
+        &mut self,
         u: &[f64],
         load: &BodyLoad<'_>,
         masks: &[Vec<bool>],
@@ -329,15 +336,19 @@ impl Problem {
         values: &mut [f64],
     ) {
         let mut scale = vec![0.0; force.len()];
-        let context = Context { tangent: !values.is_empty(), ..self.at_rest(u) };
+        let tangent = !values.is_empty();
+        let context =
+            Context { x: &self.x, u, dofs: &self.dofs, nlgeom: true, tangent, lanes: self.lanes };
         let sink = Sink {
             force: Shared::new(force),
             scale: Shared::new(&mut scale),
             values: Shared::new(values),
         };
-        for chunk in self.colours.iter().flatten() {
-            chunk.body_force(&context, load, &masks[chunk.block()], &sink);
-        }
+        let evaluate = |c: &dyn Chunk| c.body_force(&context, load, &masks[c.block()], &sink);
+        let pool = self.pool_if_apart();
+        let colours = &self.colours;
+        let work = |pool: bool| each_chunk(colours, pool, &evaluate);
+        share(&mut self.body_tuner, pool.as_deref(), &self.blocks, work);
     }
 
     /// Strains that the materials of a block meet, `[n, p, 3]`, with the committed internal
@@ -421,6 +432,21 @@ impl Problem {
             }
         }
         self.fixed.mask(values);
+    }
+}
+
+/// Evaluate all chunks, those of one colour side by side if `parallel`.
+fn each_chunk(
+    colours: &[Vec<Box<dyn Chunk>>],
+    parallel: bool,
+    evaluate: &(dyn Fn(&dyn Chunk) + Sync),
+) {
+    for colour in colours {
+        if parallel && colour.len() > 1 {
+            colour.par_iter().for_each(|c| evaluate(c.as_ref()));
+        } else {
+            colour.iter().for_each(|c| evaluate(c.as_ref()));
+        }
     }
 }
 

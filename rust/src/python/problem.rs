@@ -123,7 +123,7 @@ impl PyProblem {
     /// Add inertia forces and effective tangents (see ``Problem::inertia``).
     #[allow(clippy::too_many_arguments)]
     fn inertia(
-        &self,
+        &mut self,
         py: Python<'_>,
         u: PyReadonlyArray1<'_, f64>,
         v: PyReadonlyArray1<'_, f64>,
@@ -378,7 +378,7 @@ impl PyProblem {
     /// element masks by block.
     #[allow(clippy::too_many_arguments)]
     fn body_force(
-        &self,
+        &mut self,
         py: Python<'_>,
         kind: &str,
         value: Vec<f64>,

@@ -157,13 +157,20 @@ class Energies:
             self._reference = own["ETOTAL"]
         missing = own["ETOTAL"] - self._reference
         self._largest = max(self._largest, *(abs(v) for k, v in own.items() if k != "ETOTAL"))
-        nothing = NEGLIGIBLE_ENERGY * self.system.scales.nothing * self.system.length
-        error = missing / self._largest if self._largest > nothing else 0.0
+        error = missing / self._largest if self._largest > self._negligible() else 0.0
         if abs(error) > abs(self.error):
             self.error, self.where = error, where
         scalars.update({name: own[name] for name in TERMS if name in own})
         scalars["energy balance"] = missing
         scalars["energy balance error"] = error
+
+    def _negligible(self) -> float:
+        """Energy that is rounding: of coordinates, or of strains that free expansion cancels."""
+        system = self.system
+        free = system.free
+        expansion = free.largest(free.start - free.now) * system.length if free.expands else 0.0
+        size = max(system.scales.nothing * system.length, system.scales.stiffest * expansion**2)
+        return NEGLIGIBLE_ENERGY * size
 
     @property
     def made_by_contact(self) -> bool:
