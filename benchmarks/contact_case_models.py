@@ -148,7 +148,7 @@ def ring(element: str, n: int, method: str, law: str = "metal") -> tuple[ct.Mode
 
 def hook(element: str, edge: float) -> Mesh:
     """Arm of a snap-fit with a hook, edges of about a length; root at the left."""
-    xs, ys = np.array([(0.0, 1.2), (14.0, 1.2), (14.2, 2.2), (14.8, 2.2), (18.0, 0.6)]).T
+    xs, ys = np.array([(0.0, 1.2), (14.0, 1.2), (15.2, 2.2), (15.6, 2.2), (18.0, 0.6)]).T
 
     def top(t: float) -> tuple[float, float]:
         return 18.0 * t, float(np.interp(18.0 * t, xs, ys))

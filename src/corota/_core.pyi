@@ -25,6 +25,7 @@ class Contact:
         master_nodes: _Integers,
         master_bulge: _Floats,
         *,
+        master_shapes: _Integers | None = ...,
         method: str = ...,
         tie: bool = ...,
         reach: float,

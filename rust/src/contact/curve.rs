@@ -160,11 +160,25 @@ fn polish<T: Smooth>(root: f64, f: impl Fn(T) -> (T, T)) -> T {
 pub const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// One element edge.
+/// What the nodes of an edge stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// An element edge.
+    Element,
+    /// Piece of a smoothed boundary round its third node: the quadratic B-spline of the
+    /// polygon, from the middle of the side before to the middle of the side behind.
+    Spline,
+    /// First or second half of the straight side between two nodes.
+    FirstHalf,
+    SecondHalf,
+}
+
+/// One element edge, or a piece of a smoothed boundary.
 #[derive(Clone, Debug)]
 pub struct Edge {
     /// Corner, corner, middle; element on the left from the first to the second.
     pub nodes: [u32; 3],
+    pub shape: Shape,
     /// 2 or 3.
     pub n_nodes: usize,
     /// Bulge factor of drilling elements, 0 for others.
@@ -193,7 +207,21 @@ impl Edge {
 
     /// The curve at given values of the variables.
     pub fn curve<T: Smooth>(&self, v: &[T]) -> Curve<T> {
-        let mut c = Curve::line([v[0], v[1]], [v[2], v[3]]);
+        let (p, q) = ([v[0], v[1]], [v[2], v[3]]);
+        let middle = |a: Vec2<T>, b: Vec2<T>| add(a, b).map(|c| c.scale(0.5));
+        match self.shape {
+            Shape::Element => {}
+            Shape::FirstHalf => return Curve::line(p, middle(p, q)),
+            Shape::SecondHalf => return Curve::line(middle(p, q), q),
+            Shape::Spline => {
+                let vertex = [v[4], v[5]];
+                let mut c = Curve::line(middle(p, vertex), middle(vertex, q));
+                c.b = sub(vertex, c.m).map(|b| b.scale(0.5));
+                c.straight = false;
+                return c;
+            }
+        }
+        let mut c = Curve::line(p, q);
         if self.n_nodes == 3 {
             c.b = sub([v[4], v[5]], c.m);
             c.straight = false;

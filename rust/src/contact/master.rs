@@ -1,7 +1,9 @@
 //! What a slave point is measured against: element edges, and lines and arcs of a rigid body.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Curve, Edge, Vec2, add, dot, fixed, lift, outward, sub, times, unit, values};
+use super::curve::{
+    Curve, Edge, Shape, Vec2, add, dot, fixed, lift, outward, sub, times, unit, values,
+};
 use crate::base::Smooth;
 use std::f64::consts::PI;
 
@@ -166,6 +168,21 @@ impl<T: Smooth> Master<T> {
         }
     }
 
+    /// Point of a convex master farthest against a unit normal, on its continuation if need be.
+    pub fn foremost(&self, n: Vec2<T>) -> Hit<T> {
+        let gap = T::real(0.0);
+        match self {
+            Self::Curve(c) => {
+                let r = dot(c.d, n) / dot(c.b, n).scale(2.0);
+                Hit { gap, r, point: c.at(r) }
+            }
+            Self::Arc(a) => {
+                let point = sub(a.center, n.map(|c| c.scale(a.radius)));
+                Hit { gap, r: a.parameter(point), point }
+            }
+        }
+    }
+
     /// Outward unit normal at a point found before.
     pub fn normal(&self, hit: &Hit<T>) -> Vec2<T> {
         match self {
@@ -278,6 +295,18 @@ impl Surface {
                     }
                 }
             }
+        }
+    }
+
+    /// Radius of a convex round member; infinite for others.
+    pub fn radius(&self, j: usize, x: &[[f64; 3]]) -> f64 {
+        match (self, self.place(j, x)) {
+            (Self::Rigid(_), Master::Arc(a)) if a.half > 0.0 => a.radius,
+            (Self::Edges(edges), Master::Curve(c)) if edges[j].shape == Shape::Spline => {
+                let height = dot(c.b, unit(outward(c.d)));
+                if height > 0.0 { 0.5 * dot(c.d, c.d) / height } else { f64::INFINITY }
+            }
+            _ => f64::INFINITY,
         }
     }
 

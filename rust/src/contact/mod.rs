@@ -16,7 +16,7 @@ pub mod terms;
 pub mod tie;
 pub mod tree;
 
-pub use curve::Edge;
+pub use curve::{Edge, Shape};
 pub use master::{Rigid, Surface};
 pub use pair::{Contact, Kind, Method};
 pub use slave::Slave;

@@ -4,10 +4,14 @@
 //! ends of both edges, the one with the larger distance decides: outside a convex vertex that
 //! is the face the node has passed, inside a concave one the face it violates most. Distances to
 //! a point, whose curvature is unbounded, never occur.
+//!
+//! A round of the master that is no larger than some facets of the slave would sink between two
+//! nodes and be lifted by each in turn. Its deepest point is therefore measured against the facet
+//! that it faces; the facet's first node carries the constraint.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Vec2, dot, fixed, outward, sub};
-use super::master::Master;
+use super::curve::{Vec2, add, dot, fixed, outward, sub, times, unit};
+use super::master::{Hit, Master};
 use crate::base::Smooth;
 
 /// Part of half an edge by which a node may pass its end before another edge takes over.
@@ -90,6 +94,32 @@ pub fn gap_and_slip<T: Smooth>(
         dot(sub(there.point, fixed(before)), tangent)
     });
     (hit.gap, slip)
+}
+
+/// Gap between the straight facet from `p` to `q` and a round master, at the point of the master
+/// that lies deepest, its place on the facet (0 to 1), and that point.
+pub fn round_gap<T: Smooth>(p: Vec2<T>, q: Vec2<T>, master: &Master<T>) -> (T, T, Hit<T>) {
+    let along = sub(q, p);
+    let n = unit(outward(along));
+    let hit = master.foremost(n);
+    let away = sub(hit.point, p);
+    (dot(away, n), dot(away, along) / dot(along, along), hit)
+}
+
+/// The same with the slip since an old configuration of facet and master.
+pub fn round_gap_and_slip<T: Smooth>(
+    [p, q]: [Vec2<T>; 2],
+    master: &Master<T>,
+    old: Option<([Vec2<f64>; 2], &Master<f64>)>,
+) -> (T, Option<T>) {
+    let (gap, t, hit) = round_gap(p, q, master);
+    let slip = old.map(|([p, q], plain)| {
+        let other = Master::lift(plain);
+        let there = master.carry(&hit, &other);
+        let before = add(fixed(p), times(fixed(sub(q, p)), t));
+        dot(sub(there.point, before), outward(other.normal(&there)))
+    });
+    (gap, slip)
 }
 
 /// Area times a distance less an offset.

@@ -9,6 +9,7 @@ use super::search::{self, Candidate, Search, each};
 use super::slave::Slave;
 use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
 use super::tie;
+use crate::base::Hyper;
 
 /// How the gap is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,9 @@ pub enum Method {
     Mortar,
     NodeToSegment,
 }
+
+/// Radius of a master, in facets of the slave, up to which its deepest point counts.
+const ROUND: f64 = 4.0;
 
 /// What the pair is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +60,11 @@ pub struct Contact {
     /// First candidate of each slave edge (or node).
     first: Vec<usize>,
     ties: Vec<Vec<tie::Point>>,
+    /// Node behind each slave node, -1 for none, if the facet between them may meet a round of
+    /// the master; its length; and the radii of those.
+    next: Vec<i64>,
+    facet: Vec<f64>,
+    radius: Vec<f64>,
     /// Whether nobody has asked for the candidates of a tie.
     fresh: bool,
     /// Master of each node: of the last evaluation, and of the last commit.
@@ -82,7 +91,11 @@ impl Contact {
         let slave = Slave::new(x, slave.0, slave.1, middles);
         let mut depth = match kind {
             Kind::Itself => search::half_thickness(&slave, x),
-            _ => vec![f64::INFINITY; slave.edges.len()],
+            // What lies deeper is behind the body.
+            Kind::FacingFacets => {
+                search::half_thickness(&slave, x).into_iter().map(|h| 2.0 * h).collect()
+            }
+            Kind::Tied => vec![f64::INFINITY; slave.edges.len()],
         };
         if method == Method::NodeToSegment {
             let mut of_nodes = vec![f64::INFINITY; slave.nodes.len()];
@@ -97,6 +110,19 @@ impl Contact {
             *d = d.min(distances.depth);
         }
         let n = slave.nodes.len();
+        let (mut next, mut facet, mut radius) = (vec![-1; n], vec![0.0; n], Vec::new());
+        if kind == Kind::FacingFacets && method == Method::NodeToSegment {
+            radius = (0..master.len()).map(|j| master.radius(j, x)).collect();
+            for (edge, k) in slave.edges.iter().zip(&slave.constraints) {
+                let sides: &[[usize; 2]] =
+                    if edge.n_nodes == 3 { &[[0, 2], [2, 1]] } else { &[[0, 1]] };
+                for &[a, b] in sides {
+                    let ends = [a, b].map(|c| x[edge.nodes[c] as usize]);
+                    next[k[a]] = i64::from(edge.nodes[b]);
+                    facet[k[a]] = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
+                }
+            }
+        }
         let mut pair = Self {
             reference: slave.edges.iter().map(|e| e.place(x)).collect(),
             master,
@@ -108,6 +134,9 @@ impl Contact {
             search: Search::default(),
             first: Vec::new(),
             ties: Vec::new(),
+            next,
+            facet,
+            radius,
             fresh: true,
             held: [vec![None; n], vec![None; n]],
             slave,
@@ -189,9 +218,19 @@ impl Contact {
             Method::Mortar => join(&self.slave.edges[i].variables(), &master),
             Method::NodeToSegment => {
                 let node = 3 * i64::from(self.slave.nodes[i]);
-                join(&[node, node + 1], &master)
+                if self.is_round(i, j) {
+                    let next = 3 * self.next[i];
+                    join(&[node, node + 1, next, next + 1], &master)
+                } else {
+                    join(&[node, node + 1], &master)
+                }
             }
         }
+    }
+
+    /// Whether the facet behind a slave node meets a master as a round.
+    fn is_round(&self, k: usize, j: usize) -> bool {
+        self.next[k] >= 0 && self.radius[j] <= ROUND * self.facet[k]
     }
 
     /// Constraints of a candidate pair.
@@ -216,10 +255,13 @@ impl Contact {
                 let normals = search::nodes(&self.slave, x);
                 let chosen = each(n, |k| self.choose(k, normals[k].1, x));
                 for (held, pair) in self.held[0].iter_mut().zip(&chosen) {
-                    *held = pair.map(|p| self.search.candidates[p].1);
+                    *held = pair.map(|(p, _)| self.search.candidates[p].1);
                 }
-                let pairs: Vec<usize> = chosen.into_iter().flatten().collect();
-                each(pairs.len(), |i| self.node(pairs[i], x, old))
+                let pairs: Vec<(usize, bool)> = chosen.into_iter().flatten().collect();
+                each(pairs.len(), |i| {
+                    let (pair, round) = pairs[i];
+                    if round { self.facet(pair, x, old) } else { self.node(pair, x, old) }
+                })
             }
         }
     }
@@ -288,7 +330,8 @@ impl Contact {
         Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }
     }
 
-    fn choose(&self, k: usize, normal: Vec2<f64>, x: &[[f64; 3]]) -> Option<usize> {
+    /// The pair of a node, and whether it is met by the facet behind the node.
+    fn choose(&self, k: usize, normal: Vec2<f64>, x: &[[f64; 3]]) -> Option<(usize, bool)> {
         let p = x[self.slave.nodes[k] as usize];
         let pairs = self.first[k]..self.first[k + 1];
         let shapes: Vec<(usize, Master<f64>)> = pairs
@@ -299,29 +342,74 @@ impl Contact {
             shapes.iter().find(same).map(|s| s.0)
         });
         let bounds = Bounds { reach: self.distances.reach, depth: self.depth[k] };
-        node::choose([p[0], p[1]], normal, &shapes, last, bounds)
+        let found = node::choose([p[0], p[1]], normal, &shapes, last, bounds);
+        let at = |pair: usize| &shapes.iter().find(|s| s.0 == pair).expect("a candidate").1;
+        let mut best = found.map(|pair| ((pair, false), at(pair).closest([p[0], p[1]]).gap));
+        for (pair, shape) in &shapes {
+            if !self.is_round(k, self.search.candidates[*pair].1) {
+                continue;
+            }
+            let q = x[self.next[k] as usize];
+            let (gap, t, hit) = node::round_gap([p[0], p[1]], [q[0], q[1]], shape);
+            let inside = (0.0..1.0).contains(&t) && hit.r.abs() <= 1.0;
+            let near = gap <= bounds.reach && -gap <= bounds.depth;
+            if inside && near && best.is_none_or(|b| gap <= b.1) {
+                best = Some(((*pair, true), gap));
+            }
+        }
+        best.map(|b| b.0)
+    }
+
+    fn facet(&self, pair: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Terms {
+        let (k, j) = self.search.candidates[pair];
+        let variables = self.variables(pair);
+        let v = lifted::<WIDTH>(&variables, x);
+        let width = self.master.variables(j).len();
+        let master = self.master.shape(j, &v[4..4 + width]);
+        let ends = |x: &[[f64; 3]]| {
+            [i64::from(self.slave.nodes[k]), self.next[k]].map(|n| {
+                let p = x[n as usize];
+                [p[0], p[1]]
+            })
+        };
+        let before = old.map(|o| (ends(o), self.master.place(j, o)));
+        let before = before.as_ref().map(|(ends, m)| (*ends, m));
+        let (gap, slip) = node::round_gap_and_slip([[v[0], v[1]], [v[2], v[3]]], &master, before);
+        self.of_node(pair, k, variables, &gap, slip.as_ref())
+    }
+
+    fn of_node<const D: usize>(
+        &self,
+        pair: usize,
+        k: usize,
+        variables: [i64; WIDTH],
+        gap: &Hyper<D>,
+        slip: Option<&Hyper<D>>,
+    ) -> Terms {
+        let area = self.slave.area[k];
+        let share = Share {
+            constraint: k,
+            gap: (&node::open(*gap, self.offset[k], area)).into(),
+            slip: slip.map_or_else(Function::none, |s| (&node::open(*s, 0.0, area)).into()),
+            area,
+        };
+        Terms { pair, variables, shares: vec![share] }
     }
 
     fn node(&self, pair: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Terms {
         let (k, j) = self.search.candidates[pair];
         let variables = self.variables(pair);
-        let v = lifted::<8>(&variables, x);
+        // A pair that may meet as a round has the facet's other end among its variables.
+        let (v, first) = (lifted::<10>(&variables, x), if self.is_round(k, j) { 4 } else { 2 });
         let width = self.master.variables(j).len();
-        let master = self.master.shape(j, &v[2..2 + width]);
+        let master = self.master.shape(j, &v[first..first + width]);
         let before = old.map(|o| {
             let p = o[self.slave.nodes[k] as usize];
             ([p[0], p[1]], self.master.place(j, o))
         });
         let before = before.as_ref().map(|(p, m)| (*p, m));
         let (gap, slip) = node::gap_and_slip([v[0], v[1]], &master, before);
-        let area = self.slave.area[k];
-        let share = Share {
-            constraint: k,
-            gap: (&node::open(gap, self.offset[k], area)).into(),
-            slip: slip.map_or_else(Function::none, |s| (&node::open(s, 0.0, area)).into()),
-            area,
-        };
-        Terms { pair, variables, shares: vec![share] }
+        self.of_node(pair, k, variables, &gap, slip.as_ref())
     }
 
     fn tied(&self, pair: usize, x: &[[f64; 3]]) -> Terms {

@@ -4,7 +4,7 @@
 use crate::base::pool;
 use crate::contact::pair::Distances;
 use crate::contact::terms::WIDTH;
-use crate::contact::{Contact as Pair, Edge, Method, Rigid, Surface, Terms};
+use crate::contact::{Contact as Pair, Edge, Method, Rigid, Shape, Surface, Terms};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -39,7 +39,8 @@ fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResul
     }
     let edge = |(row, &alpha_b): (&[i64; 3], &f64)| {
         let n_nodes = if row[2] < 0 { 2 } else { 3 };
-        let mut edge = Edge { nodes: [0; 3], n_nodes, alpha_b, length: 0.0 };
+        let shape = Shape::Element;
+        let mut edge = Edge { nodes: [0; 3], shape, n_nodes, alpha_b, length: 0.0 };
         for a in 0..n_nodes {
             edge.nodes[a] = u32::try_from(row[a])
                 .ok()
@@ -54,6 +55,23 @@ fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResul
         Ok(edge)
     };
     nodes.iter().zip(alpha).map(edge).collect()
+}
+
+/// Gives edges their shapes: 0 an element edge, 1 a piece of a spline, 2 and 3 halves of a side.
+fn shape(edges: &mut [Edge], shapes: &[i64]) -> PyResult<()> {
+    if shapes.len() != edges.len() {
+        return Err(bad(format!("master: {} edges, {} shapes", edges.len(), shapes.len())));
+    }
+    for (edge, &shape) in edges.iter_mut().zip(shapes) {
+        edge.shape = match (shape, edge.n_nodes) {
+            (0, _) => Shape::Element,
+            (1, 3) => Shape::Spline,
+            (2, 2) => Shape::FirstHalf,
+            (3, 2) => Shape::SecondHalf,
+            _ => return Err(bad(format!("master: no shape {shape} of {} nodes", edge.n_nodes))),
+        };
+    }
+    Ok(())
 }
 
 fn method(name: &str) -> PyResult<Method> {
@@ -131,7 +149,7 @@ impl Contact {
     #[staticmethod]
     #[pyo3(signature = (
         reference, slave_nodes, slave_bulge, slave_thickness, master_nodes, master_bulge, *,
-        method="mortar", tie=false, reach, margin, depth=f64::INFINITY
+        master_shapes=None, method="mortar", tie=false, reach, margin, depth=f64::INFINITY
     ))]
     #[allow(clippy::too_many_arguments)]
     fn edges(
@@ -141,6 +159,7 @@ impl Contact {
         slave_thickness: Floats<'_>,
         master_nodes: Numbers<'_>,
         master_bulge: Floats<'_>,
+        master_shapes: Option<PyReadonlyArray1<'_, i64>>,
         method: &str,
         tie: bool,
         reach: f64,
@@ -149,7 +168,11 @@ impl Contact {
     ) -> PyResult<Self> {
         let x = rows::<3, f64>(&reference, "reference")?;
         let slave = sides(x, &slave_nodes, &slave_bulge, &slave_thickness)?;
-        let master = Surface::Edges(edges(x, &master_nodes, &master_bulge, "master")?);
+        let mut master = edges(x, &master_nodes, &master_bulge, "master")?;
+        if let Some(shapes) = master_shapes {
+            shape(&mut master, shapes.as_slice()?)?;
+        }
+        let master = Surface::Edges(master);
         let distances = Distances { reach, margin, depth };
         Self::wrap(x, slave, Some(master), self::method(method)?, tie, distances)
     }

@@ -284,6 +284,9 @@ class ContactPair:
         the touching state without strain, or pushed out over the first step.
     adjust : float
         With ``start="adjust"``: gaps up to this at the start [length] are taken as touching too.
+    smooth : bool
+        Take the edges of a master that is no rigid curve as a curve without kinks; corners sharper
+        than 50 degrees stay.
     stabilise : bool
         Damp the two surfaces in static steps until the end of each, so that bodies which
         nothing else holds find each other.
@@ -304,6 +307,7 @@ class ContactPair:
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
     adjust: float = field(default=0.0, kw_only=True)
+    smooth: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -323,6 +327,12 @@ class ContactPair:
                 raise InputError(f"the {what} of a contact pair must be >= 0", self.where)
         if self.clearance is not None and not math.isfinite(self.clearance):
             raise InputError("the clearance of a contact pair must be finite", self.where)
+        if self.smooth and (self.itself or isinstance(self.master, RigidCurve)):
+            raise InputError(
+                "only a master of element edges can be smoothed: a rigid curve is what it is drawn "
+                "as (give it fillets), and a surface that touches itself keeps its edges",
+                self.where,
+            )
         if not self.name:
             self.name = f"{_called(self.slave)}-{_called(self.master)}"
 

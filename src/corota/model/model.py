@@ -322,6 +322,7 @@ class Model(Loading, LineSections, InitialFields):
         adjust: float = 0.0,
         stabilise: bool = False,
         reach: float = 0.0,
+        smooth: bool = False,
         name: str = "",
     ) -> None:
         """Let two edge sets touch, or an edge set and a rigid curve; see ``docs/contact.md``.
@@ -343,6 +344,7 @@ class Model(Loading, LineSections, InitialFields):
                 reach,
                 name,
                 adjust=adjust,
+                smooth=smooth,
             )
         )
 

@@ -8,10 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.contact.smoothing import blunt_turns
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.analysis.terms.contact.pair import Pair
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 #: Slave edges that a round corner should measure along its radius, and the least turn of one.
 EDGES, TURN = 2.0, math.radians(20.0)
@@ -39,4 +45,20 @@ def fillet_note(pair: Pair) -> str:
     )
 
 
-__all__ = ["fillet_note"]
+def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
+    """A remark on round masters whose edges are too coarse, or ''."""
+    if pair.master is None or pair.tied or getattr(pair.item, "smooth", True):
+        return ""
+    turns = blunt_turns(points, pair.master)
+    node, turn = max(turns.items(), key=lambda item: item[1], default=(-1, 0.0))
+    if turn <= TURN:
+        return ""
+    return (
+        f"contact pair {pair.item.name!r}: the master turns by {math.degrees(turn):.0f} degrees "
+        f"from edge to edge at node {labels[node]}; the force will jump as contact passes such "
+        "nodes. Where the boundary is meant to be round, take it as a curve (smooth=True, SMOOTH "
+        "of *CONTACT PAIR) or finer edges"
+    )
+
+
+__all__ = ["corner_note", "fillet_note"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.advice import fillet_note
+from corota.analysis.terms.contact.advice import corner_note, fillet_note
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.analysis.terms.contact.side import check_side
 from corota.errors import ModelError
@@ -132,8 +132,9 @@ class ContactTerm:
                 self._start_tie(pair, x)
                 continue
             check_side(self.system, pair, x)
-            if note := fillet_note(pair):
-                self.notes.append(note)
+            mesh = self.system.model.mesh
+            found = fillet_note(pair), corner_note(pair, mesh.points, mesh.node_labels)
+            self.notes += filter(None, found)
             pair.core.search(x)
             raw = pair.core.evaluate(x, x)
             area = raw["total_area"]

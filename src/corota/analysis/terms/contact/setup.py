@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota import _core
+from corota.analysis.terms.contact.smoothing import smoothed
 from corota.errors import ModelError
 from corota.mesh import EDGES
 from corota.model import elements
@@ -212,8 +213,18 @@ def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surfa
             slave.thickness[:] = joint_thickness(
                 mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
             )
+            nodes, bulge, shapes = master.nodes, master.bulge, None
+            if item.smooth:
+                nodes, bulge, shapes = smoothed(mesh.points, master)
             core = _core.Contact.edges(
-                x, slave.nodes, slave.bulge, slave.thickness, master.nodes, master.bulge, **common
+                x,
+                slave.nodes,
+                slave.bulge,
+                slave.thickness,
+                nodes,
+                bulge,
+                master_shapes=shapes,
+                **common,
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None

@@ -88,6 +88,13 @@ class _Builder:
             self.model.ties.append(Tie(slave, master, pair.adjust, name, pair.row.where))
             return
         assert interaction is not None
+        smooth = pair.smooth
+        if smooth and (itself or isinstance(master, RigidCurve)):
+            self.deck.note(
+                f"{pair.row.where}: SMOOTH is not used: only a master of element edges, other than "
+                "the slave, is smoothed"
+            )
+            smooth = False
         self.model.contacts.append(
             ContactPair(
                 slave,
@@ -101,6 +108,7 @@ class _Builder:
                 name=name,
                 where=pair.row.where,
                 adjust=pair.adjust,
+                smooth=smooth,
             )
         )
 

@@ -62,6 +62,7 @@ class PairDraft:
     adjust: float = 0.0
     clearance: float | None = None
     stabilise: bool = False
+    smooth: bool = False
     name: str = ""
 
     def joins(self, slave: str, master: str) -> bool:
@@ -140,13 +141,14 @@ def _sweep(
 
 
 def contact_pair(deck: Deck, card: Card) -> None:
-    """``*CONTACT PAIR, INTERACTION=, TYPE=[, ADJUST=]``: slave, master."""
+    """``*CONTACT PAIR, INTERACTION=, TYPE=[, ADJUST=][, SMOOTH=]``: slave, master."""
     interaction = deck.required(card, "INTERACTION")
     if not card.has("TYPE"):
         deck.note(f"{card.where}: no TYPE: surface to surface (mortar) is taken")
     method = TYPES.get(deck.choice(card, "TYPE", TYPES, "MORTAR"), "mortar")
     if card.has("SMALLSLIDING"):
         deck.note(f"{card.where}: SMALL SLIDING: sliding is always finite here")
+    smooth = deck.parameter_number(card, "SMOOTH", 0.0, 0.0) > 0.0
     start, adjust = "keep", 0.0
     if card.has("ADJUST"):
         try:
@@ -165,7 +167,7 @@ def contact_pair(deck: Deck, card: Card) -> None:
     for row in _pair_rows(deck, card):
         pair = PairDraft(card, row, row.get(0), row.get(1) or row.get(0))
         pair.interaction, pair.method = interaction, method
-        pair.start, pair.adjust = start, adjust
+        pair.start, pair.adjust, pair.smooth = start, adjust, smooth
         deck.pairs.append(pair)
 
 

@@ -62,7 +62,8 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             yield _profile(model, pair.master, master)
         adjust = f", ADJUST={float(pair.adjust)!r}" if pair.start == "adjust" else ""
         yield f"*CONTACT PAIR, INTERACTION=INTERACTION{number}, TYPE={_TYPES[pair.method]}"
-        yield f"{adjust}\n{slave}, {master}\n"
+        smooth = ", SMOOTH=0.5" if pair.smooth else ""
+        yield f"{adjust}{smooth}\n{slave}, {master}\n"
         if pair.clearance is not None:
             yield f"*CLEARANCE, SLAVE={slave}, MASTER={master}, VALUE={float(pair.clearance)!r}\n"
 
