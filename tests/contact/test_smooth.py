@@ -11,7 +11,7 @@ from corota.analysis.terms.contact.smoothing import smoothed
 from corota.errors import InputError
 from corota.model.loads import Fixed
 
-STEP = 1e-5
+STEP = 2e-6
 
 
 def boundary(points, closed=False):
@@ -65,7 +65,7 @@ def placed(offset=0.0, n=8):
     """A slave of two facets above a round master of n facets to a half circle."""
     master = boundary(arc(n))
     low = arc(n)
-    up = np.array([(0.5, 1.02), (0.05, 1.01), (-0.6, 1.03)]) + np.array([offset, 0.0])
+    up = np.array([(-0.6, 1.03), (0.05, 1.01), (0.5, 1.02)]) + np.array([offset, 0.0])
     slave = boundary(up)
     slave.nodes[:, :2] += len(low)
     return slave, master, np.vstack([low, up])
@@ -94,6 +94,7 @@ def test_derivatives_of_smoothed_masters(method, offset):
 
     dx = rng.standard_normal(x.shape) * [1.0, 1.0, 0.0]
     slope, _ = gradient(x)
+    assert np.abs(slope).max() > 0.1
     _, variables, values = core.hessian(p, q)
     (up, high), (down, low) = gradient(x + STEP * dx), gradient(x - STEP * dx)
     assert slope @ dx.ravel() == pytest.approx((high - low) / (2.0 * STEP), rel=1e-7)
@@ -120,7 +121,8 @@ def test_distance_to_a_round_master_hardly_depends_on_the_place():
             x, core = pair("node_to_segment", slave, master, points, shapes)
             core.search(x)
             raw = core.evaluate(x)
-            gaps.append(float((raw["total_gap"] / raw["total_area"]).min()))
+            seen = raw["total_area"] > 0.0
+            gaps.append(float((raw["total_gap"][seen] / raw["total_area"][seen]).min()))
         spread.append(np.ptp(gaps))
     sagitta = 1.0 - np.cos(np.pi / 24)
     assert spread[0] > 0.5 * sagitta
@@ -150,7 +152,7 @@ def test_the_force_of_a_small_round_slides_without_jumps(element):
 
 
 def test_what_cannot_be_smoothed_is_said():
-    mesh = ct.mesh.rectangle(1.0, 1.0)
+    mesh = ct.mesh.rectangle(1.0, 1.0, 1, 1)
     model = ct.Model(mesh)
     with pytest.raises(InputError, match="rigid curve is what it is drawn"):
         model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), smooth=True)
