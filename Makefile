@@ -18,7 +18,7 @@ export VIRTUAL_ENV := $(abspath $(VENV))
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python lint clippy format bench wheel try-wheel \
+.PHONY: help setup demo test test-rust test-python lint clippy format bench docs wheel try-wheel \
 	meshes lock clean
 
 help: ## Say what the targets do
@@ -66,6 +66,16 @@ format: $(DEPS) ## Format both languages
 	$(BIN)/ruff check --fix --quiet .
 	$(BIN)/ruff format .
 	cargo fmt
+
+DOCS := $(VENV)/.stamp-docs
+
+$(DOCS): $(CORE) requirements-docs.txt
+	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-docs.txt
+	@touch $@
+
+docs: $(DOCS) ## Build the site of the documentation into build/site, warnings as errors
+	@MPLBACKEND=Agg $(BIN)/python -m sphinx -b html -q -W --keep-going docs build/site
+	@echo "build/site/index.html"
 
 bench: $(CORE) ## Install the peers, run all programs side by side (benchmarks/README.md)
 	$(BIN)/python -m benchmarks.side_by_side

@@ -14,3 +14,4 @@ pin() {
 pin requirements.txt pyproject.toml --extra plot
 pin requirements-dev.txt requirements-dev.in --constraint requirements.txt
 pin requirements-mesh.txt requirements-mesh.in
+pin requirements-docs.txt requirements-docs.in --constraint requirements.txt
