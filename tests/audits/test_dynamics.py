@@ -300,6 +300,22 @@ def test_rotor_run_up_by_a_parabolic_table(scheme):
     np.testing.assert_allclose(frames[-1].scalars["ALLWK"], frames[-1].scalars["ALLKE"], rtol=5e-3)
 
 
+def test_moment_on_a_driven_rotor_by_energy_momentum():
+    # The same moment I a, at four increments a radian in the end: its error is of second order.
+    a, end = 7.0, 2.0
+    error = []
+    for n in (100, 200):
+        model, _, _ = wheel(inertia=0.3)
+        t = np.linspace(0.0, end, n + 1)
+        table(model, "up", t, 0.5 * a * t**2)
+        model.fix([0], rotation=1.0, amplitude="up")
+        step = ct.Dynamic(period=end, increments=n, scheme="energy_momentum")
+        frames = ct.solve(model, step, fields=False).frames
+        error.append([f.RF[0, 2] - a for f in (frames[n // 2], frames[n])])
+    assert np.all(np.abs(error[0]) > 3.5 * np.abs(error[1]))
+    assert np.abs(error[1]).max() < 0.05 * a
+
+
 @pytest.mark.parametrize("scheme", IMPLICIT)
 def test_rigid_pendulum_released_from_a_turned_position(scheme):
     # A static step turns the body by 2.5 rad, the motion starts there: I phi'' = moment of the
@@ -1011,6 +1027,36 @@ def test_harmonic_motion_of_a_base_in_two_phases(direct):
         np.testing.assert_allclose(frame.RF[0, 0], reaction.real, atol=1e-5 * abs(reaction))
 
 
+@pytest.mark.parametrize("direct", [False, True])
+def test_harmonic_force_where_a_dead_load_acts(direct):
+    # The amplitude is that of the step, whatever load the state carries at the same place; U holds
+    # the displacement of the state, too. The static step after it goes on under the dead load.
+    k, m, _ = chain_matrices(STIFFNESS, MASSES)
+    steps = [
+        ct.Static(loads=[NodalForce([3], 0, 1.0)]),
+        ct.Frequency(modes=3),
+        ct.SteadyState(
+            lowest=0.3,
+            highest=0.7,
+            points=2,
+            direct=direct,
+            loads=[NodalForce([3], 0, 2.0)],
+            imaginary_loads=[NodalForce([3], 0, 0.5)],
+            rayleigh=(0.1, 0.0),
+        ),
+        ct.Static(),
+    ]
+    frames = ct.solve(chain(STIFFNESS, MASSES), steps).frames
+    rest = np.linalg.solve(k, [0.0, 0.0, 1.0])
+    for frame in frames:
+        if frame.step == 3:
+            w = 2 * math.pi * frame.scalars["frequency"]
+            exact = np.linalg.solve(k + (0.1j * w - w**2) * m, [0.0, 0.0, 2.0 + 0.5j])
+            np.testing.assert_allclose(frame.U[1:, 0], rest + exact.real, rtol=1e-7)
+            np.testing.assert_allclose(frame.V[1:, 0], -w * exact.imag, rtol=1e-6)
+    np.testing.assert_allclose(frames[-1].U[1:, 0], rest, rtol=1e-9)
+
+
 def test_shares_of_damping_by_ranges_of_modes():
     # Modes 1 and 3 have their own shares, mode 2 none: decay of each from its own start, u =
     # shape (cos wd t + z w/wd sin wd t) exp(-z w t), started by a static force K phi.
@@ -1286,6 +1332,14 @@ def test_rigid_link_with_a_sideways_spring_beyond_its_load():
     np.testing.assert_allclose(last.factor, 12.0 * math.cos(last.UR[0]), rtol=1e-6)
     np.testing.assert_allclose(last.factor, 12.0 * 0.7, rtol=1e-6)
     assert last.scalars["stable"] == 0.0
+
+
+def test_linear_buckling_of_a_rigid_link():
+    # k/L, also where nothing at all moves before: pivot held.
+    model = link((0, 12.0, "theta"))
+    model.force([1], y=-1.0)
+    found = ct.solve(model, ct.Buckle(modes=1)).modes[-1]
+    np.testing.assert_allclose(found.factors, [12.0], rtol=1e-8)
 
 
 def test_two_rigid_links_buckle_at_the_golden_section():
@@ -2004,7 +2058,7 @@ def test_equation_with_a_right_hand_side_in_motion():
 # --- sequences of procedures and constraints in modes -------------------------------------------
 
 
-@pytest.mark.parametrize("between", ["frequency"])
+@pytest.mark.parametrize("between", ["frequency", "steady"])
 @pytest.mark.parametrize("scheme", ["newmark", "energy_momentum", "central_difference"])
 def test_linear_procedures_between_do_not_end_a_motion(between, scheme):
     # x = sin(w t)/w v goes on through a frequency or harmonic step: only static steps

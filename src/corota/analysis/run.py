@@ -255,7 +255,7 @@ class Analysis:
         assert state.at is not None
         state.time += state.step_time
         state.step_time = 0.0
-        if reaction is None and step.procedure == "frequency":
+        if reaction is None and step.procedure in ("frequency", "steady state"):
             # Nothing was loaded yet: the loads and supports of the model are the next step's.
             return None
         return system.reaction(state.at)

@@ -216,9 +216,10 @@ def _derivative(
     neighbours is that under the perturbed load.
     """
     largest_move = _moved(system, response, loads)
-    if not np.isfinite(largest_move) or largest_move == 0.0:
+    if not np.isfinite(largest_move):
         raise ConvergenceError("the perturbing load moves nothing")
-    size = DIFFERENCE * system.length / largest_move
+    # Where nothing moves, rigid bodies carry the load: what it does to their stiffness is linear.
+    size = DIFFERENCE * system.length / largest_move if largest_move else 1.0
 
     heating = loads.heating if loads.heating.any() else None
     # Thermal strain is in the internal force of a neighbour already.
@@ -249,6 +250,8 @@ def _derivative(
     if stiffness is not None or own.any():
         at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
         change += _unknowns(system, replace(at, link=system.constraints.link(u)), zero)
+    if largest_move == 0.0 and not change.any():
+        raise ConvergenceError("the perturbing load moves nothing")
     return change
 
 

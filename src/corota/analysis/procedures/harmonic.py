@@ -47,8 +47,9 @@ def steady_state_step(
     """Harmonic response to the step's loads and moves of supports, frequency by frequency.
 
     Each frame is one frequency, which is its step time. Displacement, velocity and acceleration
-    are those of the instant at which loads in phase are largest: ``U`` holds the real part of the
-    complex amplitude and ``-V`` over the circular frequency the imaginary part.
+    are those of the instant at which loads in phase are largest: ``U`` holds the displacement of
+    the state and the real part of the complex amplitude, ``-V`` over the circular frequency the
+    imaginary part.
 
     Raises
     ------
@@ -110,10 +111,11 @@ def _amplitudes(
 
     Amplitudes of loads are tables over the frequency here.
     """
-    conditions = system.conditions
-    conditions.time = 0.0
+    conditions, waves = system.conditions, system.conditions.harmonic
+    assert waves is not None
     behind = Conditions(system)
     behind.ramp = False
+    behind.reset_mass()
     behind.add(step.imaginary_loads, step.imaginary_supports)
     loose = behind.constrained & ~conditions.constrained
     if loose.any():
@@ -124,15 +126,11 @@ def _amplitudes(
         )
     shape = (len(frequencies), system.n_dofs)
     loads, moves = np.zeros(shape, complex), np.zeros(shape, complex)
-    constrained = conditions.constrained
     none = np.zeros(system.n_dofs)
     for k, f in enumerate(frequencies):
-        loads[k] = conditions.external(f, lin.u)[0] - lin.at.internal
-        loads[k] += 1j * behind.external(f, lin.u)[0]
-        moves[k] = np.where(constrained, conditions.prescribed(f, lin.u) - lin.u, 0.0)
-        moves[k] += 1j * behind.prescribed(f, none)
-    # What the supports carry of the state is no load.
-    loads[:, constrained] += lin.at.residual[constrained]
+        for phase, of in ((1.0, waves), (1.0j, behind)):
+            loads[k] += phase * of.external(f, lin.u)[0]
+            moves[k] += phase * of.prescribed(f, none)
     return loads, moves
 
 

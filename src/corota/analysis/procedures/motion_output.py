@@ -51,7 +51,7 @@ class EndForces:
         """Find the forces at the end of an accepted increment, where contact has a force."""
         system, begin, end = self.system, motion.start, motion.end
         inertia = end.inertia + end.damping
-        internal, external = end.internal, end.external
+        internal, external, link = end.internal, end.external, end.link
         if hasattr(motion, "increment"):
             half = 0.5 * motion.dt
             share = half / (half + self._lag)
@@ -59,10 +59,12 @@ class EndForces:
             self._lag = half
             own = system.forces(end.u, step_time)
             internal, external = own.internal, own.external
+            # Forces of the end have their moments about the masters as they lie there.
+            link = system.constraints.link(end.u)
         if contact is not None:
             internal = internal - contact
-        self.at = Evaluation(internal, external, internal, np.empty(0), None, end.link)
-        whole = end.gathered(internal + inertia - external)
+        self.at = Evaluation(internal, external, internal, np.empty(0), None, link)
+        whole = link.gather(internal + inertia - external)
         self.reaction = np.where(system.conditions.constrained, whole, 0.0)
 
 

@@ -52,6 +52,8 @@ if TYPE_CHECKING:
 LINEAR = ("modal dynamic", "steady state")
 #: Procedures that look at a state and leave the loads as they are.
 PERTURBATION = ("frequency", "buckle")
+#: Procedures whose loads are amplitudes of vibrations: apart from those that act on the state.
+HARMONIC = ("steady state",)
 #: Procedures in which loads that are taken away go at once.
 ABRUPT = ("dynamic", *LINEAR)
 #: Times whose external forces are kept: those an increment goes from and to.
@@ -103,6 +105,8 @@ class Conditions:
         self.ramp = True
         self.abrupt = False  # whether loads that are taken away go at once
         self._loaded = False  # whether the model's own loads act yet
+        #: Amplitudes of the harmonic steps so far, apart from the loads of the state.
+        self.harmonic: Conditions | None = None
         self._starting = False
 
     # -- steps -------------------------------------------------------------------------
@@ -126,28 +130,58 @@ class Conditions:
             self.constrained[:] = False
             self.support.amplitude[:] = 0
         self.period, self.time, self.end_time = step.period, time, step.period
-        self.ramp = getattr(step, "ramp", True)
+        harmonic = step.procedure in HARMONIC
+        self.ramp = harmonic or getattr(step, "ramp", True)
         self.abrupt = step.procedure in ABRUPT
         model = self.system.model
         with_model = first or step.new_supports
         for supports in (model.supports if with_model else [], step.supports):
             self._refuse_conflicts(supports)
             self._set_supports(supports)
-        if step.procedure in PERTURBATION:
+        if step.procedure in PERTURBATION or harmonic:
             # What perturbs a state is none of the loads that later steps start from.
             self.end_time = 0.0
+            if harmonic:
+                self._begin_harmonic(step, model.supports if first else [])
         else:
             self._change_loads(step)
         if reaction is not None:
             released = constrained_before & ~self.constrained
             self.fading[released] = reaction[released]
         self._known = {}
-        if step.procedure in LINEAR and self._heats():
+        changing = self.harmonic if harmonic else self
+        if step.procedure in LINEAR and changing is not None and changing._heats():
             raise UnsupportedError(
                 f"temperatures do not change in a {step.procedure} step; heat in a static or "
                 "dynamic step before",
                 step.where,
             )
+
+    def _begin_harmonic(self, step: Step, supports: list[Fixed]) -> None:
+        """Start a harmonic step: its amplitudes, and those of harmonic steps before it.
+
+        They vary about the state, whatever loads the state carries at the same places. Tables
+        are over the frequency.
+
+        Parameters
+        ----------
+        supports : list of Fixed
+            Of the model, if its moves have not been made yet.
+        """
+        waves = self.harmonic
+        if waves is None:
+            waves = self.harmonic = Conditions(self.system)
+            waves.ramp, waves.abrupt = False, True
+        else:
+            waves._carry()
+        waves.reset_mass()
+        waves.support = LoadHistory(self.system.n_dofs)
+        waves.constrained[:] = False
+        waves.period = waves.end_time = step.period
+        waves._set_supports([*supports, *step.supports])
+        waves._loaded = self._loaded
+        waves._change_loads(step)
+        waves._known = {}
 
     def _change_loads(self, step: Step) -> None:
         """Take away what the step does not keep, and set what it names."""
