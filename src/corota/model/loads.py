@@ -67,7 +67,8 @@ class Amplitude:
         """Rate and acceleration of the factor at a time, seen over a window.
 
         Both are of second order in the window: central differences, or one-sided ones where
-        the window would reach beyond `first` or `last`. The second difference of a table is the
+        the window would reach beyond `first` or `last`; these have the error of the central ones
+        where the table is smooth. The second difference of a table is the
         sum of the jumps of its slope, each times a hat function of the window's width: exactly
         zero on straight parts, and a pulse of the right area about a kink.
 
@@ -87,12 +88,15 @@ class Amplitude:
         h, slack = window, 1e-6 * window
         if time - h < first - slack or time + h > last + slack:
             sign = 1.0 if time - h < first - slack else -1.0
-            near, far = (self._geometric_stiffness(time + sign * k * h, h) for k in (1.0, 2.0))
+            near, far = (self._second_difference(time + sign * k * h, h) for k in (1.0, 2.0))
             slope = (self(time + sign * h) - self(time)) / (sign * h)
-            return slope - 0.5 * sign * h * near, 2.0 * near - far
-        return (self(time + h) - self(time - h)) / (2.0 * h), self._geometric_stiffness(time, h)
+            inside = sign * (self.kinks() - time)
+            broken = np.any((inside > slack) & (inside < 3.0 * h - slack))
+            end = 2.0 * near - far
+            return slope - 0.5 * sign * h * (near if broken else end), end
+        return (self(time + h) - self(time - h)) / (2.0 * h), self._second_difference(time, h)
 
-    def _geometric_stiffness(self, time: float, h: float) -> float:
+    def _second_difference(self, time: float, h: float) -> float:
         """Second difference over `h` about a time [1/time^2]."""
         low, high = np.searchsorted(self.time, (time - h, time + h))
         near = np.arange(low, high)

@@ -73,13 +73,13 @@ def modal_step(
         inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, slope_s[i - 1]])
         x = advance @ np.concatenate([x, inputs])
         p, v = x[:m], x[m:]
-        rate, geometric_stiffness = rates[i], bends[i]
+        rate, bend = rates[i], bends[i]
         q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
         a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
         change = model.displacement(q, s[i])
         state.u = lin.u + change
         state.v = model.displacement(q_rate, rate)
-        state.a = model.displacement(a - model.carried @ geometric_stiffness, geometric_stiffness)
+        state.a = model.displacement(a - model.carried @ bend, bend)
         external = system.conditions.external(i * dt, lin.u)[0]
         state.at = linear_evaluation(model, change, state.v, state.a, external)
         state.step_time = i * dt
