@@ -163,6 +163,8 @@ def explicit_step(
     state.counters["stable increment"] = stable  # type: ignore[assignment]
     if state.v is None:
         state.v = initial_velocity(system, state.u)
+    rates = system.conditions.support_rates(0.0, dt)[0]
+    state.v[constrained] = rates[constrained]
     u = state.u.copy()
     at = system.evaluate(u, 0.0)
     moving = ~constrained & (mass > 0.0)
@@ -190,14 +192,15 @@ def explicit_step(
         a = -inverse * new.residual
         account.add_work(du, new.external, new.residual)
         internal += float(0.5 * (at.internal + new.internal) @ du)
-        whole = np.where(constrained, du / dt, v + 0.5 * dt * a)
+        # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
+        given_v, given_a = system.conditions.support_rates(time, dt)
+        whole = np.where(constrained, given_v, v + 0.5 * dt * a)
         # Supports accelerate the mass that moves with them.
         moved = 0.5 * float((mass * whole**2)[constrained].sum())
         account.work += moved - driven
         worked = account.work - begin - work
         driven, work = moved, account.work - begin
-        before = v
-        v = np.where(constrained, du / dt, v + dt * a)
+        v = np.where(constrained, given_v, v + dt * a)
         stiff = float(np.where(moving, new.internal - at.internal, 0.0) @ du)
         inert = float(np.where(moving, mass * du, 0.0) @ du)
         at = new
@@ -213,11 +216,12 @@ def explicit_step(
             )
         if i % keep and i != n and i not in wanted:
             continue
-        state.u, state.v, state.a, state.at = u, whole, a, new
+        state.u, state.v, state.at = u, whole, new
+        state.a = np.where(constrained, given_a, a)
         state.step_time, account.kinetic = time, kinetic
         account.internal += internal - told
         told = internal
-        state.reaction = np.where(constrained, new.residual + mass * (du / dt - before) / dt, 0.0)
+        state.reaction = np.where(constrained, new.residual + mass * given_a, 0.0)
         save(
             state,
             i,
