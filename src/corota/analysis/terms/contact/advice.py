@@ -26,7 +26,7 @@ EDGES, TURN = 2.0, math.radians(20.0)
 def fillet_note(pair: Pair) -> str:
     """A remark on round corners of a rigid curve that are too small for the slave edges, or ''."""
     curve = getattr(pair.item, "master", None)
-    if not isinstance(curve, RigidCurve):
+    if not isinstance(curve, RigidCurve) or getattr(pair.item, "method", "") != "mortar":
         return ""
     rows = curve.segments
     # Clockwise arcs have the rigid body inside: the corners that slave edges go round.
@@ -40,8 +40,9 @@ def fillet_note(pair: Pair) -> str:
     return (
         f"contact pair {pair.item.name!r}: the smallest round corner of the rigid curve has the "
         f"radius {radius:.4g}, {radius / edge:.2g} slave edges (median {edge:.4g}); the force will "
-        f"be jagged while nodes go round it one by one. Take slave edges of at most "
-        f"{radius / EDGES:.3g} where they meet it, or a larger radius"
+        f"be jagged while nodes go round it one by one. Take method='node_to_segment' "
+        f"(TYPE=NODE TO SURFACE), which measures such rounds against edges, slave edges of at "
+        f"most {radius / EDGES:.3g} where they meet it, or a larger radius"
     )
 
 
