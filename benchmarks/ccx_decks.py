@@ -9,6 +9,7 @@ Needs the program ``ccx`` and its test decks (Debian: ``calculix-ccx``,
 from __future__ import annotations
 
 import gzip
+import os
 import shutil
 import subprocess
 import tempfile
@@ -87,6 +88,18 @@ def displacements(frd: Path) -> dict[int, np.ndarray]:
     return found
 
 
+def run_ccx(folder: Path) -> None:
+    """Run ``job.inp`` of a folder on one thread."""
+    subprocess.run(
+        ["ccx", "-i", "job"],
+        cwd=folder,
+        check=False,
+        capture_output=True,
+        timeout=300,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+    )
+
+
 def by_ccx(deck: Path, folder: Path) -> dict[int, np.ndarray]:
     """Displacements of the deck by CalculiX; its output requests get one more."""
     text = deck.read_text(errors="replace")
@@ -100,7 +113,7 @@ def by_ccx(deck: Path, folder: Path) -> dict[int, np.ndarray]:
             out += ["*NODE FILE, OUTPUT=2D", "U"]
         out.append(line)
     (folder / "job.inp").write_text("\n".join(out) + "\n")
-    subprocess.run(["ccx", "-i", "job"], cwd=folder, check=False, capture_output=True, timeout=300)
+    run_ccx(folder)
     frd = folder / "job.frd"
     return displacements(frd) if frd.exists() else {}
 

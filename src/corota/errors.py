@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -91,7 +92,10 @@ class Diagnostic:
     def __str__(self) -> str:
         head = f"{self.where}: " if self.where else ""
         card = f"{self.keyword}: " if self.keyword else ""
-        lines = [f"{head}{self.severity}: {card}{self.message}"]
+        message = self.message
+        if self.where:  # the file is named once
+            message = re.sub(rf"{re.escape(self.where.file)}:(\d+)(:\d+)?", r"line \1", message)
+        lines = [f"{head}{self.severity}: {card}{message}"]
         if self.text:
             lines.append("    " + self.text)
             if self.where and self.where.column:

@@ -52,7 +52,7 @@ CASES = [
         "210000., .3\n*PLASTIC\n200., 0.\n190., 0.\n",
     ),
     (2, 23, "increase", "*CLOAD", "*AMPLITUDE, NAME=a\n0., 0., 0., 1.\n*CLOAD"),
-    (2, 19, "procedure", "*STATIC\n.1, 1.\n", ""),
+    (2, 22, "procedure", "*STATIC\n.1, 1.\n", ""),
     (2, 19, "INC", "*STEP, NLGEOM", "*STEP, NLGEOM, INC=0"),
     (2, 21, "must be > 0", ".1, 1.\n", "-1., 1.\n"),
     (2, 22, "OP", "*CLOAD", "*CLOAD, OP=OLD"),

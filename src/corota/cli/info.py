@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.reading import is_result, read_input
-from corota.model.summary import model_lines
+from corota.model.summary import joint_lines, material_lines, model_lines
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
@@ -60,6 +60,8 @@ def model_record(model: Model) -> dict[str, Any]:
         "node sets": {k: len(v) for k, v in mesh.node_sets.items()},
         "element sets": {k: len(v) for k, v in mesh.cell_sets.items()},
         "edge sets": {k: len(v) for k, v in mesh.edge_sets.items()},
+        "materials": material_lines(model)[1:],
+        "joints": joint_lines(model),
         "steps": len(model.steps),
         "notes": model.notes,
     }

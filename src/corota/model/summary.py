@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from corota.model.constraints import Coupling
+
 if TYPE_CHECKING:
     from corota.model.model import Model
 
@@ -36,6 +38,7 @@ def model_lines(model: Model) -> list[str]:
             f"  {where or 'all'}: {section.element}, plane {section.plane}, {material}, "
             f"thickness {section.thickness:g}"
         )
+    lines += material_lines(model) + joint_lines(model)
     for number, step in enumerate(model.steps, 1):
         geometry = "nonlinear" if step.nlgeom else "linear"
         lines.append(
@@ -45,6 +48,60 @@ def model_lines(model: Model) -> list[str]:
         )
     if not model.steps and (model.supports or model.loads):
         lines.append(f"{len(model.supports)} supports, {len(model.loads)} loads, no step yet")
-    for pair in model.contacts:
-        lines.append(f"contact {pair.name}")
     return lines
+
+
+def material_lines(model: Model) -> list[str]:
+    """Materials with their constants and curves."""
+    lines = []
+    for material in {id(s.material): s.material for s in model.sections}.values():
+        shown = [type(material).__name__]
+        for name in ("E", "nu", "E1", "E2", "nu12", "G12", "rho"):
+            value = getattr(material, name, None)
+            if isinstance(value, (int, float)) and not (name == "rho" and value == 0.0):
+                shown.append(f"{name} {value:g}")
+        curve = getattr(material, "yield_curve", None)
+        if curve is not None:
+            first, last = curve[0], curve[-1]
+            shown.append(
+                f"yield stress {first[0]:g} to {last[0]:g} at plastic strain {last[1]:g} "
+                f"({len(curve)} points)"
+            )
+        elif getattr(material, "yield_stress", None) is not None:
+            shown.append(f"yield stress {material.yield_stress:g}")  # type: ignore[attr-defined]
+        for name in ("kinematic", "chaboche"):
+            value = getattr(material, name, None)
+            if value:
+                shown.append(f"{name} {value if isinstance(value, float) else len(value)}")
+        lines.append(f"  {material.name or 'unnamed'}: {', '.join(shown)}")
+    return ["materials", *lines] if lines else []
+
+
+def joint_lines(model: Model) -> list[str]:
+    """Contact pairs, ties, rigid bodies, couplings, equations."""
+    lines = []
+    for pair in model.contacts:
+        law = pair.law.kind if pair.law is not None else "hard"
+        lines.append(
+            f"contact {_named(pair.slave)} on {_named(pair.master)}: {pair.method}, {law}, "
+            f"friction {pair.friction:g}"
+        )
+    lines += [f"tie {_named(tie.slave)} to {_named(tie.master)}" for tie in model.ties]
+    counts: dict[str, int] = {}
+    for constraint in model.constraints:
+        if isinstance(constraint, Coupling):
+            nodes = constraint.nodes
+            count = len(model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes)
+            label = model.mesh.node_labels[constraint.reference]
+            what = constraint.name or f"{constraint.kind} coupling"
+            lines.append(f"{what}: {count} nodes, reference node {label}")
+        else:
+            name = type(constraint).__name__.lower()
+            counts[name] = counts.get(name, 0) + 1
+    lines += [f"constraints: {count} {name}" for name, count in counts.items()]
+    return lines
+
+
+def _named(where: object) -> str:
+    name = where if isinstance(where, str) else getattr(where, "name", "")
+    return str(name) or "edges"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -28,6 +29,11 @@ if TYPE_CHECKING:
 
 Number = TypeVar("Number", int, float)
 
+#: What follows from elements that were refused.
+FOLLOWS = re.compile(
+    r"no (element set|surface|set|node set) named|element (set )?\S+ |elements? .* not defined|"
+    r"the deck has no elements|surface \S+ (cannot|has no)|either NSET|.* elements of curves only"
+)
 #: Findings kept; the rest is counted only.
 MAX_DIAGNOSTICS = 200
 
@@ -110,6 +116,8 @@ class SectionDraft:
     orientation: str
     mean_dilatation: bool = False
     beta0: float | None = None
+    #: Whether ``*NODAL THICKNESS`` gives the thickness.
+    nodal: bool = False
 
 
 @dataclass(slots=True)
@@ -264,10 +272,14 @@ class Deck:
     heading: list[str] = field(default_factory=list)
     damping: tuple[float, float] = (0.0, 0.0)
     controls: dict[str, float] = field(default_factory=dict)
+    #: Whether the model is built: all cards are read.
+    building: bool = False
     #: Element types that were refused: what names their elements is not told again.
     refused_types: set[str] = field(default_factory=set)
     #: Origin and axes (rows) of ``*SYSTEM``.
     system: tuple[Floats, Floats] | None = None
+    #: Lines of ``*NODAL THICKNESS``.
+    thicknesses: list[Draft] = field(default_factory=list)
     velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
@@ -334,6 +346,8 @@ class Deck:
             text = card.text if card and where and where.line == card.where.line else ""
         if len(text) > 160:
             text = text[:157] + "..." if not where or where.column <= 157 else ""
+        if self.refused_types and self.building and FOLLOWS.match(message):
+            return  # the elements were refused; what names them is not told again
         name = numerals.clipped(card.spelled, 60) if card else ""
         message, hint = numerals.clipped(message), numerals.clipped(hint)
         found = Diagnostic(severity, message, where, name, text, hint)
@@ -442,7 +456,7 @@ class Deck:
                 return
 
 
-def nearest(word: str, words: Iterable[str], cutoff: float = 0.6) -> str:
+def nearest(word: str, words: Iterable[str], cutoff: float = 0.7) -> str:
     """Question that names the nearest word, or an empty text."""
     candidates = {key(w): w for w in words}
     found = difflib.get_close_matches(key(word)[:80], list(candidates), 1, cutoff)

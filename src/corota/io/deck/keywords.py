@@ -96,19 +96,20 @@ KEYWORDS: dict[str, Keyword] = {
     "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
     "SOLIDSECTION": Keyword(
         material.solid_section,
-        "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0",
+        "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0 NODALTHICKNESS",
         "CONTROLS OFFSET REFNODE",
         place="model",
     ),
     "SHELLSECTION": Keyword(
         material.shell_section,
-        "ELSET MATERIAL ORIENTATION LOCALSTRAIN",
+        "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
         "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO",
         place="model",
     ),
+    "NODALTHICKNESS": Keyword(material.nodal_thickness, place="model"),
     "MEMBRANESECTION": Keyword(
         material.shell_section,
-        "ELSET MATERIAL ORIENTATION LOCALSTRAIN",
+        "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
         "CONTROLS POISSON",
         place="model",
     ),
@@ -364,6 +365,18 @@ UNSUPPORTED: dict[str, str] = {
             "CHANGEPLASTIC",
             "VISCOELASTIC",
             "DAMAGEINITIATION",
+            "DAMAGEEVOLUTION",
+            "UMAT",
+            "DRUCKERPRAGER",
+            "CAPPLASTICITY",
+            "CONCRETE",
+            "CONCRETEDAMAGEDPLASTICITY",
+            "HYPOELASTIC",
+            "SWELLING",
+            "POTENTIAL",
+            "NOTENSION",
+            "NOCOMPRESSION",
+            "SUPERELASTIC",
         ),
         _PLASTIC,
     ),
@@ -386,13 +399,27 @@ UNSUPPORTED: dict[str, str] = {
         ),
         _LINE,
     ),
-    "NODALTHICKNESS": "give the thickness by *SOLID SECTION",
     "SUBMODEL": "submodels are not part of this version",
     "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
     "CHANGESOLIDSECTION": "sections cannot change between steps",
     "CHANGEMATERIAL": "materials cannot change between steps",
     "DISTRIBUTION": "values given by element are not part of this version",
     "NORMAL": "planar elements have no normals of their own",
+    "PRE-TENSIONSECTION": "prescribe the force or the displacement of the bolt's end instead",
+    "CONNECTORSECTION": "use *MPC, *EQUATION or *COUPLING",
+    "COHESIVESECTION": "cohesive elements are not part of this version; join the parts by *TIE",
+    "COHESIVEBEHAVIOR": "surfaces that stick and part are not part of this version; use *TIE",
+    "GEOSTATIC": "use *STATIC with *INITIAL CONDITIONS, TYPE=STRESS",
+    "SOILS": "pore pressure is not part of this version; use *STATIC",
+    "FIXEDMASSSCALING": "masses stay as they are: the stable increment is found by itself",
+    "VARIABLEMASSSCALING": "masses stay as they are: the stable increment is found by itself",
+    "IMPERFECTION": "give the imperfect coordinates by *NODE",
+    "FIELD": "fields are not part of this version; give temperatures by *TEMPERATURE",
+    "INERTIARELIEF": "hold the body by *BOUNDARY in three dofs",
+    "BASEMOTION": "prescribe the motion by *BOUNDARY with an amplitude",
+    "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",
+    "FASTENER": "use *MPC or *COUPLING",
+    "RELEASE": "leave the rotations of two nodes apart and join their displacements by *MPC, PIN",
     "VALUESATINFINITY": "it belongs to fluid dynamics",
 }
 
@@ -418,10 +445,8 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("NFILL", "TWOSTEP"): "give BIAS for single intervals",
     ("NGEN", "SYSTEM"): "give the point of the curve in global axes",
     ("NCOPY", "POLE"): "give the center of an arc by *NGEN, LINE=C",
-    ("SOLIDSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
     ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
-    ("SHELLSECTION", "NODALTHICKNESS"): "give the thickness on the data line",
     ("SPRING", "ORIENTATION"): "give the springs global directions",
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
     ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces that touch may part; join them by *TIE",
@@ -491,6 +516,7 @@ def _unknown(deck: Deck, card: Card) -> None:
         deck.note(f"{card.where}: {card.spelled} is ignored: {IGNORED[card.keyword]}")
         return
     if card.keyword in UNSUPPORTED:
+        _answered(deck, card, UNSUPPORTED[card.keyword])
         deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
         return
     hint = nearest(card.keyword, [*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"])
@@ -498,6 +524,14 @@ def _unknown(deck: Deck, card: Card) -> None:
         deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
     else:
         deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
+
+
+def _answered(deck: Deck, card: Card, why: str) -> None:
+    """Mark what a refused card would have given: that it is missing is not told again."""
+    if deck.material is not None and why == _PLASTIC and not deck.material.law:
+        deck.material.law = "REFUSED"
+    if deck.step is not None and why in (_PROCEDURE, _HEAT) and deck.step.procedure is None:
+        deck.step.procedure = card
 
 
 def _pretty(hint: str) -> str:

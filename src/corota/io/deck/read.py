@@ -65,6 +65,7 @@ def read_deck(
         deck.error(None, None, f"{path} has no keyword; a deck starts with one such as *NODE")
     _open_ends(deck)
     model = None
+    deck.building = True
     try:
         model = ModelBuilder(deck, Path(path).stem).build()
     except InputError as error:

@@ -52,6 +52,8 @@ class ModelBuilder:
         self.model = Model(self.meshes.build(), name)
         self.mesh = self.model.mesh
         self.sets = Sets(self.meshes, self.mesh)
+        #: Thickness of nodes, nan where none is given; worked out where it is wanted.
+        self.nodal: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
         #: Part or assembly whose names come first.
         self.at = self.meshes.views[0]
         self.rotating = np.zeros(self.mesh.n_nodes, bool)
@@ -244,8 +246,12 @@ class ModelBuilder:
             element = self._element(self.meshes.types[code])
             groups.setdefault((element, plane), []).append(cells[types == code])
         full = self.sets.full_name(self.sets.elsets, view, draft.elset)
-        for (element, plane), parts in groups.items():
-            mine = np.sort(np.concatenate(parts))
+        pieces: list[tuple[str, str, Ints, float]] = [
+            (element, plane, mine, thickness)
+            for (element, plane), parts in groups.items()
+            for mine, thickness in self._thickness(draft, np.sort(np.concatenate(parts)))
+        ]
+        for element, plane, mine, thickness in pieces:
             if element in DRILLING:
                 for block, row in ((self.mesh.cells[b], r) for b, r in self._rows(mine)):
                     self.rotating[block.nodes[row]] = True
@@ -257,7 +263,7 @@ class ModelBuilder:
                         where,
                         element,
                         material,
-                        draft.thickness,
+                        thickness,
                         cast("Literal['stress', 'strain']", plane),
                         cast("LocalStrain", draft.local_strain),
                         angle,
@@ -268,6 +274,48 @@ class ModelBuilder:
                 )
             except InputError as error:
                 deck.error(card, card.where, error.message)
+
+    def _thickness(self, draft: SectionDraft, cells: Ints) -> list[tuple[Ints, float]]:
+        """Cells of a section by their thickness: that of the section, or the mean of their nodes.
+
+        As in CalculiX and Abaqus, ``*NODAL THICKNESS`` counts where the section says so.
+        """
+        if not draft.nodal:
+            if self.deck.thicknesses:
+                self.deck.note(
+                    f"{draft.card.where}: {draft.card.spelled} has no NODAL THICKNESS: its own "
+                    "thickness is taken, that of *NODAL THICKNESS is not"
+                )
+            return [(cells, draft.thickness)]
+        if self.nodal is None:
+            self.nodal = np.full(self.mesh.n_nodes, np.nan)
+            for item in self.deck.thicknesses:
+                for view in views_in(self.meshes.views, self.deck, item.card.scope):
+                    self.at = view
+                    nodes = self._nodes(item)
+                    if nodes is not None:
+                        at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
+                        self.nodal[at] = item.value[0]
+            self.at = self.meshes.views[0]
+        values = np.where(np.isnan(self.nodal), draft.thickness, self.nodal)
+        if not self.deck.thicknesses:
+            text = "NODAL THICKNESS is given, and no card *NODAL THICKNESS"
+            self.deck.error(draft.card, draft.card.at("NODALTHICKNESS"), text)
+        mean, spread = np.zeros(len(cells)), 0.0
+        offsets = self.mesh.offsets
+        for number, block in enumerate(self.mesh.cells):
+            inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
+            corners = 3 if block.kind.startswith("tri") else 4
+            own = values[block.nodes[cells[inside] - offsets[number], :corners]]
+            mean[inside] = own.mean(axis=1)
+            spread = max(spread, float(np.ptp(own, axis=1).max(initial=0.0)))
+        if spread > 1e-9 * float(mean.max(initial=1.0)):
+            self.deck.note(
+                f"{draft.card.where}: the thickness differs between the nodes of an element by up "
+                f"to {spread:g}; each element has the mean of its corners"
+            )
+        sizes, group = np.unique(np.round(mean, 12), return_inverse=True)
+        return [(cells[group == i], float(size)) for i, size in enumerate(sizes)]
 
     def _element(self, type_: str) -> str:
         mapped = self.deck.element_map.get(type_)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from corota.io.deck.deck import MaterialDraft, SectionDraft
+from corota.io.deck.deck import Draft, MaterialDraft, SectionDraft
 from corota.io.deck.lexer import key
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
@@ -184,7 +184,7 @@ def solid_section(deck: Deck, card: Card) -> None:
             deck.note(f"{rows[0].at(1)}: {card.spelled}: only the thickness is used")
         for row in rows[1:]:
             deck.row_error(card, row, 0, "one data line is expected, the thickness")
-    if not rows or not rows[0].get(0):
+    if (not rows or not rows[0].get(0)) and not card.has("NODALTHICKNESS"):
         deck.note(f"{card.where}: no thickness is given for {elset}; 1 is taken")
     if thickness is not None and thickness <= 0.0:
         deck.row_error(card, rows[0], 0, f"the thickness must be > 0, not {thickness:g}")
@@ -192,14 +192,35 @@ def solid_section(deck: Deck, card: Card) -> None:
     if elset and name and thickness is not None:
         deck.scope.sections.append(
             SectionDraft(
-                card, elset, name, thickness, plane, local, card.value("ORIENTATION"), mean, beta0
+                card,
+                elset,
+                name,
+                thickness,
+                plane,
+                local,
+                card.value("ORIENTATION"),
+                mean,
+                beta0,
+                card.has("NODALTHICKNESS"),
             )
         )
 
 
+def nodal_thickness(deck: Deck, card: Card) -> None:
+    """``*NODAL THICKNESS``: node or set, thickness."""
+    for row in card.rows():
+        value = deck.real(card, row, 1, "the thickness")
+        if value is None:
+            continue
+        if value <= 0.0:
+            deck.row_error(card, row, 1, f"the thickness must be > 0, not {value:g}")
+        elif row.get(0):
+            deck.thicknesses.append(Draft("thickness", card, row, row.get(0), (value,)))
+
+
 def shell_section(deck: Deck, card: Card) -> None:
     """``*SHELL SECTION``, ``*MEMBRANE SECTION``: a planar part; the thickness is required."""
-    if not any(row.get(0) for row in card.rows()):
+    if not any(row.get(0) for row in card.rows()) and not card.has("NODALTHICKNESS"):
         deck.error(card, card.where, "a data line is missing: the thickness")
         return
     deck.note(f"{card.where}: {card.spelled} is read as a plane-stress section")

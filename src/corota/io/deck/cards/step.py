@@ -435,7 +435,7 @@ def dload(deck: Deck, card: Card) -> None:
                 row,
                 1,
                 f"unknown load type {row.get(1)!r}; expected P1 to P4, GRAV or CENTRIF",
-                nearest(label, ("P1", "P2", "P3", "P4", "GRAV", "CENTRIF")) if label else "",
+                nearest(label, ("GRAV", "CENTRIF")) if label else "",
             )
 
 

@@ -1,0 +1,161 @@
+"""One cause has one message, which names the file once and says what to do; nodal thickness."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from decks import DECK, faults, read
+
+import corota as ct
+from corota.check import check
+from corota.cli.info import model_lines, model_record
+from corota.io.deck.elements import why_unsupported
+from corota.io.deck.keywords import REFUSED_PARAMETERS, UNSUPPORTED
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.mark.parametrize("name", ["CPE4T", "C3D8R", "CAX4", "QUAD4", "COH2D4", "CPS4E", "DC2D4"])
+def test_refused_elements_are_told_once(tmp_path: Path, name: str) -> None:
+    extra = "*SURFACE, NAME=top\neall, S3\n*ELSET, ELSET=some\n1, 2\n*STEP"
+    text = (
+        DECK.replace("CPS4", name)
+        .replace("*STEP", extra, 1)
+        .replace(
+            "*CLOAD", "*DSLOAD\ntop, P, 1.\n*DLOAD\n1, P1, 2.\n*EL PRINT, ELSET=eall\nS\n*CLOAD"
+        )
+    )
+    found = faults(tmp_path, text)
+    assert [d.where.line for d in found if d.where] == [8], list(map(str, found))
+    assert name in found[0].message
+
+
+def test_refused_laws_and_procedures_are_told_once(tmp_path: Path) -> None:
+    for old, new in (
+        ("*ELASTIC\n210000., .3", "*HYPERELASTIC, NEO HOOKE\n1., 2."),
+        ("*STATIC\n.1, 1.", "*VISCO, CETOL=1.\n.1, 1."),
+        ("*STATIC\n.1, 1.", "*HEAT TRANSFER\n.1, 1."),
+    ):
+        found = faults(tmp_path, DECK.replace(old, new))
+        assert len(found) == 1, list(map(str, found))
+        assert "not supported" in found[0].message
+        assert found[0].hint
+
+
+def test_a_message_names_the_file_once(tmp_path: Path) -> None:
+    for old, new in (
+        ("*STATIC\n.1, 1.\n", ""),
+        ("*STATIC", "*MATERIAL, NAME=steel\n*ELASTIC\n1., 0.\n*STATIC"),
+        ("2, 2, 3, 6, 5", "2, 2, 3, 6, 5\n2, 2, 3, 6, 5"),
+        ("6, 2., 1.", "6, 2., 1.\n6, 3., 1."),
+        ("*BOUNDARY", "*SURFACE, NAME=a\neall, S1\n*SURFACE, NAME=a\neall, S2\n*BOUNDARY"),
+    ):
+        for finding in faults(tmp_path, DECK.replace(old, new)):
+            assert str(finding).count("deck.inp") == 1, str(finding)
+
+
+def test_every_refusal_says_what_to_do() -> None:
+    assert all(len(text) > 15 for text in UNSUPPORTED.values())
+    assert all(len(text) > 10 for text in REFUSED_PARAMETERS.values())
+    for name in ("CAX8R", "CPE4T", "CPE8RP", "CPEG4", "CONN2D2", "U1", "R3D4", "SAX1", "GAPUNI"):
+        assert why_unsupported(name), name
+    for name in ("CPS4", "QUAD", "UX", "CPS", "S"):
+        assert not why_unsupported(name), name
+
+
+def test_hints_do_not_change_the_answer(tmp_path: Path) -> None:
+    found = faults(tmp_path, DECK.replace("*CLOAD\n3, 2, -5.", "*DLOAD\n1, HP2, 2."))
+    assert all("did you mean" not in d.hint for d in found)
+    found = faults(tmp_path, DECK.replace("CPS4", "CPE4Q"))
+    assert "CPS" not in found[0].hint.replace("known: CPS and CPE", "")
+
+
+def test_nodal_thickness_replaces_that_of_the_section(tmp_path: Path) -> None:
+    given = "*NODAL THICKNESS\nnall, 4.\n*BOUNDARY"
+    text = DECK.replace("*BOUNDARY", given, 1)
+    plain = read(tmp_path, text)
+    assert [s.thickness for s in plain.sections] == [2.0]
+    assert any("has no NODAL THICKNESS" in note for note in plain.notes)
+    text = text.replace("MATERIAL=steel", "MATERIAL=steel, NODAL THICKNESS")
+    assert [s.thickness for s in read(tmp_path, text).sections] == [4.0]
+    bare = text.replace("NODAL THICKNESS\n2.", "NODAL THICKNESS")
+    model = read(tmp_path, bare)
+    assert [s.thickness for s in model.sections] == [4.0]
+    thick = DECK.replace("MATERIAL=steel\n2.", "MATERIAL=steel\n4.")
+    expected = ct.solve(read(tmp_path, thick)).frames[-1].U
+    assert ct.solve(model).frames[-1].U == pytest.approx(expected, rel=1e-12)  # noqa: SIM300
+    # One element each: 2 where nothing is said, the mean of its corners elsewhere.
+    some = read(tmp_path, text.replace("nall, 4.", "3, 4.\n6, 4."))
+    sizes = {
+        float(s.thickness): np.asarray(some.mesh.cell_labels[s.cells]).tolist()
+        for s in some.sections
+    }
+    assert sizes == {2.0: [1], 3.0: [2]}
+    assert any("mean of its corners" in note for note in some.notes)
+    assert any(
+        "must be > 0" in d.message for d in faults(tmp_path, text.replace("nall, 4.", "3, 0."))
+    )
+
+
+PAIR = """*NODE
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+11, 0., 1.
+12, 1., 1.
+13, 1., 2.
+14, 0., 2.
+20, 0.5, 3.
+*ELEMENT, TYPE=CPS4, ELSET=eall
+1, 1, 2, 3, 4
+2, 11, 12, 13, 14
+*NSET, NSET=rim
+13, 14
+*MATERIAL, NAME=steel
+*ELASTIC
+210000., .3
+*PLASTIC
+100., 0.
+200., .1
+*SOLID SECTION, ELSET=eall, MATERIAL=steel
+1.
+*SURFACE, NAME=low
+1, S3
+*SURFACE, NAME=high
+2, S1
+*SURFACE INTERACTION, NAME=i
+*FRICTION
+.25
+*CONTACT PAIR, INTERACTION=i, TYPE=SURFACE TO SURFACE
+high, low
+*RIGID BODY, NSET=rim, REF NODE=20
+*BOUNDARY
+1, 1, 2
+2, 2
+20, 1
+20, 6
+*STEP
+*STATIC
+*CLOAD
+20, 2, -1.
+*END STEP
+"""
+
+
+def test_check_lists_what_joins_bodies(tmp_path: Path) -> None:
+    model = read(tmp_path, PAIR)
+    text = "\n".join(model_lines(model))
+    for part in (
+        "contact high on low: mortar, hard, friction 0.25",
+        "rigid body: 2 nodes, reference node 20",
+        "steel: Mises, E 210000, nu 0.3, yield stress 100 to 200 at plastic strain 0.1 (2 points)",
+    ):
+        assert part in text
+        assert part in "\n".join(model_record(model)["materials"] + model_record(model)["joints"])
+    idle = [d.message for d in check(model) if "nothing uses" in d.message]
+    assert not any(name in text for text in idle for name in ("low", "high", "rim"))
