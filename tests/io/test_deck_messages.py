@@ -159,3 +159,20 @@ def test_check_lists_what_joins_bodies(tmp_path: Path) -> None:
         assert part in "\n".join(model_record(model)["materials"] + model_record(model)["joints"])
     idle = [d.message for d in check(model) if "nothing uses" in d.message]
     assert not any(name in text for text in idle for name in ("low", "high", "rim"))
+
+
+def test_temperatures_that_nothing_feels_are_left_out(tmp_path: Path) -> None:
+    text = DECK.replace("*CLOAD", "*TEMPERATURE\nnall, 60.\n*CLOAD")
+    model = read(tmp_path, text)
+    assert any("temperatures have no effect" in note for note in model.notes)
+    assert len(ct.solve(model).frames) > 1
+    warm = text.replace("*SOLID", "*EXPANSION\n1e-5\n*SOLID")
+    assert len(read(tmp_path, warm).steps[0].loads) == 2
+
+
+def test_lost_elements_of_a_set_are_told_once(tmp_path: Path) -> None:
+    text = DECK.replace("*MATERIAL", "*ELSET, ELSET=some\n1, 7\n8, 9\n10\n*MATERIAL", 1)
+    found = faults(tmp_path, text)
+    assert [d.message for d in found] == [
+        "element 7 and 3 others in set some: not defined in the deck"
+    ]

@@ -66,6 +66,7 @@ class ModelBuilder:
         for name, curve in self.deck.curves.items():
             self.deck.amplitudes[name] = curve.sampled(until)
         settle_temperature(self.deck, self._temperature())
+        self._drop_temperatures()
         self._sections()
         model, deck = self.model, self.deck
         for tie in deck.ties:
@@ -420,6 +421,21 @@ class ModelBuilder:
             f"{draft.target}: its elements have no rotation (dof 6)",
             "use elements Q4D or OPT, or map them: --element CPS4=Q4D",
         )
+
+    def _drop_temperatures(self) -> None:
+        """Leave out temperatures where no material expands: they act on nothing."""
+        deck = self.deck
+        if any(m.expansion != 0.0 for m in deck.materials.values()):
+            return
+        given = [d for step in deck.steps for d in step.loads if d.kind == "temperature"]
+        if given:
+            deck.note(
+                f"{given[0].row.where}: temperatures have no effect: no material has *EXPANSION"
+            )
+        for step in deck.steps:
+            step.loads = [d for d in step.loads if d.kind != "temperature"]
+            step.new_loads.discard("temperature")
+        deck.initial = [i for i in deck.initial if i.draft.kind != "initial temperature"]
 
     def _temperature(self) -> float | None:
         """Temperature of the whole model in all steps; ``None`` where there are several."""

@@ -189,6 +189,7 @@ class Sets:
 
     def _resolve_elements(self, view: View, named: NamedSet) -> Elements:
         cells, lines = [_NONE], [_NONE]
+        lost: list[tuple[Ints, Location]] = []
         for entry in named.entries:
             if entry.name and not entry.name.startswith("@"):
                 found = self.elements(view, entry.name, entry.where, None)
@@ -200,9 +201,13 @@ class Sets:
             place = at[0] if at else view
             rows, curves = place.cells(entry.labels), place.lines(entry.labels)
             known = np.where(rows >= 0, rows, curves)
-            self._undefined(known, entry.labels, entry.where, "element", named.name)
+            if (known < 0).any():
+                lost.append((entry.labels[known < 0], entry.where))
             cells.append(rows[rows >= 0])
             lines.append(curves[curves >= 0])
+        if lost:
+            bad = np.concatenate([labels for labels, _ in lost])
+            self._say_undefined(bad, lost[0][1], "element", named.name, False)
         whole = self._with_halves(_unique(np.concatenate(cells)))
         return Elements(whole, _unique(np.concatenate(lines)))
 
