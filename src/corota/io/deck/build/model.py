@@ -531,8 +531,8 @@ class ModelBuilder:
             edges = self.sets.faces(
                 found.cells, draft.index, draft.card, draft.row.at(1), draft.row.text
             )
-            if edges is None:
-                return None
+            if edges is None or not len(edges):
+                return None  # the side of a quadrilateral that is one node
             return EdgeLoad(edges, "pressure", draft.value, amplitude, where=where)
         full = self.sets.full_name(self.sets.elsets, root, draft.target)
         name = self.sets.spelled(self.sets.elsets, full) if full else ""
