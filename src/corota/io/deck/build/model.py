@@ -434,7 +434,6 @@ class ModelBuilder:
             )
         for step in deck.steps:
             step.loads = [d for d in step.loads if d.kind != "temperature"]
-            step.new_loads.discard("temperature")
         deck.initial = [i for i in deck.initial if i.draft.kind != "initial temperature"]
 
     def _temperature(self) -> float | None:
