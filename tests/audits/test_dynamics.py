@@ -1336,7 +1336,7 @@ def test_rigid_link_with_a_sideways_spring_beyond_its_load():
 
 def test_linear_buckling_of_a_rigid_link():
     # k/L, also where nothing at all moves before: pivot held.
-    model = link((0, 12.0, "theta"))
+    model = link((0, 12.0, "rotation"))
     model.force([1], y=-1.0)
     found = ct.solve(model, ct.Buckle(modes=1)).modes[-1]
     np.testing.assert_allclose(found.factors, [12.0], rtol=1e-8)
