@@ -45,7 +45,7 @@ TERMS = {
 }
 #: Share of the largest energy from which a balance error is worth a warning.
 LARGE_ERROR = 0.02
-#: Energies below this share of the product of force and length are rounding.
+#: Share of an energy that rounding leaves.
 NEGLIGIBLE_ENERGY = 1e-12
 
 
@@ -63,7 +63,7 @@ class Energies:
     kinetic : float
         Kinetic energy of the committed state [force*length].
     error : float
-        Largest balance error so far over the largest energy so far.
+        Largest balance error so far over the largest energy so far, signed.
     """
 
     def __init__(self, system: System) -> None:
@@ -72,7 +72,7 @@ class Energies:
         self.error, self.where = 0.0, (1, 0)
         self.scheme = "static"
         self._reference: float | None = None
-        self._largest = 0.0
+        self._largest = self._worst = 0.0
         # Forces that do work, at the committed state: loads, and reactions of held dofs.
         self._driving: Floats | None = None
 
@@ -157,20 +157,20 @@ class Energies:
             self._reference = own["ETOTAL"]
         missing = own["ETOTAL"] - self._reference
         self._largest = max(self._largest, *(abs(v) for k, v in own.items() if k != "ETOTAL"))
-        error = missing / self._largest if self._largest > self._negligible() else 0.0
-        if abs(error) > abs(self.error):
-            self.error, self.where = error, where
+        known = self._largest > self._negligible()
+        if abs(missing) > abs(self._worst):
+            self._worst, self.where = missing, where
+        self.error = self._worst / self._largest if known else 0.0
         scalars.update({name: own[name] for name in TERMS if name in own})
         scalars["energy balance"] = missing
-        scalars["energy balance error"] = error
+        scalars["energy balance error"] = missing / self._largest if known else 0.0
 
     def _negligible(self) -> float:
-        """Energy that is rounding: of coordinates, or of strains that free expansion cancels."""
-        system = self.system
-        free = system.free
-        expansion = free.largest(free.start - free.now) * system.length if free.expands else 0.0
-        size = max(system.scales.nothing * system.length, system.scales.stiffest * expansion**2)
-        return NEGLIGIBLE_ENERGY * size
+        """Energy that is rounding: of forces, or of strains that free expansion cancels."""
+        free, scales, length = self.system.free, self.system.scales, self.system.length
+        expansion = free.largest(free.start - free.now) * length if free.expands else 0.0
+        rounding = scales.nothing * max(scales.moved, NEGLIGIBLE_ENERGY * length)
+        return max(rounding, NEGLIGIBLE_ENERGY * scales.stiffest * expansion**2)
 
     @property
     def made_by_contact(self) -> bool:

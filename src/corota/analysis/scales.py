@@ -49,13 +49,15 @@ class Scales:
         Largest stiffness of a displacement at the start; elements alone [force/length].
     ratio : float
         Of the largest and the smallest of these.
+    moved : float
+        Largest displacement of the state judged last [length].
     tolerance : float
         Of the current step.
     """
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.stiffest, self.ratio = 0.0, 1.0
+        self.stiffest, self.ratio, self.moved = 0.0, 1.0, 0.0
         self.tolerance = 1e-9
         #: Of the state judged last: inertia per displacement [force/length], all that acts, the
         #: largest rounding and the rounding of the stiffest dof [force].
@@ -117,6 +119,7 @@ class Scales:
         self.whole = whole = max(force, moment / length, at.momentum)
         # Rotations round like the displacements they give an element.
         moved = max(displacement[0], system.cell_size * displacement[1])
+        self.moved = float(displacement[0])
         self._noise = EPS * (self.stiffest + at.heft) * moved
         loaded = bool(at.external.any())
         if whole <= self.nothing and not loaded:
