@@ -131,7 +131,10 @@ def test_controls_set_tolerance_and_iterations(tmp_path: Path) -> None:
         ("*STEP\n*STATIC, RIKS\n1.,,,,,{tip}\n*END STEP\n", "degree of freedom"),
         ("*STEP\n*STATIC, RIKS\n1.,,,,,{tip},4,1.\n*END STEP\n", "1, 2 or 6"),
         ("*CONTROLS, PARAMETERS=SPEED\n*STEP\n*STATIC\n*END STEP\n", "must be one of"),
-        ("*STEP, PERTURBATION\n*STATIC\n*END STEP\n", "PERTURBATION belongs to"),
+        (
+            "*STEP\n*STATIC\n*END STEP\n*STEP, PERTURBATION\n*STATIC\n*END STEP\n",
+            "PERTURBATION",
+        ),
     ],
 )
 def test_bad_lines_are_named(tmp_path: Path, step: str, message: str) -> None:
