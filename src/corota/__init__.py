@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from corota.io.formats import read, write
     from corota.io.job import JobFiles
     from corota.io.result_reader import read_results
+    from corota.io.resume import resume
     from corota.mesh import Cells, Mesh
     from corota.model.attachments import Dashpot, PointMass
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
@@ -134,6 +135,7 @@ _HOMES = {
     "plots": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
+    "resume": "io.resume",
     "solve": "analysis.run",
     "write": "io.formats",
 }
@@ -206,6 +208,7 @@ __all__ = [
     "plots",
     "read",
     "read_results",
+    "resume",
     "solve",
     "write",
 ]

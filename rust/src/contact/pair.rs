@@ -278,6 +278,68 @@ impl Contact {
         now.clone_from(kept);
     }
 
+    /// What later evaluations depend on besides the offsets: places of the search, and whole
+    /// numbers (see [`Contact::resume`]).
+    pub fn state(&self) -> (Vec<f64>, Vec<i64>) {
+        let index = |n: &Option<usize>| n.map_or(-1, |n| n as i64);
+        let mut whole = vec![i64::from(self.fresh)];
+        for held in &self.held {
+            whole.extend(held.iter().map(index));
+        }
+        if self.kind != Kind::Tied {
+            whole.extend(self.search.candidates.iter().flat_map(|&(i, j)| [i as i64, j as i64]));
+        }
+        (if self.kind == Kind::Tied { Vec::new() } else { self.search.places() }, whole)
+    }
+
+    /// Take the state of the same pair: `places` of the search; `whole` has a flag of ties, the
+    /// masters of the nodes, those of the last commit, and the candidates. `false` if it does not
+    /// fit.
+    pub fn resume(&mut self, places: &[f64], whole: &[i64]) -> bool {
+        let n = self.slave.nodes.len();
+        if whole.len() < 1 + 2 * n {
+            return false;
+        }
+        let (head, candidates) = whole.split_at(1 + 2 * n);
+        let slaves = match self.method {
+            Method::Mortar => self.slave.edges.len(),
+            Method::NodeToSegment => n,
+        };
+        let masters = self.master.len();
+        let fits = |m: &i64| *m >= -1 && *m < masters as i64;
+        if !head[1..].iter().all(fits) {
+            return false;
+        }
+        if self.kind == Kind::Tied {
+            if !candidates.is_empty() || !places.is_empty() {
+                return false;
+            }
+        } else {
+            let (pairs, rest) = candidates.as_chunks::<2>();
+            let inside = |p: &[i64; 2]| {
+                (0..slaves as i64).contains(&p[0]) && (0..masters as i64).contains(&p[1])
+            };
+            let sorted = pairs.is_sorted();
+            let found =
+                places.len() == 6 * (slaves + masters) || (places.is_empty() && pairs.is_empty());
+            if !rest.is_empty() || !found || !sorted || !pairs.iter().all(inside) {
+                return false;
+            }
+            let list: Vec<Candidate> =
+                pairs.iter().map(|p| (p[0] as usize, p[1] as usize)).collect();
+            let count = if places.is_empty() { 0 } else { slaves };
+            self.first = (0..=count).map(|i| list.partition_point(|c| c.0 < i)).collect();
+            if !self.search.restore(count, places, list) {
+                return false;
+            }
+        }
+        self.fresh = head[0] != 0;
+        let master = |m: &i64| usize::try_from(*m).ok();
+        self.held =
+            [head[1..=n].iter().map(master).collect(), head[1 + n..].iter().map(master).collect()];
+        true
+    }
+
     fn edge(&self, i: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
         let mut overlaps = self.overlaps(i, x);
         mortar::clip_occluded(&mut overlaps);

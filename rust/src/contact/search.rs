@@ -71,6 +71,30 @@ impl Search {
     }
 }
 
+/// Numbers of an item: its box and its normal.
+const ITEM: usize = 6;
+
+impl Search {
+    /// The places that the candidates were found for, one after the other.
+    pub fn places(&self) -> Vec<f64> {
+        let flat = |(b, n): &Item| [b[0], b[1], b[2], b[3], n[0], n[1]];
+        self.slave.iter().chain(&self.master).flat_map(flat).collect()
+    }
+
+    /// Take candidates and their places; `slaves` of these belong to the slave side.
+    pub fn restore(&mut self, slaves: usize, places: &[f64], candidates: Vec<Candidate>) -> bool {
+        let (items, rest) = places.as_chunks::<ITEM>();
+        if !rest.is_empty() || slaves > items.len() {
+            return false;
+        }
+        let item = |i: &[f64; ITEM]| -> Item { ([i[0], i[1], i[2], i[3]], [i[4], i[5]]) };
+        self.slave = items[..slaves].iter().map(item).collect();
+        self.master = items[slaves..].iter().map(item).collect();
+        self.candidates = candidates;
+        true
+    }
+}
+
 /// Whether no side of a box has moved farther than `near` and no normal turned far.
 fn still(old: &[Item], new: &[Item], near: f64) -> bool {
     old.iter().zip(new).all(|(a, b)| {

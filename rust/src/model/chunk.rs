@@ -107,8 +107,12 @@ pub trait Chunk: Send + Sync {
     fn elements(&self) -> &[u32];
     /// Nodes of all elements.
     fn nodes(&self) -> Vec<u32>;
-    /// Committed history, for tests and restart.
+    /// Committed history, for tests.
     fn history(&self) -> (&[f64], &[f64]);
+    /// Committed history, internal modes, carried velocities and initial strains.
+    fn state(&self) -> [&[f64]; 4];
+    /// Take such a state; `false` if it does not fit.
+    fn restore(&mut self, state: [&[f64]; 4]) -> bool;
 }
 
 pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
@@ -483,5 +487,30 @@ where
     }
     fn history(&self) -> (&[f64], &[f64]) {
         (&self.old, &self.alpha_old)
+    }
+    fn state(&self) -> [&[f64]; 4] {
+        [&self.old, &self.alpha_old, &self.rates_old, &self.initial]
+    }
+    fn restore(&mut self, [old, alpha, rates, initial]: [&[f64]; 4]) -> bool {
+        let most = 4 * self.shared.section.points.len() * self.stride;
+        let fits = old.len() == self.old.len()
+            && alpha.len() == self.alpha_old.len()
+            && rates.len() == self.rates_old.len()
+            && (initial.is_empty() || initial.len() == most);
+        if !fits {
+            return false;
+        }
+        for kept in [&mut self.old, &mut self.new] {
+            kept.copy_from_slice(old);
+        }
+        for kept in [&mut self.alpha_old, &mut self.alpha] {
+            kept.copy_from_slice(alpha);
+        }
+        for kept in [&mut self.rates_old, &mut self.rates] {
+            kept.copy_from_slice(rates);
+        }
+        self.initial = initial.to_vec();
+        self.evaluated = false;
+        true
     }
 }

@@ -318,6 +318,39 @@ impl Problem {
         }
     }
 
+    /// Committed states of all chunks, one after the other, and the lengths of their parts.
+    pub fn state(&self) -> (Vec<f64>, Vec<u64>) {
+        let (mut values, mut lengths) = (Vec::new(), Vec::new());
+        for chunk in self.colours.iter().flatten() {
+            for part in chunk.state() {
+                values.extend_from_slice(part);
+                lengths.push(part.len() as u64);
+            }
+        }
+        (values, lengths)
+    }
+
+    /// Take the states that [`Problem::state`] gave of the same model.
+    pub fn restore(&mut self, values: &[f64], lengths: &[u64]) -> Result<(), String> {
+        let wrong = || "the state does not fit the problem".to_string();
+        let chunks: Vec<_> = self.colours.iter_mut().flatten().collect();
+        if lengths.len() != 4 * chunks.len() {
+            return Err(wrong());
+        }
+        let mut rest = values;
+        for (chunk, own) in chunks.into_iter().zip(lengths.as_chunks::<4>().0) {
+            let mut parts: [&[f64]; 4] = [&[]; 4];
+            for (part, &length) in parts.iter_mut().zip(own) {
+                let length = usize::try_from(length).map_err(|_| wrong())?;
+                (*part, rest) = rest.split_at_checked(length).ok_or_else(wrong)?;
+            }
+            if !chunk.restore(parts) {
+                return Err(wrong());
+            }
+        }
+        if rest.is_empty() { Ok(()) } else { Err(wrong()) }
+    }
+
     /// Largest growth of the equivalent plastic strain since the last commit.
     pub fn plastic_increment(&self) -> f64 {
         let chunks = self.colours.iter().flatten();

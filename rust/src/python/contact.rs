@@ -354,6 +354,34 @@ impl Contact {
         self.pair.commit();
     }
 
+    /// What later evaluations depend on: places of the search, whole numbers, offsets.
+    fn state<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>) {
+        let (places, whole) = self.pair.state();
+        (
+            places.into_pyarray(py),
+            whole.into_pyarray(py),
+            PyArray1::from_slice(py, &self.pair.offset),
+        )
+    }
+
+    /// Take what ``state`` gave of the same pair.
+    fn restore_state(
+        &mut self,
+        places: Floats<'_>,
+        whole: PyReadonlyArray1<'_, i64>,
+        offset: Floats<'_>,
+    ) -> PyResult<()> {
+        self.set_offset(offset)?;
+        if self.pair.resume(places.as_slice()?, whole.as_slice()?) {
+            Ok(())
+        } else {
+            Err(bad("the state does not fit the pair"))
+        }
+    }
+
     /// Return to the masters remembered.
     fn restore(&mut self) {
         self.pair.restore();

@@ -267,6 +267,24 @@ impl PyProblem {
         self.inner.give(block, values.as_slice()?).map_err(value_error)
     }
 
+    /// Committed states of all elements, flat, and the lengths of their parts.
+    fn state<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u64>>) {
+        let (values, lengths) = py.detach(|| self.inner.state());
+        (values.into_pyarray(py), lengths.into_pyarray(py))
+    }
+
+    /// Take the states that ``state`` gave of the same model.
+    fn restore_state(
+        &mut self,
+        values: PyReadonlyArray1<'_, f64>,
+        lengths: PyReadonlyArray1<'_, u64>,
+    ) -> PyResult<()> {
+        self.inner.restore(values.as_slice()?, lengths.as_slice()?).map_err(value_error)
+    }
+
     /// Largest growth of the equivalent plastic strain of the last evaluation.
     fn plastic_increment(&self) -> f64 {
         self.inner.plastic_increment()

@@ -3,11 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from corota.analysis.checkpoint import Checkpoint
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.observer import Iteration, Observer
@@ -28,6 +29,23 @@ class Observers:
     def stop_requested(self) -> bool:
         """Whether any observer asks to stop."""
         return any(getattr(o, "stop", False) for o in self.each)
+
+    @property
+    def takes_checkpoints(self) -> bool:
+        """Whether any observer keeps checkpoints."""
+        return any(hasattr(o, "checkpoint") for o in self.each)
+
+    @property
+    def checkpoint_due(self) -> bool:
+        """Whether a checkpoint is wanted after the current increment."""
+        takers: list[Any] = [o for o in self.each if hasattr(o, "checkpoint")]
+        return any(o.checkpoint_due for o in takers) or (bool(takers) and self.stop_requested)
+
+    def checkpoint(self, checkpoint: Checkpoint, keep: str = "") -> None:
+        """Hand a checkpoint to those who keep them; `keep` is the ending of a lasting file."""
+        for o in self.each:
+            if hasattr(o, "checkpoint"):
+                o.checkpoint(checkpoint, keep)
 
     def start(self, model: Model, steps: list[Step]) -> None:
         """Begin an analysis."""

@@ -7,10 +7,12 @@ import os
 import time as clock
 import warnings
 from copy import copy
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from corota.analysis.checkpoint import Begun, Resumption, replay, take
+from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
@@ -20,6 +22,7 @@ from corota.analysis.procedures.localization import localised
 from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
+from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, UnsupportedError
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
@@ -30,7 +33,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.analysis.checkpoint import Checkpoint
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.terms.moving_mass import MovingMass
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.observer import Observer
@@ -53,6 +58,7 @@ def solve(
     threads: int | None = None,
     keep: Literal["all", "last"] = "all",
     fields: bool = True,
+    start: Checkpoint | None = None,
 ) -> Results:
     """Run the steps of a model.
 
@@ -71,10 +77,13 @@ def solve(
         Frames held in memory.
     fields : bool
         Recover stress and strain at the points of every increment.
+    start : Checkpoint, optional
+        Go on from there instead of the beginning; see :func:`corota.resume`.
 
     Returns
     -------
     Results
+        With `start`, of the increments after it.
 
     Raises
     ------
@@ -96,7 +105,7 @@ def solve(
     >>> bool(results.frames[-1].U[:, 1].min() < -0.7)
     True
     """
-    run = Analysis(model, steps, observers, solver, threads, keep, fields)
+    run = Analysis(model, steps, observers, solver, threads, keep, fields, start)
     return run.run()
 
 
@@ -136,6 +145,7 @@ class Analysis:
         threads: int | None,
         keep: Literal["all", "last"],
         fields: bool,
+        start: Checkpoint | None = None,
     ) -> None:
         from corota.model.steps import Static, Step
 
@@ -163,6 +173,11 @@ class Analysis:
             self.solver.threads = self.threads
         self.system: System
         self.warned: set[str] = set()
+        #: Starts of the steps so far, digests of what the system was built with, and the
+        #: checkpoint that the run goes on from.
+        self.begun: list[Begun] = []
+        self.as_built: dict[str, str] = {}
+        self.start = start
 
     def run(self) -> Results:
         """Run all steps; observers hear the end whatever happens."""
@@ -175,6 +190,8 @@ class Analysis:
             results.info["n_dofs"] = self.system.n_dofs
             results.info["threads"] = self.threads
             self.observers.start(self.model, self.steps)
+            if self.observers.takes_checkpoints:
+                self.as_built = arrays_as_built({"system": self.system}, self.known(), "")
             state = stands = State(
                 np.zeros(self.system.n_dofs),
                 counters=counters,
@@ -184,7 +201,8 @@ class Analysis:
                 energies=Energies(self.system),
             )
             reaction = None
-            for number, step in enumerate(self.steps, start=1):
+            begin_at = 1 if self.start is None else self.start.step
+            for number, step in enumerate(self.steps[begin_at - 1 :], start=begin_at):
                 try:
                     reaction = self._step(step, number, state, reaction)
                 except ElementFailure as failure:
@@ -232,8 +250,82 @@ class Analysis:
                 step.where,
             )
         self.observers.step(number, step)
+        state.loop = None
+        if self.start is not None:
+            self._resume(self.start, state)
+        else:
+            self._begin(step, number, state, reaction)
+        self.start = None
+
+        def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
+            self._save(number, state, increment, factor, scalars)
+
+        stops = self._stops(step)
+        if state.resumption is not None and state.resumption.checkpoint.leave_step:
+            self._leave(state)
+        else:
+            run = procedure(step.procedure)
+            run(system, step, number, state, self.observers, save, stops)
+            if state.loop is not None and step.restart:
+                increment = self.results.frames[-1].increment if self.results.frames else 0
+                last = take(self, state, (number, increment), 1.0)
+                self.observers.checkpoint(last, f"step-{number}.ckpt")
+        assert state.at is not None
+        state.time += state.step_time
+        state.step_time = 0.0
+        if (
+            reaction is None
+            and step.procedure in ("frequency", "steady state")
+            and (self.begun[-1].first)
+        ):
+            # Nothing was loaded yet: the loads and supports of the model are the next step's.
+            return None
+        return system.reaction(state.at)
+
+    def _resume(self, start: Checkpoint, state: State) -> None:
+        """Make everything ready for the procedure to take the state of a checkpoint."""
+        begun = Reader(start.arrays, {}).read(dict_of(start.tree)["begun"])
+        built = copies_as_built({"system": self.system}, self.known())
+        replay(self, begun)
+        self.begun[:] = begun
+        state.time, state.step_time = start.time - start.step_time, start.step_time
+        state.resumption = Resumption(self, start, built)
+
+    def _leave(self, state: State) -> None:
+        """Take the state of a checkpoint as the end of its step."""
+        assert state.resumption is not None
+        kind = state.resumes
+        loop = state.resume(kind)
+        system = self.system
+        system.conditions.end_time = state.step_time
+        if kind == "path":
+            system.conditions.end_time = loop["factor"] * system.conditions.period
+        assert state.energies is not None
+        if state.energies.scheme == "energy_momentum" and state.v is not None:
+            state.carried = (state.u, state.v)
+        state.reaction = None
+        if kind != "static":
+            state.at = system.evaluate(state.u, system.conditions.end_time)
+
+    def known(self) -> dict[str, Any]:
+        """Objects that stand for themselves in checkpoints."""
+        found: dict[str, Any] = {f"steps/{i}": step for i, step in enumerate(self.steps)}
+        found |= {"model": self.model, "observers": self.observers}
+        system = self.system
+        found |= {"constraints": system.constraints, "pattern": system.pattern}
+        found |= {"linear": system.linear, "identity": IDENTITY}
+        return found
+
+    def mass(self, number: int) -> MovingMass:
+        """Mass that gravity acts on in a step."""
+        return mass_of_step(self.steps, number)
+
+    def _begin(self, step: Step, number: int, state: State, reaction: Floats | None) -> None:
+        """Start a step from the committed state."""
+        system = self.system
         nlgeom = system.nlgeom
-        system.mass = mass_of_step(self.steps, number)
+        system.mass = self.mass(number)
+        self.begun.append(Begun(state.time, reaction is None, system.conditions.end_time))
         system.begin(step, state.time, state.u, reaction)
         state.notes += system.conditions.notes
         system.conditions.notes = []
@@ -246,24 +338,12 @@ class Analysis:
                 state.notes += system.contact_term.notes
             self._save(number, state, 0, 0.0, {})
 
-        def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
-            self._save(number, state, increment, factor, scalars)
-
-        stops = self._stops(step)
-        run = procedure(step.procedure)
-        run(system, step, number, state, self.observers, save, stops)
-        assert state.at is not None
-        state.time += state.step_time
-        state.step_time = 0.0
-        if reaction is None and step.procedure in ("frequency", "steady state"):
-            # Nothing was loaded yet: the loads and supports of the model are the next step's.
-            return None
-        return system.reaction(state.at)
-
     def _keep_iterate(self, state: State) -> None:
         """Where the last attempt ended, as a frame of its own."""
         system, failed = self.system, state.failed
         if failed is None or failed.at is None or not np.isfinite(failed.u).all():
+            return
+        if not self.results.frames:
             return
         moved, last = system.by_node(failed.u), self.results.frames[-1]
         self.results.last_iterate = Frame(
@@ -355,3 +435,6 @@ class Analysis:
         self.results.add(frame)
         with system.timed("write"):
             self.observers.increment(frame)
+        if state.loop is not None and self.observers.checkpoint_due:
+            with system.timed("checkpoint"):
+                self.observers.checkpoint(take(self, state, (number, increment), factor))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.analysis.checkpoint import Resumption
     from corota.analysis.energies import Energies
     from corota.analysis.equations import Evaluation
     from corota.analysis.newton import Outcome
@@ -59,6 +60,10 @@ class State:
         Gives fields and sums of a linear response, in place of those of `u`.
     failed : Outcome or None
         The last attempt at an increment that did not converge.
+    loop : dict or None
+        What the procedure needs to go on from here, by name; None where it cannot be resumed.
+    resumption : Resumption or None
+        The checkpoint that the procedure is to go on from.
     """
 
     u: Floats
@@ -78,6 +83,29 @@ class State:
     linear: LinearMotion | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
     failed: Outcome[Evaluation] | None = None
+    loop: dict[str, Any] | None = None
+    resumption: Resumption | None = None
+
+    @property
+    def resumes(self) -> str:
+        """Kind of the loop that a checkpoint is to be put into; empty for none."""
+        return "" if self.resumption is None else self.resumption.kind
+
+    def resume(self, kind: str, **fresh: Any) -> dict[str, Any]:
+        """Take the state of the checkpoint; its own of a procedure goes into `fresh` objects.
+
+        Returns
+        -------
+        dict
+            The procedure's :attr:`loop` at the checkpoint.
+        """
+        assert self.resumption is not None
+        assert self.resumption.kind == kind
+        resumption, self.resumption = self.resumption, None
+        self.loop = dict(fresh)
+        resumption.restore(self)
+        assert self.loop is not None
+        return self.loop
 
     def stand_still(self) -> None:
         """Take the velocity of a motion away: a static step has none, nor what follows it."""

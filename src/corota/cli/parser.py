@@ -73,6 +73,23 @@ def make_parser() -> Parser:
     )
     _reading(run)
 
+    run.add_argument(
+        "--checkpoint-every",
+        type=_whole,
+        metavar="N",
+        help="checkpoint every N increments, 0 for none; else every minute",
+    )
+    run.add_argument(
+        "--provenance", action="store_true", help="write versions and digests beside the results"
+    )
+
+    resume = command("resume", "Go on with a run that stopped, from its newest checkpoint.")
+    resume.add_argument("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
+    resume.add_argument(
+        "-o", "--output", metavar="DIR", help="folder of the results; else the job's"
+    )
+    resume.add_argument("--threads", type=_count, metavar="N", help="threads; else all cores")
+
     demo = command("demo", "Run an example that comes with Corota; needs no file and no network.")
     demo.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
     demo.add_argument("--list", action="store_true", help="name the examples and run none")
@@ -160,6 +177,10 @@ def _pair(text: str) -> tuple[str, str]:
     if not (old.strip() and sign and new.strip()):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form OLD=NEW, such as CPS4=Q4D")
     return old.strip().upper(), new.strip().upper()
+
+
+def _whole(text: str) -> int:
+    return 0 if text.strip() == "0" else _count(text)
 
 
 def _count(text: str) -> int:

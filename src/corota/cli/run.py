@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
+import socket
+import threading
 import time
 import warnings
 from pathlib import Path
@@ -18,15 +21,25 @@ from corota.results.observer import BaseObserver
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from corota.analysis.checkpoint import Checkpoint
     from corota.cli.terminal import Terminal
     from corota.io.job import JobFiles
+    from corota.model.model import Model
+    from corota.model.steps import Step
 
 
 class Stop(BaseObserver):
-    """Observer that ends the analysis after the increment in which a signal came."""
+    """Observer that ends the analysis after the increment in which a signal came.
 
-    def __init__(self, terminal: Terminal) -> None:
-        self.terminal, self.asked = terminal, ""
+    The first signal asks for the end; another one a second later at the latest ends the process,
+    even within the core. SIGUSR1 asks for a checkpoint and nothing else.
+    """
+
+    #: Signals that end a run, where the system has them.
+    ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
+
+    def __init__(self, terminal: Terminal, files: JobFiles | None = None) -> None:
+        self.terminal, self.files, self.asked = terminal, files, ""
         self.stop = False
 
     def ask(self, number: int, frame: object) -> None:
@@ -36,26 +49,68 @@ class Stop(BaseObserver):
         self.asked, self.stop = signal.Signals(number).name, True
         self.terminal.warning("stopping after this increment; once more stops at once")
 
+    def save(self, number: int, frame: object) -> None:
+        """Ask for a checkpoint after this increment."""
+        if self.files is not None:
+            self.files.asked = True
+
     @contextlib.contextmanager
     def listening(self) -> Iterator[None]:
-        """Take over SIGINT and SIGTERM for a while."""
-        before = {}
-        for name in (signal.SIGINT, signal.SIGTERM):
+        """Take over the signals for a while; one that is ignored, as under nohup, stays so."""
+        before: dict[int, Any] = {}
+        handlers = {name: self.ask for name in self.ENDING} | {"SIGUSR1": self.save}
+        for name, handler in handlers.items():
+            number = getattr(signal, name, None)
+            if number is None or signal.getsignal(number) is signal.SIG_IGN:
+                continue
             with contextlib.suppress(ValueError):  # not in the main thread
-                before[name] = signal.signal(name, self.ask)
-        try:
-            yield
-        finally:
-            for name, handler in before.items():
-                signal.signal(name, handler)
+                before[number] = signal.signal(number, handler)
+        ending = {getattr(signal, name) for name in self.ENDING if hasattr(signal, name)}
+        with _second(ending & set(before)):
+            try:
+                yield
+            finally:
+                for number, handler in before.items():
+                    signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def _second(numbers: set[int]) -> Iterator[None]:
+    """End the process soon after a second signal: Python's handlers wait for the core."""
+    ears, mouth = socket.socketpair()
+    mouth.setblocking(False)
+    try:
+        before = signal.set_wakeup_fd(mouth.fileno(), warn_on_full_buffer=False)
+    except ValueError:  # not in the main thread
+        ears.close()
+        mouth.close()
+        yield
+        return
+
+    def listen() -> None:
+        heard = 0
+        while got := ears.recv(1):
+            heard += got[0] in numbers
+            if heard > 1:
+                time.sleep(1.0)
+                os._exit(7)
+
+    listener = threading.Thread(target=listen, name="corota-signals", daemon=True)
+    listener.start()
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(before)
+        mouth.close()
+        listener.join(5.0)
+        ears.close()
 
 
 def run(args: Any, terminal: Terminal) -> int:
     """Run a deck; return the exit code."""
     from corota import __version__
-    from corota.analysis.run import solve
-    from corota.io.events import Events
-    from corota.io.job import JobFiles
+    from corota.io.job import CHECKPOINT_SECONDS, JobFiles
+    from corota.io.provenance import source_of, write_provenance
 
     begin = time.perf_counter()
     terminal.line(terminal.color(f"Corota {__version__}", "bold") + f"  {args.deck}")
@@ -71,16 +126,38 @@ def run(args: Any, terminal: Terminal) -> int:
         terminal.line(f"  note: {note}")
     if not model.steps:
         raise ModelError(f"{args.deck}: there is no *STEP, so there is nothing to solve")
-    formats = args.formats or ["vtkhdf"]
-    progress, stop = Progress(terminal, args.verbose), Stop(terminal)
+    if args.provenance:
+        write_provenance(Path(args.output), model.name, args.deck)
+    every = args.checkpoint_every
     files = JobFiles(
         args.output,
         model.name,
-        formats=[f for f in formats if f in ("vtkhdf", "pvd")],
+        formats=[f for f in args.formats or ["vtkhdf"] if f in ("vtkhdf", "pvd")],
         histories=args.histories,
         points=not args.no_points,
         profile={"read": read},
+        checkpoint_every=every or 0,
+        checkpoint_seconds=CHECKPOINT_SECONDS if every is None else 0.0,
+        source=source_of(args.deck),
     )
+    return carry_out(model, None, files, terminal, args, begin)
+
+
+def carry_out(
+    model: Model,
+    steps: list[Step] | None,
+    files: JobFiles,
+    terminal: Terminal,
+    args: Any,
+    begin: float,
+    start: Checkpoint | None = None,
+) -> int:
+    """Solve, from a checkpoint if there is one, and tell; return the exit code."""
+    from corota.analysis.run import solve
+    from corota.io.events import Events
+
+    formats = getattr(args, "formats", None) or []
+    progress, stop = Progress(terminal, args.verbose), Stop(terminal, files)
     observers: list[Any] = [files, progress, stop]
     if terminal.json:
         observers.insert(1, Events(terminal.record))
@@ -90,15 +167,18 @@ def run(args: Any, terminal: Terminal) -> int:
         try:
             results = solve(
                 model,
+                steps,
                 observers=observers,
                 threads=args.threads,
                 keep="all" if whole else "last",
+                start=start,
             )
         except CorotaError as error:
             files.close()
             for note in getattr(getattr(error, "results", None), "notes", ()):
                 terminal.line(f"  note: {note}")
             _tell_files(files, terminal)
+            _tell_checkpoint(files, terminal)
             raise
         if files.error is not None:
             raise files.error
@@ -127,6 +207,13 @@ def run(args: Any, terminal: Terminal) -> int:
         }
     )
     return 0
+
+
+def _tell_checkpoint(files: JobFiles, terminal: Terminal) -> None:
+    """Say how to go on, if there is something to go on from."""
+    path = files.folder / f"{files.name}.ckpt"
+    if files.error is None and files.checkpointed is not None and path.exists():
+        terminal.line(f"Checkpoint of {files.checkpointed.where}; go on with: corota resume {path}")
 
 
 def _tell_files(files: JobFiles, terminal: Terminal) -> None:

@@ -18,6 +18,21 @@ def full(error: OSError, path: Path) -> FileError:
     return FileError(f"{path}: cannot write: {reason}")
 
 
+def sync(path: Path) -> None:
+    """Bring a file to the disk.
+
+    Raises
+    ------
+    FileError
+        If the disk refuses.
+    """
+    try:
+        with open(path, "rb") as file:
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise full(error, path) from None
+
+
 class AtomicFile:
     """File-like object whose visible name always denotes a complete state.
 
@@ -30,9 +45,11 @@ class AtomicFile:
     ----------
     path : Path
         The visible name; not touched before the first commit.
+    keep : bool
+        Go on with the file that is there.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, keep: bool = False) -> None:
         self.path = path
         self.hidden = path.with_name(f".{path.name}.next")
         self._spare = path.with_name(f".{path.name}.last")
@@ -43,7 +60,12 @@ class AtomicFile:
         self._shown = False
         try:
             self.hidden.unlink(missing_ok=True)
-            self.hidden.touch()
+            if keep:
+                shutil.copyfile(path, self.hidden)
+                self._size = path.stat().st_size
+                self._shown = True
+            else:
+                self.hidden.touch()
         except OSError as error:
             raise full(error, path) from None
 
@@ -134,6 +156,10 @@ class AtomicFile:
         os.replace(self.hidden, self.path)
         os.replace(self._spare, self.hidden)
 
+    def sync(self) -> None:
+        """Bring the last commit to the disk."""
+        sync(self.path)
+
     def close(self) -> None:
         """Remove the hidden copy; what was not committed is lost."""
         for name in (self.hidden, self._spare):
@@ -179,6 +205,34 @@ class TextFile:
             with contextlib.suppress(OSError):
                 self._file.truncate(start)
                 self._file.seek(start)
+            raise full(error, self.path) from None
+
+    @property
+    def length(self) -> int:
+        """Bytes so far."""
+        return self._file.tell()
+
+    def cut(self, length: int) -> None:
+        """Drop everything behind a length.
+
+        Raises
+        ------
+        FileError
+            If the file is shorter.
+        """
+        if self.length < length:
+            raise FileError(f"{self.path}: {self.length} bytes, the checkpoint knows {length}")
+        try:
+            self._file.truncate(length)
+            self._file.seek(length)
+        except OSError as error:
+            raise full(error, self.path) from None
+
+    def sync(self) -> None:
+        """Bring everything to the disk."""
+        try:
+            os.fsync(self._file.fileno())
+        except OSError as error:
             raise full(error, self.path) from None
 
     def close(self) -> None:

@@ -45,10 +45,12 @@ class Events(BaseObserver):
     ----------
     emit : callable
         Takes each record, a dict with the key ``event``.
+    run : str
+        Name of the run.
     """
 
-    def __init__(self, emit: Callable[[dict[str, Any]], None]) -> None:
-        self._emit = emit
+    def __init__(self, emit: Callable[[dict[str, Any]], None], run: str = "") -> None:
+        self._emit, self._run = emit, run
         self._begin = time.perf_counter()
         self._labels: Any = None
         self._cuts: dict[tuple[int, int], int] = {}
@@ -62,12 +64,17 @@ class Events(BaseObserver):
                 "event": "start",
                 "version": __version__,
                 "job": model.name,
+                "run": self._run,
                 "nodes": model.mesh.n_nodes,
                 "cells": model.mesh.n_cells,
                 "steps": len(steps),
                 "notes": model.notes,
             }
         )
+
+    def resume(self, model: Model, cuts: dict[tuple[int, int], int]) -> None:
+        """Go on where an earlier run stopped."""
+        self._labels, self._cuts = model.mesh.node_labels, dict(cuts)
 
     def step(self, number: int, step: Step) -> None:
         self._emit(

@@ -3,15 +3,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import contextlib
+import glob
+import os
 import threading
 import time
 from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from corota.analysis.checkpoint import model_tree
+from corota.analysis.state_tree import Reader, Unstorable, Writer
+from corota.errors import InputError
 from corota.io.atomic_file import TextFile, full
+from corota.io.checkpoint import ENDINGS as CHECKPOINTS
+from corota.io.checkpoint import store
 from corota.io.events import Events, json_line
 from corota.io.finite import check_frame
+from corota.io.folder_lock import FolderLock
 from corota.io.requests import due_now, left_over, wants_file
 from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.dat import check_requests, dat_blocks
@@ -24,6 +33,8 @@ if TYPE_CHECKING:
     from os import PathLike
     from types import TracebackType
 
+    from corota.analysis.checkpoint import Checkpoint
+    from corota.io.checkpoint import Saved
     from corota.io.vtk.vtkhdf import VtkhdfWriter
     from corota.io.vtk.vtu import PvdWriter
     from corota.model.model import Model
@@ -34,7 +45,9 @@ if TYPE_CHECKING:
 #: Files are brought up to date at most so often; a killed run loses no more than this [s].
 BEAT = 0.25
 #: Work waiting for the writer, above which the analysis waits for it.
-MOST_WAITING = 256 << 20
+MOST_WAITING = 64 << 20
+#: Seconds between checkpoints, unless other intervals are asked for.
+CHECKPOINT_SECONDS = 60.0
 
 
 class JobFiles(BaseObserver):
@@ -56,6 +69,14 @@ class JobFiles(BaseObserver):
         Store values at the quadrature points in the result file.
     profile : dict of str to float, optional
         Seconds of phases before the analysis, such as ``read``.
+    checkpoint_every : int
+        Increments between checkpoints; 0 for none by count.
+    checkpoint_seconds : float
+        Seconds between checkpoints; 0 for none by time.
+    source : dict of str to str, optional
+        What the model was read from, for checkpoints: ``deck`` and its ``sha256``.
+    resume : Saved, optional
+        Go on with the files of a run from one of its checkpoints.
 
     Attributes
     ----------
@@ -88,6 +109,10 @@ class JobFiles(BaseObserver):
         histories: Sequence[str] = (),
         points: bool = True,
         profile: dict[str, float] | None = None,
+        checkpoint_every: int = 0,
+        checkpoint_seconds: float = CHECKPOINT_SECONDS,
+        source: dict[str, str] | None = None,
+        resume: Saved | None = None,
     ) -> None:
         self.folder, self.name = Path(folder), name
         self.paths: list[Path] = []
@@ -101,12 +126,23 @@ class JobFiles(BaseObserver):
         self._stop = False
         self._thread: threading.Thread | None = None
         self._busy_until = 0.0
-        self._last_iteration: Iteration | None = None
+        self._last_tried = (0.0, 0)
+        self._stored: tuple[Any, list[Any], str] | tuple[()] | None = None
         self._largest = 0.0
         self._reached = (0.0, 0.0)
         self._cuts: dict[tuple[int, int], int] = {}
         self._newest: tuple[Frame, bool] | None = None
         self._closed = True
+        self._every, self._seconds = checkpoint_every, checkpoint_seconds
+        self._resumed = resume
+        self._source = source or {}
+        #: Set to ask for a checkpoint after the next increment, from a signal for instance.
+        self.asked = False
+        #: The newest checkpoint of this run.
+        self.checkpointed: Checkpoint | None = None
+        self._known_cuts: dict[tuple[int, int], int] = {}
+        self._held: FolderLock | None = None
+        self.run = os.urandom(6).hex() if resume is None else resume.run
 
     # Called by the analysis.
     def start(self, model: Model, steps: list[Step]) -> None:
@@ -127,24 +163,87 @@ class JobFiles(BaseObserver):
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise full(error, self.folder) from None
+        if not self._closed:
+            raise InputError("these files are being written already; make JobFiles for each run")
+        self._stop, self._newest = False, None
+        self.paths.clear()
+        self._held = FolderLock(self.folder / f".{name}.lock")
+        try:
+            self._start(model, steps, name)
+        except BaseException:
+            self._held.release()
+            raise
+
+    def _start(self, model: Model, steps: list[Step], name: str) -> None:
+        """Open the files, anew or where a checkpoint left them."""
+        resumed = self._resumed
+        self._last_checkpoint = time.monotonic()
+        self._increments, self._step, self._increment = 0, 1, 0
+        if resumed is None:
+            self._set_aside(name)
         self._text: dict[str, TextFile] = {}
         endings = ["sta", "cvg", "jsonl"]
         printed = any(o.kind.endswith("print") for s in steps for o in s.outputs)
         if printed or any(s.procedure in ("buckle", "frequency") for s in steps):
             endings.insert(0, "dat")
         for ending in endings:
-            self._text[ending] = TextFile(self._path(name, ending))
-        self._text["sta"].append(STA_HEAD)
-        self._text["cvg"].append(CVG_HEAD)
+            self._text[ending] = TextFile(self._path(name, ending), keep=resumed is not None)
         self._csv = CsvWriter(self._path(name, "csv"))
+        if resumed is None:
+            self._text["sta"].append(STA_HEAD)
+            self._text["cvg"].append(CVG_HEAD)
+        else:
+            self._take_up(resumed)
         self._big: list[VtkhdfWriter | PvdWriter] = []
         big = [(ending, self._path(name, ending)) for ending in self._formats]
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
         self._thread.start()
         self._put(lambda: self._open(big))  # takes as long as solving a small job
-        self._events = Events(self._log)
-        self._events.start(model, steps)
+        self._events = Events(self._log, self.run)
+        if resumed is None:
+            self._events.start(model, steps)
+        else:
+            self._events.resume(model, self._known_cuts)
+
+    def _set_aside(self, name: str) -> None:
+        """Keep the files of an earlier run from standing beside those of this one.
+
+        Its results bear another name until this run is done; checkpoints go.
+        """
+        endings = (*CHECKPOINTS, "last_iterate.vtkhdf", "modes.vtkhdf")
+        gone = [f"{name}.{ending}" for ending in endings]
+        gone += [path.name for path in self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")]
+        try:
+            for old in [*gone, f"{name}.dat", f"{name}.csv"]:
+                (self.folder / old).unlink(missing_ok=True)
+            for ending in ("vtkhdf", "pvd"):
+                path = self.folder / f"{name}.{ending}"
+                if path.exists():
+                    os.replace(path, self._previous(name, ending))
+        except OSError as error:
+            raise full(error, self.folder / name) from None
+
+    def _previous(self, name: str, ending: str) -> Path:
+        return self.folder / f"{name}.previous.{ending}"
+
+    def _take_up(self, saved: Saved) -> None:
+        """Cut the files to what the checkpoint knows, and go on from there."""
+        found = saved.files
+        for ending, text in self._text.items():
+            text.cut(found["text"][ending])
+        count, names = found["csv"]
+        if count:
+            self._csv.resume(count, names)
+        self._histories.resume(tuple(found["before"]))
+        self._cuts = {(s, i): n for s, i, n in found["cuts"]}
+        self._known_cuts = dict(self._cuts)
+        self._largest, self._reached = found["largest"], tuple(found["reached"])
+        if found["newest"] is not None:
+            tree, place = found["newest"]
+            self._newest = (Reader(saved.state.arrays[place:], {}).read(tree), found["filed"])
+        if found["tried"] is not None:
+            self._last_tried = tuple(found["tried"])
 
     def _open(self, big: list[tuple[str, Path]]) -> None:
         """Make the writers of the result files."""
@@ -152,11 +251,19 @@ class JobFiles(BaseObserver):
             if ending == "pvd":
                 from corota.io.vtk.vtu import PvdWriter
 
-                self._big.append(PvdWriter(path, self.model))
+                self._big.append(PvdWriter(path, self.model, self._state_of(ending)))
             else:
                 from corota.io.vtk.vtkhdf import VtkhdfWriter
 
-                self._big.append(VtkhdfWriter(path, self.model, self._points))
+                state = self._state_of(ending)
+                self._big.append(VtkhdfWriter(path, self.model, self._points, self.run, state))
+
+    def _state_of(self, ending: str) -> dict[str, Any] | None:
+        """Where a checkpoint left a result file; None for a new one."""
+        if self._resumed is None:
+            return None
+        found: dict[str, Any] = self._resumed.files["big"][ending]
+        return found
 
     def _path(self, name: str, ending: str) -> Path:
         path = self.folder / f"{name}.{ending}"
@@ -164,19 +271,104 @@ class JobFiles(BaseObserver):
         return path
 
     def step(self, number: int, step: Step) -> None:
+        resumed = self._resumed
+        if resumed is not None and number == resumed.state.step and not self._increments:
+            return  # it is in the files
         self._events.step(number, step)
+
+    # Checkpoints.
+    @property
+    def checkpoint_due(self) -> bool:
+        """Whether one is to be taken after this increment."""
+        step = self.steps[self._step - 1]
+        every = step.restart or self._every
+        by_count = every > 0 and self._increment % every == 0
+        late = time.monotonic() - self._last_checkpoint >= self._seconds > 0.0
+        return self.asked or by_count or late
+
+    def checkpoint(self, checkpoint: Checkpoint, keep: str = "") -> None:
+        """Take the state of the analysis; it is written behind all that came before.
+
+        Parameters
+        ----------
+        keep : str
+            Ending of a file of its own that is not replaced, such as ``step-1.ckpt``.
+        """
+        self.asked, self._last_checkpoint = False, time.monotonic()
+        self.checkpointed = checkpoint
+        known = {
+            "cuts": [[*where, n] for where, n in self._cuts.items()],
+            "largest": self._largest,
+            "reached": list(self._reached),
+            "tried": list(self._last_tried),
+        }
+        size = sum(array.nbytes for array in checkpoint.arrays)
+        self._put(lambda: self._checkpoint(checkpoint, known, keep), size)
+
+    def _checkpoint(self, checkpoint: Checkpoint, known: dict[str, Any], keep: str) -> None:
+        """Bring the files to the disk, then the checkpoint that refers to them."""
+        for big in self._big:
+            big.commit()
+        for file in [*self._text.values(), self._csv, *self._big]:
+            file.sync()
+        newest = None
+        writer = Writer({})
+        if self._newest is not None:
+            frame, filed = self._newest
+            if not filed or left_over(self.model, self.steps, frame):
+                newest = [writer.write(frame), len(checkpoint.arrays)]
+            known["filed"] = filed
+        files = known | {
+            "text": {ending: text.length for ending, text in self._text.items()},
+            "csv": list(self._csv.state),
+            "before": list(self._histories.before),
+            "big": {e: b.state for e, b in zip(self._formats, self._big, strict=True)},
+            "newest": newest,
+        }
+        checkpoint.arrays = [*checkpoint.arrays, *writer.arrays]
+        name = self.name or self.model.name
+        if self._stored is None:
+            self._stored = self._model_tree()
+        store(
+            self.folder / f"{name}.{keep or CHECKPOINTS[0]}",
+            checkpoint,
+            files,
+            name,
+            self.run,
+            self._options(),
+            self._stored or None,
+        )
+
+    def _model_tree(self) -> tuple[Any, list[Any], str] | tuple[()]:
+        try:
+            return model_tree(self.model, self.steps)
+        except Unstorable:
+            return ()
+
+    def _options(self) -> dict[str, Any]:
+        return {
+            "folder": str(self.folder),
+            "formats": list(self._formats),
+            "histories": list(self._extra),
+            "points": self._points,
+            "every": self._every,
+            "seconds": self._seconds,
+            "source": self._source,
+        }
 
     def iteration(self, info: Iteration) -> None:
         if info.iteration <= 1:
             self._largest = 0.0
         self._largest = max(self._largest, info.correction)
-        self._last_iteration = info
+        self._last_tried = (info.dt, info.iteration)
         line = cvg_line(info, self._largest)
         self._put(lambda: self._text["cvg"].append(line))
         self._events.iteration(info)
 
     def increment(self, frame: Frame) -> None:
         attempts = self._cuts.get((frame.step, frame.increment), 0) + 1
+        self._increments += 1 if frame.increment else 0
+        self._step, self._increment = frame.step, frame.increment
         self._reached = (frame.time, frame.step_time)
         size = 8 * (frame.U.size * 6 + sum(b.volume.size * 24 for b in frame.fields))
         self._events.increment(frame)
@@ -184,8 +376,7 @@ class JobFiles(BaseObserver):
 
     def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None:
         self._cuts[step, increment] = attempt
-        last = self._last_iteration
-        tried, count = (last.dt, last.iteration) if last else (0.0, 0)
+        tried, count = self._last_tried
         line = sta_failed(step, increment, attempt, count, self._reached, tried)
         self._put(lambda: self._text["sta"].append(line))
         self._events.cut_back(step, increment, attempt, reason, dt)
@@ -209,7 +400,7 @@ class JobFiles(BaseObserver):
             path = self._path(self.name or self.model.name, "modes.vtkhdf")
             self._finish(lambda: write_modes(results, path))
         self._iterate(results)
-        self.close(results.info)
+        self.close(results.info, done=error is None)
         if self.error is not None and error is None:
             raise self.error
 
@@ -225,8 +416,12 @@ class JobFiles(BaseObserver):
         self.paths.append(path)
         self._finish(lambda: write_iterate(results, path))
 
-    def close(self, info: dict[str, Any] | None = None) -> None:
-        """Write what waits and close the files; errors stay in :attr:`error`."""
+    def close(self, info: dict[str, Any] | None = None, done: bool = False) -> None:
+        """Write what waits and close the files; errors stay in :attr:`error`.
+
+        After a run that is `done` the results of the one before go, and checkpoints that nobody
+        asked for.
+        """
         if self._closed:
             return
         self._drain()
@@ -238,6 +433,16 @@ class JobFiles(BaseObserver):
         for text in self._text.values():
             text.close()
         self._csv.close()
+        if done and self.error is None:
+            name = self.name or self.model.name
+            gone = [self._previous(name, ending) for ending in ("vtkhdf", "pvd")]
+            if not self._every and not any(step.restart for step in self.steps):
+                gone += [self.folder / f"{name}.{ending}" for ending in CHECKPOINTS]
+            for path in gone:
+                with contextlib.suppress(OSError):
+                    path.unlink(missing_ok=True)
+        if self._held is not None:
+            self._held.release()
 
     def __enter__(self) -> JobFiles:
         return self
@@ -286,13 +491,15 @@ class JobFiles(BaseObserver):
     def _empty(self) -> None:
         """Do what waits, then bring the result files up to date."""
         begin, done, frames = time.thread_time(), 0, False
+        late = time.perf_counter() + BEAT
         while self._tasks:
             task, size = self._tasks.popleft()
             if self.error is None:
                 self._finish(task)
             done += size
             frames = frames or size > 200
-            if done > MOST_WAITING // 4:
+            # An analysis that goes on faster than this must not keep the files from the disk.
+            if done > MOST_WAITING // 4 or time.perf_counter() > late:
                 break
         if frames and self.error is None:
             for big in self._big:
@@ -309,7 +516,8 @@ class JobFiles(BaseObserver):
         self._wake.set()
         self._thread.join()
         self._thread = None
-        self._empty()
+        while self._tasks:
+            self._empty()
 
     def _write(self, frame: Frame, attempts: int) -> None:
         check_frame(frame)

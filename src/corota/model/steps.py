@@ -86,6 +86,8 @@ class Step(Loading):
     new_loads : bool or collection of {"force", "distributed", "temperature"}
         Forget the loads of earlier steps: all, or those of some kinds.
     outputs : list of Output
+    restart : int
+        Keep a checkpoint every so many increments and one of the end of the step; 0 for none.
     """
 
     nlgeom: bool = True
@@ -100,6 +102,7 @@ class Step(Loading):
     new_supports: bool = False
     new_loads: bool | Collection[LoadKind] = False
     outputs: list[Output] = field(default_factory=list)
+    restart: int = 0
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 

@@ -87,7 +87,8 @@ def dynamic_step(
     warn_of_long_increments(system, step, state)
     inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
     viscous = ViscousElements(system, step.rayleigh[1])
-    now = start_motion(system, step, state, inertia, viscous)
+    resumes = bool(state.resumes)
+    now = resting(system) if resumes else start_motion(system, step, state, inertia, viscous)
     assert state.energies is not None
     book = Balance(system, step, now, inertia, state.energies)
     ends = EndForces(system)
@@ -98,6 +99,9 @@ def dynamic_step(
     settings = Settings(step.tolerance, step.max_iterations, again)
     count = state.counters
     turned: Floats | float = 0.0
+    if resumes:
+        loop = state.resume("dynamic", control=control, book=book, ends=ends)
+        now, turned = loop["now"], loop["turned"]
     while not control.finished:
         if control.number >= step.max_increments:
             raise ConvergenceError(
@@ -182,6 +186,14 @@ def dynamic_step(
             "external work": book.external,
         }
         book.add_to(scalars)
+        state.loop = {
+            "kind": "dynamic",
+            "control": control,
+            "book": book,
+            "ends": ends,
+            "now": now,
+            "turned": turned,
+        }
         save(state, control.number, target / step.period, scalars)
         if observers.stop_requested:
             raise Interrupted(
@@ -321,6 +333,11 @@ def start_motion(
     if not goes_on:
         system.core.start_motion(system.in_space(u), system.in_space(v))
     return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+
+
+def resting(system: System) -> MotionState:
+    """No motion at all."""
+    return MotionState(*np.zeros((7, system.n_dofs)))
 
 
 def _start_supports(system: System, step: Dynamic, state: State) -> Floats:

@@ -139,8 +139,11 @@ def explicit_step(
         )
     mass = diagonal(system)
     constrained = system.conditions.constrained
-    stable = stable_increment(system, state.u, mass)
-    if step.fixed_increments:
+    resumes = bool(state.resumes)
+    stable = np.inf if resumes else stable_increment(system, state.u, mass)
+    if resumes:
+        dt = step.period  # the checkpoint knows it
+    elif step.fixed_increments:
         dt = step.first_increment
         if dt > stable:
             raise ModelError(
@@ -170,7 +173,8 @@ def explicit_step(
     moving = ~constrained & (mass > 0.0)
     idle = ~constrained & ~moving
     inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
-    _refuse_pushed(system, idle, at)
+    if not resumes:
+        _refuse_pushed(system, idle, at)
     a = -inverse * at.residual
     account = state.energies
     assert account is not None
@@ -182,7 +186,14 @@ def explicit_step(
     known = Known(system, mass, first, dt)
     account.set_kinetic(first)
     driven = 0.5 * float((mass * state.v**2)[constrained].sum())
-    for i in range(1, n + 1):
+    done = 0
+    if resumes:
+        loop = state.resume("explicit", known=known)
+        done, n, keep, wanted = loop["done"], loop["n"], loop["keep"], loop["wanted"]
+        dt, stable, u, v, at = loop["dt"], loop["stable"], loop["u"], loop["v"], loop["at"]
+        begin, work, internal, told = loop["begin"], loop["work"], loop["internal"], loop["told"]
+        driven = loop["driven"]
+    for i in range(done + 1, n + 1):
         time = i * dt
         du = np.where(constrained, system.conditions.prescribed(time, u) - u, dt * v)
         u = u + du
@@ -222,6 +233,24 @@ def explicit_step(
         account.internal += internal - told
         told = internal
         state.reaction = np.where(constrained, new.residual + mass * given_a, 0.0)
+        state.loop = {
+            "kind": "explicit",
+            "known": known,
+            "done": i,
+            "n": n,
+            "keep": keep,
+            "wanted": wanted,
+            "dt": dt,
+            "stable": stable,
+            "u": u,
+            "v": v,
+            "at": at,
+            "begin": begin,
+            "work": work,
+            "internal": internal,
+            "told": told,
+            "driven": driven,
+        }
         save(
             state,
             i,

@@ -64,14 +64,21 @@ def static_step(
     SingularError
         If the structure is not held.
     """
-    state.step_time = 0.0
-    state.stand_still()
+    if not state.resumes:
+        state.step_time = 0.0
+        state.stand_still()
     if step.path is not None:
         path_step(system, step, number, state, observers, save, step.path)
         return
     control = Increments(step, stops)
     settings = Settings(step.tolerance, step.max_iterations)
     first = rate = 0.0  # displacement per time, of the first increment and the last
+    if state.resumes == "path":
+        _go_along_path(system, step, number, state, observers, save, control, (0.0, 0.0))
+        return
+    if state.resumes:
+        loop = state.resume("static", control=control)
+        first, rate = loop["first"], loop["rate"]
     while not control.finished:
         if control.number >= step.max_increments:
             raise ConvergenceError(
@@ -168,6 +175,7 @@ def static_step(
         if outcome.negative >= 0:
             scalars["negative pivots"] = float(outcome.negative)
             scalars["stable"] = float(outcome.negative == 0)
+        state.loop = {"kind": "static", "control": control, "first": first, "rate": rate}
         save(state, control.number, target / step.period, scalars)
         if observers.stop_requested:
             raise Interrupted(
@@ -277,6 +285,7 @@ def _go_along_path(
             factor=control.time / step.period,
             increment=before,
             takes_over=True,
+            rates=rates,
         )
     except (ConvergenceError, SingularError, ModelError) as error:
         if state.u is not here:

@@ -205,6 +205,8 @@ class StepDraft:
     said: set[str] = field(default_factory=set)
     outputs: list[Output] = field(default_factory=list)
     frequency: int = 1
+    #: Increments between checkpoints that are kept, 0 for none.
+    restart: int = 0
     #: For frequencies: whether stresses and displacements of earlier steps count; else None.
     preload: bool | None = None
 
@@ -292,6 +294,8 @@ class Deck:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     hidden: int = 0
     scope: Scope = field(default_factory=Scope)
+    #: Increments between checkpoints in the steps that follow, 0 for none.
+    restart: int = 0
     step: StepDraft | None = None
     material: MaterialDraft | None = None
     instance: Instance | None = None

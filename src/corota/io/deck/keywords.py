@@ -235,6 +235,7 @@ KEYWORDS: dict[str, Keyword] = {
     "NODEOUTPUT": Keyword(output.node_file, _FILE, _FILE_IGNORED),
     "ELFILE": Keyword(output.el_file, _FILE, _FILE_IGNORED),
     "ELEMENTOUTPUT": Keyword(output.el_file, _FILE, _FILE_IGNORED),
+    "RESTART": Keyword(output.restart, "WRITE READ FREQUENCY STEP INC", "OVERLAY"),
     "OUTPUT": Keyword(
         output.output,
         "FREQUENCY FREQUENCYF VARIABLE",
@@ -251,7 +252,6 @@ KEYWORDS: dict[str, Keyword] = {
 #: Cards without effect here; each is listed in ``Model.notes``.
 IGNORED: dict[str, str] = {
     "PREPRINT": "it controls the echo of the input",
-    "RESTART": "restart files are not written by this version",
     "MONITOR": "progress shows every increment",
     "ENERGYPRINT": "energies are in the history",
     "ENERGYOUTPUT": "energies are in the history",

@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import csv
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import InputError
-from corota.io.atomic_file import TextFile, replace_text
+from corota.errors import FileError, InputError
+from corota.io.atomic_file import TextFile, full, replace_text
 from corota.results.variables import NODAL, mises, nodal_value
 
 if TYPE_CHECKING:
@@ -115,6 +116,15 @@ class Histories:
         self._nodes = requested_nodes(model, steps, extra)
         self._before: tuple[int, float] = (0, 0.0)
 
+    @property
+    def before(self) -> tuple[int, float]:
+        """Step and step time of the last row."""
+        return self._before
+
+    def resume(self, before: tuple[int, float]) -> None:
+        """Go on behind a row."""
+        self._before = before
+
     def row(self, frame: Frame, attempts: int = 1) -> dict[str, float]:
         """Headings and numbers of a frame."""
         step, time = self._before
@@ -192,6 +202,40 @@ class CsvWriter:
         self._rows: list[dict[str, float]] = []
         self._names: list[str] = []
         self._file: TextFile | None = None
+
+    @property
+    def state(self) -> tuple[int, list[str]]:
+        """Rows and headings so far."""
+        return len(self._rows), self._names
+
+    def sync(self) -> None:
+        """Bring everything to the disk."""
+        if self._file is not None:
+            self._file.sync()
+
+    def resume(self, count: int, names: list[str]) -> None:
+        """Go on with the first rows and columns of the file that is there.
+
+        Raises
+        ------
+        FileError
+            If it has fewer.
+        """
+        try:
+            with open(self.path, encoding="utf-8", newline="") as file:
+                table = list(csv.reader(file))
+        except OSError as error:
+            raise full(error, self.path) from None
+        head, rows = (table[0], table[1:]) if table else ([], [])
+        if len(rows) < count or head[: len(names)] != [n.replace('"', "'") for n in names]:
+            raise FileError(f"{self.path}: {len(rows)} rows, the checkpoint knows {count}")
+        self._names = list(names)
+        self._rows = [
+            {name: float(text) for name, text in zip(names, row, strict=False)}
+            for row in rows[:count]
+        ]
+        replace_text(self.path, csv_text(self._rows))
+        self._file = TextFile(self.path, keep=True)
 
     def add(self, row: dict[str, float]) -> None:
         """Append a row.

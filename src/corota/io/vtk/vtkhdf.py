@@ -147,24 +147,102 @@ class VtkhdfWriter:
     model : Model
     points : bool
         Store the values at the quadrature points too (group ``corota/points``).
+    run : str
+        Name of the run, an attribute of the group ``corota``.
+    resume : dict, optional
+        Go on with the file that is there from such a :attr:`state`; what is behind is dropped.
     """
 
-    def __init__(self, path: Path, model: Model, points: bool = True) -> None:
+    def __init__(
+        self,
+        path: Path,
+        model: Model,
+        points: bool = True,
+        run: str = "",
+        resume: dict[str, Any] | None = None,
+    ) -> None:
         import h5py
 
-        self.path, self.model, self.points = path, model, points
-        self._twin = AtomicFile(path)
+        self.path, self.model, self.points, self.run = path, model, points, run
+        self._twin = AtomicFile(path, keep=resume is not None)
         self._averaging = vf.Averaging(model.mesh)
         try:
             # A small chunk cache: every chunk is written once and never read back.
-            self._file = h5py.File(self._twin, "w", rdcc_nbytes=1 << 20)
+            mode = "w" if resume is None else "r+"
+            self._file = h5py.File(self._twin, mode, rdcc_nbytes=1 << 20)
         except OSError as error:
             raise FileError(f"{path}: cannot write: {error}") from None
+        self._taken: list[tuple[float, dict[str, dict[str, Floats]]]] = []
+        if resume is not None:
+            self._resume(resume)
+            return
         self._root = self._file.create_group("VTKHDF", track_order=True)
         self._index = self._static()
         self._count = 0
         self._known: dict[tuple[str, str], Floats] = {}
-        self._taken: list[tuple[float, dict[str, dict[str, Floats]]]] = []
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """Frames on disk, and names, types and shapes of their arrays."""
+        known = [
+            [place, name, like.dtype.str, list(like.shape)]
+            for (place, name), like in self._known.items()
+        ]
+        return {"count": self._count, "known": known}
+
+    def sync(self) -> None:
+        """Bring the last commit to the disk."""
+        self._twin.sync()
+
+    def _resume(self, state: dict[str, Any]) -> None:
+        """Drop the frames that a checkpoint does not know.
+
+        Raises
+        ------
+        FileError
+            If there are fewer.
+        """
+        try:
+            self._drop(state)
+        except (KeyError, OSError, ValueError) as error:
+            raise FileError(f"{self.path}: cannot go on with this file: {error}") from None
+
+    def _drop(self, state: dict[str, Any]) -> None:
+        self._root = self._file["VTKHDF"]
+        self._index = topology(self.model.mesh)[3]
+        self._still = ["section", "element label"]
+        self._count = count = int(state["count"])
+        if self._root["Steps"].attrs["NSteps"] < count:
+            raise ValueError(
+                f"{self._root['Steps'].attrs['NSteps']} frames, the checkpoint knows {count}"
+            )
+        self._known = {
+            (place, name): np.broadcast_to(np.zeros(1, dtype), shape)
+            for place, name, dtype, shape in state["known"]
+        }
+        rows = {(p, n.replace("/", "|")): like.shape[0] for (p, n), like in self._known.items()}
+        points = self._file["corota/points"]
+        fixed = {"cells", "shape functions", "reference volume", *self._still}
+        places = ["VTKHDF/PointData", "VTKHDF/CellData", "corota/frames"]
+        for place in [*places, *(f"corota/points/{name}" for name in points)]:
+            group = self._file[place]
+            for name in list(group):
+                if (place, name) in rows:
+                    group[name].resize(count * rows[place, name], axis=0)
+                elif name not in fixed or place in ("VTKHDF/PointData", "corota/frames"):
+                    del group[name]
+        steps = self._root["Steps"]
+        for name in list(steps):
+            if name.endswith("DataOffsets"):
+                place = f"VTKHDF/{name.removesuffix('Offsets')}"
+                for own in list(steps[name]):
+                    if (place, own) in rows or own in self._still:
+                        steps[name][own].resize(count, axis=0)
+                    else:
+                        del steps[name][own]
+            else:
+                steps[name].resize(count, axis=0)
+        steps.attrs["NSteps"] = count
 
     def _static(self) -> Ints:
         """Write what does not change: topology, labels, sets, metadata."""
@@ -193,6 +271,7 @@ class VtkhdfWriter:
         own = self._file.create_group("corota")
         own.attrs["version"] = __version__
         own.attrs["job"] = self.model.name
+        own.attrs["run"] = self.run
         own.attrs["averaging"] = vf.AVERAGING
         own.attrs["tensors"] = "order xx yy zz xy yz xz; shear strain is the angle (engineering)"
         own["node labels"] = mesh.node_labels

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.io.atomic_file import full, replace_text
+from corota.io.atomic_file import full, replace_text, sync
 from corota.io.finite import check_frame
 from corota.io.vtk.vtkhdf import cell_data, point_data, topology
 from corota.results import variables as vf
@@ -112,10 +112,21 @@ class PvdWriter:
     model : Model
     """
 
-    def __init__(self, path: Path, model: Model) -> None:
+    def __init__(self, path: Path, model: Model, resume: dict[str, Any] | None = None) -> None:
         self.path, self.model = path, model
         self._averaging = vf.Averaging(model.mesh)
-        self._entries: list[str] = []
+        self._entries: list[str] = [] if resume is None else list(resume["entries"])
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """Frames so far."""
+        return {"entries": list(self._entries)}
+
+    def sync(self) -> None:
+        """Bring the frames to the disk."""
+        for name in [self.path, *self.path.parent.glob(f"{self.path.stem}_????.vtu")][-2:]:
+            if name.exists():
+                sync(name)
 
     def add(self, frame: Frame) -> None:
         """Write a frame.

@@ -52,6 +52,7 @@ def path_step(
     factor: float = 0.0,
     increment: int = 0,
     takes_over: bool = False,
+    rates: tuple[float, float] = (0.0, 0.0),
 ) -> CriticalPoint | None:
     """Run a step, or the rest of one, along its path.
 
@@ -64,6 +65,8 @@ def path_step(
         Increments of the step so far.
     takes_over : bool
         Whether the step began by load control: its time then stays within the period.
+    rates : tuple of float
+        Displacement per time of load control before, for messages.
 
     Returns
     -------
@@ -80,6 +83,7 @@ def path_step(
     system.conditions.check_proportional()
     run = PathStep(system, step, number, state, observers, save, factor, increment)
     run.takes_over = takes_over
+    run.rates = rates
     return run.run(path)
 
 
@@ -106,37 +110,28 @@ class PathStep:
         self.along = path_system(system, state.notes)
         #: The critical point that was found last, as the path and as results know it.
         self.located: tuple[Critical, CriticalPoint] | None = None
+        self.rates = (0.0, 0.0)
+        self.follower: PathTracer
+        self.limit: CriticalPoint | None = None
 
     def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
         """Follow the path to its end."""
         system, step, state = self.system, self.step, self.state
         period = step.period
-        start = self.along.start(state.u)
-        at = self.along.evaluate(start, self.factor * period)
-        force, move = system.load_rate(state.u)
-        heats = system.free.largest(system.conditions.heating) > 0.0
-        if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
-            raise ModelError(
-                f"step {self.number} follows a path, but nothing in it grows with the load "
-                "factor: give it a load or a moving support of its own",
-                step.where,
-            )
-        follower = PathTracer(
-            self.along,
-            Point(start, self.factor, at),
-            period,
-            Settings(step.tolerance, step.max_iterations + self.along.more_iterations),
-            self._plan(path),
-            self._report,
-            self._cut_back,
-        )
-        limit: CriticalPoint | None = None
+        self.stop_at_limit = bool(getattr(path, "stop_at_limit", False))
+        last: Increment | None = None
+        if state.resumes:
+            last = self._resume()
+        else:
+            self.follower = self._tracer(self._start(), self._plan(path))
+        follower = self.follower
         try:
-            for found in follower:
-                point = self._accept(found)
-                if found.last and point is not None and getattr(path, "stop_at_limit", False):
-                    limit = point
-                self._check(found)
+            if last is not None:
+                self._check(last)
+            if last is None or not last.last:
+                for found in follower:
+                    self._accept(found)
+                    self._check(found)
         except PathStalled as stalled:
             raise ConvergenceError(
                 f"step {self.number} stopped on its path at load factor {self.factor:.6g} "
@@ -163,11 +158,43 @@ class PathStep:
                     f"step {self.number} stopped on its path at load factor {self.factor:.6g}: "
                     f"{error}"
                 ) from None
-        return limit
+        return self.limit
+
+    def _start(self) -> Point:
+        """The committed state as the start of the path."""
+        system, step, state = self.system, self.step, self.state
+        start = self.along.start(state.u)
+        at = self.along.evaluate(start, self.factor * step.period)
+        force, move = system.load_rate(state.u)
+        heats = system.free.largest(system.conditions.heating) > 0.0
+        if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
+            raise ModelError(
+                f"step {self.number} follows a path, but nothing in it grows with the load "
+                "factor: give it a load or a moving support of its own",
+                step.where,
+            )
+        return Point(start, self.factor, at)
+
+    def _tracer(self, start: Point, plan: Plan) -> PathTracer:
+        step = self.step
+        settings = Settings(step.tolerance, step.max_iterations + self.along.more_iterations)
+        return PathTracer(
+            self.along, start, step.period, settings, plan, self._report, self._cut_back
+        )
+
+    def _resume(self) -> Increment:
+        """Take the state of a checkpoint; returns the increment that it was taken after."""
+        self.follower = self._tracer(Point(self.state.u, 0.0, None), Plan())
+        loop = self.state.resume("path", along=self.along, tracer=self.follower)
+        self.factor, self.increment = loop["factor"], loop["increment"]
+        self.located, self.limit, self.rates = loop["located"], loop["limit"], loop["rates"]
+        self.begin, self.arc = loop["begin"], loop["arc"]
+        found: Increment = loop["found"]
+        return found
 
     # -- increments --------------------------------------------------------------------
 
-    def _accept(self, found: Increment) -> CriticalPoint | None:
+    def _accept(self, found: Increment) -> None:
         state, system = self.state, self.system
         at, u = self.along.plain(found.point.at), found.point.u[: system.n_dofs]
         assert state.energies is not None
@@ -219,8 +246,22 @@ class PathStep:
             self._tell_branches(*self.located)
         if found.critical is not None and critical is not None:
             self.located = (found.critical, critical)
+        if found.last and self.stop_at_limit:
+            self.limit = critical
+        state.loop = {
+            "kind": "path",
+            "along": self.along,
+            "tracer": self.follower,
+            "factor": self.factor,
+            "increment": self.increment,
+            "located": self.located,
+            "limit": self.limit,
+            "rates": self.rates,
+            "begin": self.begin,
+            "arc": self.arc,
+            "found": found,
+        }
         self.save(state, self.increment, self.factor, scalars)
-        return critical
 
     def _tell_branches(self, critical: Critical, point: CriticalPoint) -> None:
         """Give a bifurcation point its branches."""

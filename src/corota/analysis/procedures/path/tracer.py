@@ -116,13 +116,43 @@ class PathTracer:
         self.aim: tuple[Point, Tangent] | None = None
         #: Ways of displacements and load factor so far.
         self.way = (0.0, 0.0)
+        #: Increments so far; whether the start is found, and whether increments follow a tangent.
+        self.count, self.begun, self.going = 0, False, False
+        #: The bifurcation point from which the next increment takes another branch.
+        self.crossing: Critical | None = None
         self._evaluated: Point | None = None
 
     def __iter__(self) -> Iterator[Increment]:
-        count = 0
-        for begun in self._begin():
-            count += 1
-            yield begun
+        # The generator may be begun again after any increment: where it stands are attributes.
+        if not self.begun:
+            for begun in self._begin():
+                self.count, self.begun = self.count + 1, True
+                yield begun
+            self.begun = True
+        if not self.going:
+            self._set_off()
+        while True:
+            self.count += 1
+            crossing, self.crossing = self.crossing, None
+            if crossing is not None:
+                found = switch(self, crossing)
+            else:
+                before = self.base
+                found = self._increment()
+                if self.origin is not None and returned(self, before, self.base, self.origin):
+                    found.closed = True
+            if self._ends_after(found, self.count):
+                found.last = True
+            critical = found.critical
+            bifurcation = critical is not None and critical.kind == "bifurcation"
+            if crossing is None and bifurcation and self.plan.switch and not self.switched:
+                self.switched, self.crossing = not found.last, critical
+            yield found
+            if found.last:
+                return
+
+    def _set_off(self) -> None:
+        """Size and sense of the first increment along the tangent."""
         self.first_metric = self.metric
         if self.base.factor != 0.0:
             # The load has come this far already: its way is measured from its start.
@@ -134,27 +164,7 @@ class PathTracer:
         if row is not None and row.of(self.tangent.u) * row.value < 0.0:
             self.tangent = self.tangent.reversed()
         self.mark = self.tangent
-        while True:
-            count += 1
-            before = self.base
-            found = self._increment()
-            if self.origin is not None and returned(self, before, self.base, self.origin):
-                found.closed = True
-            if self._ends_after(found, count):
-                found.last = True
-            yield found
-            if found.last:
-                return
-            critical = found.critical
-            bifurcation = critical is not None and critical.kind == "bifurcation"
-            if critical is not None and bifurcation and self.plan.switch and not self.switched:
-                self.switched = True
-                count += 1
-                found = switch(self, critical)
-                found.last = self._ends_after(found, count)
-                yield found
-                if found.last:
-                    return
+        self.going = True
 
     # -- the start ---------------------------------------------------------------------
 

@@ -90,6 +90,7 @@ class ModelBuilder:
         for draft in deck.steps:
             step = self._step(draft)
             if step is not None:
+                step.restart = draft.restart
                 model.steps.append(step)
         self.sets.report_missing(self._names_used())
         model.time_points = deck.time_points

@@ -26,6 +26,23 @@ WRITTEN = {
 ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
 
 
+def restart(deck: Deck, card: Card) -> None:
+    """``*RESTART, WRITE[, FREQUENCY=]``: keep checkpoints of this step and the later ones."""
+    deck.no_rows(card)
+    if card.has("READ"):
+        deck.error(
+            card,
+            card.at("READ"),
+            "a deck does not start from a checkpoint here",
+            hint="go on by the command corota resume, or with other steps by "
+            "corota.resume(path, steps=[...])",
+        )
+        return
+    deck.restart = deck.parameter_integer(card, "FREQUENCY", 1, 0)
+    if deck.step is not None:
+        deck.step.restart = deck.restart
+
+
 def node_print(deck: Deck, card: Card) -> None:
     """``*NODE PRINT[, NSET=]``: table of nodal values in ``<job>.dat``; else of all nodes.
 

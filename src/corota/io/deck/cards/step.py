@@ -59,7 +59,7 @@ def step(deck: Deck, card: Card) -> None:
             )
     limit = deck.parameter_integer(card, "INC", 100, 1)
     ramp = deck.choice(card, "AMPLITUDE", ("RAMP", "STEP"), "RAMP") == "RAMP"
-    deck.step = StepDraft(card, nlgeom, limit, ramp)
+    deck.step = StepDraft(card, nlgeom, limit, ramp, restart=deck.restart)
     deck.steps.append(deck.step)
     deck.material = None
 

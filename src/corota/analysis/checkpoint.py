@@ -1,0 +1,151 @@
+"""A checkpoint: the whole state of an analysis after an increment, to go on from to the bit."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.state_tree import Reader, Writer, digest_of
+
+if TYPE_CHECKING:
+    from corota.analysis.run import Analysis
+    from corota.analysis.state import State
+    from corota.model.model import Model
+    from corota.model.steps import Step
+
+
+@dataclass
+class Checkpoint:
+    """State after an increment.
+
+    Parameters
+    ----------
+    step, increment : int
+        The increment, from 1.
+    time, step_time, factor : float
+        Of its end.
+    kind : str
+        Loop that it was taken in: static, path, dynamic or explicit.
+    tree : dict
+        See :mod:`corota.analysis.state_tree`.
+    arrays : list of ndarray
+        Numbers of the tree.
+    """
+
+    step: int
+    increment: int
+    time: float
+    step_time: float
+    factor: float
+    kind: str
+    tree: dict[str, Any]
+    arrays: list[Any]
+    #: Whether a run that starts here leaves the rest of the step out.
+    leave_step: bool = False
+
+    @property
+    def where(self) -> str:
+        """The increment in words."""
+        return f"step {self.step}, increment {self.increment}, time {self.time:.6g}"
+
+
+@dataclass
+class Begun:
+    """What the beginnings of steps depend on that is no state of an increment.
+
+    Parameters
+    ----------
+    time : float
+        Total time at the start of the step [time].
+    first : bool
+        Whether nothing was loaded before.
+    ended : float
+        Step time at which the loads of the step before ended [time].
+    """
+
+    time: float
+    first: bool
+    ended: float
+
+
+@dataclass
+class Resumption:
+    """A checkpoint and the analysis that it goes into."""
+
+    analysis: Analysis
+    checkpoint: Checkpoint
+    built: dict[str, Any]
+    known: dict[str, Any] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.known = self.analysis.known()
+
+    @property
+    def kind(self) -> str:
+        """Kind of the loop."""
+        return self.checkpoint.kind
+
+    def restore(self, state: State) -> None:
+        """Put everything into the fresh objects of the analysis."""
+        Reader(self.checkpoint.arrays, self.known, self.built).read(
+            self.checkpoint.tree, root(self.analysis, state)
+        )
+
+
+def root(analysis: Analysis, state: State) -> dict[str, Any]:
+    """What a checkpoint holds."""
+    return {
+        "system": analysis.system,
+        "state": state,
+        "warned": analysis.warned,
+        "begun": analysis.begun,
+    }
+
+
+def take(analysis: Analysis, state: State, where: tuple[int, int], factor: float) -> Checkpoint:
+    """The state as it is now, in copies."""
+    assert state.loop is not None
+    writer = Writer(analysis.known(), analysis.as_built)
+    tree = writer.write(root(analysis, state), "")
+    return Checkpoint(
+        *where,
+        state.time + state.step_time,
+        state.step_time,
+        factor,
+        state.loop["kind"],
+        tree,
+        writer.arrays,
+    )
+
+
+def model_tree(model: Model, steps: list[Step]) -> tuple[Any, list[Any], str]:
+    """A model and its steps by value: tree, arrays and digest.
+
+    Raises
+    ------
+    Unstorable
+        If it holds functions, as user materials do.
+    """
+    writer = Writer({}, by_value=True)
+    tree = writer.write({"model": model, "steps": steps}, "")
+    return tree, writer.arrays, digest_of(tree, writer.arrays)
+
+
+def replay(analysis: Analysis, begun: list[Begun]) -> None:
+    """Begin the steps of a checkpoint again, for the objects that loads are made of.
+
+    Their numbers follow with the rest of the state.
+    """
+    system = analysis.system
+    zero = np.zeros(system.n_dofs)
+    for number, start in enumerate(begun, start=1):
+        step = analysis.steps[number - 1]
+        system.mass = analysis.mass(number)
+        system.conditions.end_time = start.ended
+        system.begin(step, start.time, zero.copy(), None if start.first else zero)
+
+
+__all__ = ["Begun", "Checkpoint", "Resumption", "model_tree", "replay", "take"]

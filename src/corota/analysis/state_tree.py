@@ -1,0 +1,429 @@
+"""The state of an analysis as a tree of plain values and arrays, and back into fresh objects.
+
+Whatever an analysis holds between two increments is state, unless this module says otherwise:
+attributes of :data:`DERIVED` are computed anew, the model stands for itself, and code is not
+stored. So an attribute that is added later is part of every checkpoint without being listed.
+Objects of the compiled core give and take their state as arrays.
+
+Arrays of the system that still are as they were built are not stored again: the tree holds their
+digest only, by which a system of another model is told.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import hashlib
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.errors import CorotaError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: Attributes that follow from others, by class: linear solvers, memory, clocks, caches.
+DERIVED: dict[str, frozenset[str]] = {
+    "System": frozenset({"model", "blocks", "largest_linear_strain", "_spare"}),
+    "Conditions": frozenset({"_known"}),
+    "SaddlePointSystem": frozenset({"_resolve", "_link"}),
+    "State": frozenset({"resumption", "recover"}),
+    "Balance": frozenset({"inertia"}),
+    "PathTracer": frozenset({"report", "cut_back"}),
+}
+#: Attributes of new objects that must be there although they are not stored.
+BLANK: dict[str, dict[str, Any]] = {
+    "SaddlePointSystem": {"_link": None, "_resolve": None},
+}
+#: Packages whose classes may be made from a tree.
+PACKAGES = ("corota.analysis.", "corota.model.", "corota.mesh", "corota.results.", "corota.errors")
+#: Modules of the model whose objects are results, not input.
+FOUND = ("corota.model.paths",)
+#: Kinds of arrays that are stored.
+KINDS = "biufcSU"
+
+
+class UnsuitableState(CorotaError):
+    """A tree that does not belong to the objects it is to be put into."""
+
+
+class Unstorable(CorotaError):
+    """An object that has no place in a checkpoint."""
+
+
+def digest(array: Any) -> str:
+    """Digest of the numbers, shape and type of an array."""
+    plain = np.ascontiguousarray(array)
+    own = hashlib.blake2b(f"{plain.dtype.str}{array.shape}".encode(), digest_size=12)
+    own.update(plain.data if plain.size else b"")
+    return own.hexdigest()
+
+
+def _is_core(value: Any) -> bool:
+    return hasattr(type(value), "restore_state")
+
+
+def _is_code(value: Any) -> bool:
+    return callable(value) and not hasattr(type(value), "__dataclass_fields__")
+
+
+def _attributes(value: Any) -> dict[str, Any]:
+    skip = DERIVED.get(type(value).__name__, frozenset())
+    return {k: v for k, v in _parts(value).items() if k not in skip}
+
+
+def _parts(value: Any) -> dict[str, Any]:
+    """Attributes of an object, with or without a dict."""
+    slots = [name for kind in type(value).__mro__ for name in getattr(kind, "__slots__", ())]
+    own = {name: getattr(value, name) for name in slots if hasattr(value, name)}
+    return own | getattr(value, "__dict__", {})
+
+
+class Writer:
+    """Turns values into a tree.
+
+    Parameters
+    ----------
+    known : dict of str to object
+        Objects that stand for themselves, by the names that trees have for them.
+    as_built : dict of str to str
+        Digests of arrays by their place, see :func:`arrays_as_built`.
+    by_value : bool
+        Store objects of the model too.
+
+    Attributes
+    ----------
+    arrays : list of ndarray
+        Numbers of the tree; it refers to them by their index.
+    """
+
+    def __init__(
+        self,
+        known: dict[str, Any],
+        as_built: dict[str, str] | None = None,
+        by_value: bool = False,
+    ) -> None:
+        self.arrays: list[Any] = []
+        self._known = {id(value): name for name, value in known.items()}
+        self._as_built = as_built or {}
+        self._by_value = by_value
+        self._seen: dict[int, int] = {}
+        self._alive: list[Any] = []  # so that no identity is given twice
+
+    def write(self, value: Any, place: str = "") -> Any:
+        """Tree of a value.
+
+        Raises
+        ------
+        Unstorable
+            If something in it is neither plain nor part of this program.
+        """
+        if value is None or type(value) in (bool, int, float, str):
+            return value
+        if isinstance(value, np.generic):
+            return {"scalar": self._array(np.asarray(value))}
+        if type(value) is complex:
+            return {"complex": [value.real, value.imag]}
+        if type(value) is bytes:
+            return {"bytes": value.hex()}
+        if (name := self._known.get(id(value))) is not None:
+            return {"known": name}
+        if (number := self._seen.get(id(value))) is not None:
+            return {"again": number}
+        if type(value) is tuple:
+            return {"tuple": [self.write(v, f"{place}/{i}") for i, v in enumerate(value)]}
+        if _is_code(value):
+            return {"code": True}
+        self._seen[id(value)] = number = len(self._alive)
+        self._alive.append(value)
+        return {"n": number} | self._body(value, place)
+
+    def _body(self, value: Any, place: str) -> dict[str, Any]:
+        if isinstance(value, np.ndarray):
+            if self._as_built.get(place) == (found := digest(value) if self._as_built else ""):
+                return {"built": found}
+            return self._order(value)
+        kind = type(value)
+        if isinstance(value, list):
+            return {"list": [self.write(v, f"{place}/{i}") for i, v in enumerate(value)]}
+        if kind in (set, frozenset):
+            return {"set": [self.write(v) for v in sorted(value)]}
+        if isinstance(value, dict):
+            items = [
+                [self.write(k, f"{place}/{i}k"), self.write(v, f"{place}/{k}")]
+                for i, (k, v) in enumerate(value.items())
+            ]
+            return {"dict": items}
+        if hasattr(value, "tocsr") and hasattr(value, "format"):
+            return self._sparse(value)
+        if _is_core(value):
+            return {"core": [self._array(part) for part in value.state()]}
+        module = kind.__module__
+        if module in ("corota._core", "builtins"):
+            return {"code": True}
+        if not module.startswith(PACKAGES):
+            raise Unstorable(f"{place}: a {module}.{kind.__name__} has no place in a checkpoint")
+        if isinstance(value, int):
+            return {"int": int(value), "class": f"{module}:{kind.__name__}"}
+        if module.startswith("corota.model") and module not in FOUND and not self._by_value:
+            return {"model": True}
+        body = {
+            name: self.write(part, f"{place}.{name}") for name, part in _attributes(value).items()
+        }
+        return {"class": f"{module}:{kind.__qualname__}", "parts": body}
+
+    def _order(self, value: Any) -> dict[str, Any]:
+        if value.dtype.kind not in KINDS:
+            raise Unstorable(f"an array of {value.dtype} has no place in a checkpoint")
+        columns = value.flags.f_contiguous and not value.flags.c_contiguous
+        body: dict[str, Any] = {"array": self._array(value.T if columns else value)}
+        return body | {"columns": True} if columns else body
+
+    def _array(self, value: Any) -> int:
+        self.arrays.append(np.array(value))
+        return len(self.arrays) - 1
+
+    def _sparse(self, value: Any) -> dict[str, Any]:
+        names = ("row", "col", "data") if value.format == "coo" else ("indptr", "indices", "data")
+        return {
+            "sparse": type(value).__name__,
+            "shape": list(value.shape),
+            "parts": [self._array(getattr(value, name)) for name in names],
+            "sorted": bool(getattr(value, "has_sorted_indices", True)),
+        }
+
+
+class Reader:
+    """Puts a tree into fresh objects.
+
+    Parameters
+    ----------
+    arrays : sequence of ndarray
+        Of the tree.
+    known : dict of str to object
+        As those of the :class:`Writer`.
+    built : dict of str to ndarray, optional
+        Arrays that the objects were built with, by digest, where they have changed since.
+    """
+
+    def __init__(
+        self, arrays: Any, known: dict[str, Any], built: dict[str, Any] | None = None
+    ) -> None:
+        self._arrays, self._known, self._built = arrays, known, built or {}
+        self._made: dict[int, Any] = {}
+        self._taken: dict[int, Any] = {}  # fresh objects that have their state already
+
+    def read(self, tree: Any, fresh: Any = None) -> Any:
+        """The value of a tree; `fresh` is what stands in its place, and is used if it fits.
+
+        Raises
+        ------
+        UnsuitableState
+            If the tree belongs to something else.
+        """
+        if not isinstance(tree, dict):
+            return tree
+        if "known" in tree:
+            if tree["known"] not in self._known:
+                raise UnsuitableState(f"nothing is named {tree['known']}")
+            return self._known[tree["known"]]
+        if "again" in tree:
+            return self._made[tree["again"]]
+        if "tuple" in tree:
+            old = fresh if isinstance(fresh, tuple) else ()
+            return tuple(self.read(t, f) for t, f in _beside(tree["tuple"], old))
+        if "code" in tree and "n" not in tree:
+            return fresh
+        for kind in ("scalar", "complex", "bytes"):
+            if kind in tree:
+                return self._plain(kind, tree[kind])
+        if "built" not in tree and fresh is not None and id(fresh) in self._taken:
+            fresh = None  # two places that were one when they were new
+        return self._whole(tree, fresh)
+
+    def _plain(self, kind: str, body: Any) -> Any:
+        if kind == "scalar":
+            return self._arrays[body][()]
+        return complex(*body) if kind == "complex" else bytes.fromhex(body)
+
+    def _whole(self, tree: dict[str, Any], fresh: Any) -> Any:
+        number = tree["n"]
+        if "list" in tree:
+            old: Any = list(fresh) if isinstance(fresh, list) else []
+            out: Any = self._keep(number, fresh if isinstance(fresh, list) else [])
+            out[:] = [self.read(t, f) for t, f in _beside(tree["list"], old)]
+        elif "dict" in tree:
+            old = dict(fresh) if isinstance(fresh, dict) else {}
+            out = self._keep(number, fresh if isinstance(fresh, dict) else {})
+            out.clear()
+            for key, part in tree["dict"]:
+                name = self.read(key)
+                out[name] = self.read(part, old.get(name))
+        elif "set" in tree:
+            out = self._keep(number, fresh if isinstance(fresh, set) else set())
+            out.clear()
+            out.update(self.read(t) for t in tree["set"])
+        elif "class" in tree and "parts" in tree:
+            out = self._object(tree, fresh)
+        else:
+            out = self._keep(number, self._leaf(tree, fresh))
+        return out
+
+    def _leaf(self, tree: dict[str, Any], fresh: Any) -> Any:
+        if "array" in tree:
+            value = self._arrays[tree["array"]]
+            return value.T if tree.get("columns") else value
+        if "built" in tree:
+            if isinstance(fresh, np.ndarray) and digest(fresh) == tree["built"]:
+                return fresh
+            if tree["built"] not in self._built:
+                raise UnsuitableState("an array of the model differs")
+            return self._built[tree["built"]].copy()
+        if "core" in tree:
+            if not _is_core(fresh):
+                raise UnsuitableState("part of the core is missing")
+            try:
+                fresh.restore_state(*(self._arrays[i] for i in tree["core"]))
+            except (ValueError, TypeError) as error:
+                raise UnsuitableState(str(error)) from None
+            return fresh
+        if "sparse" in tree:
+            import scipy.sparse
+
+            names = (
+                "coo_array",
+                "csr_array",
+                "csc_array",
+                "coo_matrix",
+                "csr_matrix",
+                "csc_matrix",
+            )
+            if tree["sparse"] not in names:
+                raise UnsuitableState(f"{tree['sparse']} is no sparse array")
+            first, second, data = (self._arrays[i] for i in tree["parts"])
+            coo = tree["sparse"].startswith("coo")
+            given = (data, (first, second)) if coo else (data, second, first)
+            out = getattr(scipy.sparse, tree["sparse"])(given, shape=tuple(tree["shape"]))
+            if not coo:
+                out.has_sorted_indices = tree["sorted"]
+            return out
+        if "int" in tree:
+            return _class(tree["class"])(tree["int"])
+        if "model" in tree or "code" in tree:
+            return fresh
+        raise UnsuitableState("a part of the tree is of no known kind")
+
+    def _object(self, tree: dict[str, Any], fresh: Any) -> Any:
+        kind = _class(tree["class"])
+        own = fresh if type(fresh) is kind else kind.__new__(kind)
+        self._keep(tree["n"], own)
+        blank = {} if own is fresh else BLANK.get(kind.__name__, {})
+        for name, value in blank.items():
+            object.__setattr__(own, name, value)
+        for name, part in tree["parts"].items():
+            old = _parts(own).get(name)
+            value = self.read(part, old)
+            if value is None and isinstance(part, dict):
+                continue  # code that a new object has to be given
+            object.__setattr__(own, name, value)
+        return own
+
+    def _keep(self, number: int, value: Any) -> Any:
+        self._made[number] = value
+        if value is not None:
+            self._taken[id(value)] = value
+        return value
+
+
+def dict_of(tree: dict[str, Any]) -> dict[str, Any]:
+    """Trees of the values of a dict with names for keys."""
+    return dict(tree["dict"])
+
+
+def _beside(trees: list[Any], fresh: Any) -> Iterator[tuple[Any, Any]]:
+    for i, tree in enumerate(trees):
+        yield tree, fresh[i] if i < len(fresh) else None
+
+
+def _class(name: str) -> Any:
+    module, _, path = name.partition(":")
+    if not module.startswith(PACKAGES):
+        raise UnsuitableState(f"{module} makes no part of a state")
+    try:
+        found: Any = sys.modules.get(module) or import_module(module)
+        for part in path.split("."):
+            found = getattr(found, part)
+    except (ImportError, AttributeError):
+        raise UnsuitableState(f"this program has no {path}") from None
+    if not isinstance(found, type) or found.__module__ != module:
+        raise UnsuitableState(f"{path} is no class of this program")
+    return found
+
+
+def arrays_as_built(value: Any, known: dict[str, Any], place: str) -> dict[str, str]:
+    """Digests of the arrays of a value by their place."""
+    found = _Digests(known)
+    found.write(value, place)
+    return found.digests
+
+
+def copies_as_built(value: Any, known: dict[str, Any]) -> dict[str, Any]:
+    """Copies of the arrays of a value by their digest."""
+    found = _Digests(known, copy=True)
+    found.write(value, "")
+    return found.copies
+
+
+class _Digests(Writer):
+    """A writer that only notes where arrays are."""
+
+    def __init__(self, known: dict[str, Any], copy: bool = False) -> None:
+        super().__init__(known)
+        self.digests: dict[str, str] = {}
+        self.copies: dict[str, Any] = {}
+        self._copy = copy
+
+    def _order(self, value: Any) -> dict[str, Any]:
+        raise AssertionError
+
+    def _body(self, value: Any, place: str) -> dict[str, Any]:
+        if isinstance(value, np.ndarray):
+            self.digests[place] = found = digest(value)
+            if self._copy:
+                self.copies[found] = value.copy()
+            return {}
+        if _is_core(value):
+            return {}
+        return super()._body(value, place)
+
+
+def digest_of(tree: Any, arrays: list[Any]) -> str:
+    """Digest of a tree with its arrays; where things were read from does not count."""
+    import json
+
+    own = hashlib.sha256(json.dumps(_without_places(tree), sort_keys=True).encode())
+    for array in arrays:
+        own.update(digest(array).encode())
+    return own.hexdigest()
+
+
+def _without_places(tree: Any) -> Any:
+    if isinstance(tree, dict):
+        return {k: _without_places(v) for k, v in tree.items() if k not in ("where", "notes")}
+    if isinstance(tree, list):
+        return [_without_places(v) for v in tree]
+    return tree
+
+
+__all__ = [
+    "Reader",
+    "Unstorable",
+    "UnsuitableState",
+    "Writer",
+    "arrays_as_built",
+    "copies_as_built",
+    "dict_of",
+    "digest_of",
+]

@@ -1,0 +1,44 @@
+"""``corota resume``: go on with a run that stopped."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from corota.cli.run import carry_out
+from corota.errors import FileError
+
+if TYPE_CHECKING:
+    from corota.cli.terminal import Terminal
+
+
+def run(args: Any, terminal: Terminal) -> int:
+    """Resume a job; return the exit code."""
+    from corota import __version__
+    from corota.analysis.state_tree import UnsuitableState
+    from corota.io.checkpoint import newest, rebuilt
+    from corota.io.provenance import source_of
+    from corota.io.resume import files_of, foreign
+
+    begin = time.perf_counter()
+    terminal.line(terminal.color(f"Corota {__version__}", "bold") + f"  {args.job}")
+    job = Path(args.job)
+    saved, refused = newest(job if args.output is None else Path(args.output) / job.name)
+    for reason in refused:
+        terminal.line(f"  note: not used: {reason}")
+    known = saved.options["source"].get("sha256")
+    deck = job.suffix == ".inp" and job.exists()
+    if deck and known and source_of(job)["sha256"] != known:
+        raise FileError(
+            f"{job}: the deck has changed since {saved.path} was written: run it again, or go on "
+            f"with the old one by: corota resume {saved.path}"
+        )
+    model, steps = rebuilt(saved)
+    terminal.line(f"From {saved.path}: {saved.state.where}")
+    files = files_of(saved)
+    try:
+        return carry_out(model, steps, files, terminal, args, begin, saved.state)
+    except UnsuitableState as error:
+        raise foreign(saved, error) from None

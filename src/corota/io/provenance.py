@@ -1,0 +1,79 @@
+"""What results were made by and from: program, libraries, deck, by version and digest."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from corota.errors import FileError
+from corota.io.atomic_file import replace_text
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+#: Libraries that take part in the numbers and the files.
+LIBRARIES = ("numpy", "scipy", "h5py")
+
+
+def sha256(path: str | PathLike[str]) -> str:
+    """Digest of a file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    try:
+        found = hashlib.sha256()
+        with open(path, "rb") as file:
+            while block := file.read(1 << 20):
+                found.update(block)
+        return found.hexdigest()
+    except OSError as error:
+        raise FileError(f"{path}: cannot read: {error.strerror or error}") from None
+
+
+def source_of(deck: str | PathLike[str]) -> dict[str, str]:
+    """Name and digest of a deck."""
+    return {"deck": Path(deck).name, "sha256": sha256(deck)}
+
+
+def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path:
+    """Write ``NAME.provenance.json`` into a folder; return its path.
+
+    Raises
+    ------
+    FileError
+        If the disk refuses.
+    """
+    from importlib.metadata import PackageNotFoundError, version
+
+    from corota import __version__, _core
+
+    libraries = {}
+    for library in LIBRARIES:
+        try:
+            libraries[library] = version(library)
+        except PackageNotFoundError:
+            continue
+    record = {
+        "program": "corota",
+        "version": __version__,
+        "core sha256": sha256(str(_core.__file__)),
+        "python": platform.python_version(),
+        "system": f"{sys.platform} {platform.machine()}",
+        "libraries": libraries,
+        "input": source_of(deck),
+    }
+    path = folder / f"{name}.provenance.json"
+    folder.mkdir(parents=True, exist_ok=True)
+    replace_text(path, json.dumps(record, indent=2) + "\n")
+    return path
+
+
+__all__ = ["sha256", "source_of", "write_provenance"]
