@@ -15,3 +15,10 @@ pub mod materials;
 pub mod model;
 #[cfg(feature = "python")]
 mod python;
+
+// The contract tests are part of the unit tests: the core is compiled once for all of them.
+#[cfg(test)]
+extern crate self as corota;
+#[cfg(test)]
+#[path = "../tests/contracts/main.rs"]
+mod contracts;

@@ -1,7 +1,7 @@
 //! Edge loads: resultants, end moments and load stiffness, undeformed and where an edge moved.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::Random;
+use super::common::Random;
 use corota::loads::edge::{Edge, EdgeForce, EdgeStiffness, Place, pressure, traction};
 
 const ROUNDOFF: f64 = 1e-13;

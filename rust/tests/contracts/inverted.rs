@@ -1,7 +1,7 @@
 //! A cell that is turned inside out is reported, whatever its rotation.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{evaluate, natural, section, strains, turn};
+use super::common::{evaluate, natural, section, strains, turn};
 use corota::elements::Element;
 use corota::for_each_planar_element;
 use corota::materials::Plane;

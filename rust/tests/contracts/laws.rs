@@ -2,7 +2,7 @@
 //! moduli; energy and thickness values belong to the stress.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::Random;
+use super::common::Random;
 use corota::base::{Dual, Real};
 use corota::materials::{Law, Plane, PointState};
 

@@ -2,7 +2,7 @@
 //! rotations that belong to it, and the internal modes do not see a constant stress.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{Random, cell, largest, natural};
+use super::common::{Random, cell, largest, natural};
 use corota::elements::{Element, Operator};
 use corota::for_each_planar_element;
 

@@ -2,7 +2,7 @@
 //! and the numbering of the nodes does not matter.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{
+use super::common::{
     Random, cell, dense, evaluate, largest, natural, norm, rigid, section, state, strains, turn,
 };
 use corota::elements::Element;

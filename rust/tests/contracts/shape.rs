@@ -2,7 +2,7 @@
 //! derivatives; weights of the rules.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{Random, natural};
+use super::common::{Random, natural};
 use corota::elements::Element;
 use corota::for_each_planar_element;
 

@@ -1,7 +1,7 @@
 //! The force is the gradient of the strain energy, the tangent the derivative of the force.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{
+use super::common::{
     Random, cell, dense, evaluate, largest, norm, section, state, strains, variables,
 };
 use corota::base::{Dual, Real};

@@ -2,7 +2,7 @@
 //! implementation (`tests/data/element_vectors.json`): what symmetries cannot see.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{dense, evaluate, largest, norm};
+use super::common::{dense, evaluate, largest, norm};
 use corota::elements::Element;
 use corota::for_each_planar_element;
 use corota::kinematics::integrate::Section;

@@ -2,7 +2,7 @@
 //! second element removes; all other eigenvalues positive.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::common::{Random, cell, dense, eigenvalues, evaluate, natural, section, strains};
+use super::common::{Random, cell, dense, eigenvalues, evaluate, natural, section, strains};
 use corota::elements::Element;
 use corota::for_each_planar_element;
 use corota::kinematics::local_strain::LocalStrain;
