@@ -478,7 +478,9 @@ fn each_chunk(
         if parallel && colour.len() > 1 {
             colour.par_iter().for_each(|c| evaluate(c.as_ref()));
         } else {
-            colour.iter().for_each(|c| evaluate(c.as_ref()));
+            for c in colour {
+                evaluate(c.as_ref());
+            }
         }
     }
 }
