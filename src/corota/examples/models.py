@@ -69,7 +69,7 @@ def clip() -> Model:
     )
     mesh.edge_sets["hook"] = np.vstack([mesh.edge_sets["top"], mesh.edge_sets["right"]])
     model = Model(mesh, name="clip")
-    polymer = Mises(E=2300.0, nu=0.38, yield_stress=45.0, isotropic=150.0)
+    polymer = Mises(E=2300.0, nu=0.38, yield_stress=35.0, isotropic=150.0)
     model.section(element="Q4I", material=polymer, thickness=4.0)
     corners = [(20.5, 2.2), (20.5, 5.0), (23.0, 5.0), (23.0, 2.2)]
     catch = RigidCurve.polyline(corners, closed=True, fillet=1.0)
