@@ -108,7 +108,7 @@ def test_a_bar_that_was_turned_pulls_along_its_new_direction(element: str) -> No
     x, angle = mesh.points, np.pi / 3.0
     c, s = np.cos(angle), np.sin(angle)
     if element in ("Q4D", "OPT"):
-        model.fix("left", rotation=angle)
+        model.fix("left", x=None, y=None, rotation=angle)
     for node in mesh.nodes_of("left"):
         to = np.array([[c, -s], [s, c]]) @ x[node]
         model.fix([int(node)], x=to[0] - x[node, 0], y=to[1] - x[node, 1])
