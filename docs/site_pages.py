@@ -22,7 +22,7 @@ REFERENCE = {
     "Materials": "Elastic Orthotropic Expansion Mises Voce UserMaterial",
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",
-    "Running and reading": "solve read write read_results JobFiles",
+    "Running and reading": "solve resume read write read_results JobFiles",
     "Results": "Results Frame PointFields History CriticalPoint Modes",
     "Observers": "BaseObserver Observer Iteration",
     "Errors": "CorotaError InputError DeckError ModelError UnsupportedError SingularError "
