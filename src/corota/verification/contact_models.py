@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from corota import mesh as meshes
-from corota.mesh import Mesh
+from corota.mesh import EDGES, Mesh
 from corota.model.contact import RigidCurve
 from corota.model.loads import Fixed
 from corota.model.materials import Elastic
@@ -56,7 +56,25 @@ def quarter(radius: float, n: int, element: str, growth: float = 1.5, upper: boo
             flat,
             lambda t: (0.0, radius * (t**power - 1.0)),
         ]
-    return meshes.mapped(sides, n, n, cell(element))
+    return _middles(meshes.mapped(sides, n, n, cell(element)), radius)
+
+
+def _middles(mesh: Mesh, radius: float) -> Mesh:
+    """The mesh with the outer side nodes in the middle of their sides, which grow with a power."""
+    for block in mesh.cells:
+        for local in EDGES[block.kind]:
+            if len(local) < 3:
+                continue
+            a, b, m = (mesh.points[block.nodes[:, i]] for i in local)
+            middle = 0.5 * (a + b)
+            ends = np.stack([np.hypot(*a.T), np.hypot(*b.T), np.hypot(*m.T)])
+            curved = np.all(np.abs(ends - radius) < 1e-9 * radius, axis=0)
+            middle[curved] *= radius / np.hypot(*middle[curved].T)[:, None]
+            side = np.zeros(len(a), bool) | curved
+            side |= np.all(np.abs([a[:, 0], b[:, 0]]) < 1e-12 * radius, axis=0)
+            side |= np.all(np.abs([a[:, 1], b[:, 1]]) < 1e-12 * radius, axis=0)
+            mesh.points[block.nodes[side, local[2]]] = middle[side]
+    return mesh
 
 
 def cylinder(
