@@ -100,6 +100,8 @@ def test_signal_ends_the_run_with_7_and_all_increments_on_disk(tmp_path, number,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # What runs the tests may ignore the signal, and the run would inherit that.
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
     ) as run:
         done = 0
         while done < 5:
