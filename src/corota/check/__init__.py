@@ -26,7 +26,8 @@ def check(model: Model) -> list[Diagnostic]:
     Errors are what a run refuses: cells without a section or of the wrong shape, inverted cells,
     and motions that nothing holds, with the node to hold. A model with steps is judged by the
     run's own first increment, so that constraints, ties and contact hold what they hold there;
-    what looks wrong and does not stop a run is a warning. Warnings are also meshes that lock,
+    what looks wrong and does not stop a run at its start is a warning, as is a motion that only a
+    later step lets free. Warnings are also meshes that lock,
     distorted cells, nodes at the same place, doubtful units. Notes count and list.
 
     Parameters
@@ -84,10 +85,9 @@ def _by_start(model: Model, found: list[Diagnostic]) -> tuple[list[Diagnostic], 
         found = [replace(d, severity="warning") if d.severity == "error" else d for d in found]
         if not _plain(model):
             return found, 0
-        # What later steps let free is no matter of the start, and an error all the same; what
-        # rests without loads starts.
-        later = check_rigid(model, first=1)
-        return found + (later or [replace(d, severity="warning") for d in check_rigid(model)]), 0
+        # What rests without loads starts, and so does what later steps let free.
+        free = check_rigid(model, first=1) or check_rigid(model)
+        return found + [replace(d, severity="warning") for d in free], 0
     named = isinstance(error, SingularError) and _plain(model)
     motions = check_rigid(model) if named else []
     if not motions and not any(d.severity == "error" for d in found):

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,7 +40,8 @@ def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
             continue
         found = _free_modes(mesh, held, rotating, step)
         if found:
-            break
+            later = f"step {number + 1}: " if number else ""
+            return [replace(d, message=later + d.message) for d in found]
     return found
 
 
