@@ -177,6 +177,8 @@ class Fixed:
         Reached at the end of the step, along the amplitude or a ramp.
     amplitude : str
         Name in ``Model.amplitudes``; empty: ramp in static steps.
+    keep : bool
+        Hold the nodes where the step finds them, whatever `value` is.
     """
 
     nodes: str | Ints
@@ -184,6 +186,7 @@ class Fixed:
     value: float = 0.0
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+    keep: bool = False
 
     def __post_init__(self) -> None:
         self.nodes = selected(self.nodes, "node", self.where)

@@ -22,6 +22,7 @@ from corota.analysis.load_history import LoadHistory
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.errors import ModelError, UnsupportedError
 from corota.model.dofs import DOFS
+from corota.model.integrated import IntegratedAmplitude
 from corota.model.loads import (
     BodyForce,
     EdgeLoad,
@@ -99,6 +100,10 @@ class Conditions:
         self.names = ["", *system.model.amplitudes]
         #: Amplitudes that count total time go on in later steps.
         self._runs_on = np.array([False, *(a.total_time for a in system.model.amplitudes.values())])
+        #: Amplitudes that move supports on from where the step finds them.
+        self._moves_on = np.array(
+            [False] + [isinstance(a, IntegratedAmplitude) for a in system.model.amplitudes.values()]
+        )
         self.period = 1.0
         self.end_time = 1.0  # step time at which the step ended: a path may end anywhere
         self.time = 0.0
@@ -218,7 +223,13 @@ class Conditions:
 
     def prescribed(self, step_time: float, u: Floats) -> Floats:
         """Values at held dofs, and `u` elsewhere; shape (n_dofs,)."""
-        out: Floats = np.where(self.constrained, self._values(self.support, step_time), u)
+        values = self._values(self.support, step_time)
+        course = self.support
+        on = self._moves_on[course.amplitude]
+        if on.any():
+            begun = self._factors(0.0)[course.amplitude[on]]
+            values[on] += course.begin[on] - course.end[on] * begun
+        out: Floats = np.where(self.constrained, values, u)
         return out
 
     def support_rates(self, step_time: float, window: float) -> tuple[Floats, Floats]:
@@ -466,7 +477,8 @@ class Conditions:
             dofs = dofs[dofs >= 0]
             self.system.constraints.refuse_constrained(dofs, item.where)
             self.constrained[dofs] = True
-            self.support.set(dofs, item.value, self._amplitude(item.amplitude, item.where))
+            value = self.support.begin[dofs] if item.keep else item.value
+            self.support.set(dofs, value, self._amplitude(item.amplitude, item.where))
         self.fixed = np.flatnonzero(self.constrained)
 
     def _refuse_conflicts(self, supports: list[Fixed]) -> None:
@@ -487,7 +499,8 @@ class Conditions:
             dofs = self.system.dofs(nodes, item.dof)
             nodes, dofs = nodes[dofs >= 0], dofs[dofs >= 0]
             index = self._amplitude(item.amplitude, item.where)
-            twice = given[dofs] & ((value[dofs] != item.value) | (amplitude[dofs] != index))
+            given_before = given[dofs] & (not item.keep)
+            twice = given_before & ((value[dofs] != item.value) | (amplitude[dofs] != index))
             if twice.any():
                 at = int(np.flatnonzero(twice)[0])
                 label = self.system.model.mesh.node_labels[nodes[at]]

@@ -174,6 +174,9 @@ class Draft:
     index: int = -1
     amplitude: str = ""
     silent: bool = False
+    #: Of a support: how often its value is integrated over time, and whether it stays where it is.
+    order: int = 0
+    keep: bool = False
 
 
 @dataclass(slots=True)

@@ -222,7 +222,7 @@ KEYWORDS: dict[str, Keyword] = {
         "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
         "NSET VARIABLE CPSET SURFACE",
     ),
-    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE", "REGIONTYPE"),
+    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"),
     "CLOAD": Keyword(step.cload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
     "DLOAD": Keyword(step.dload, "OP AMPLITUDE LOADCASE", "REGIONTYPE CONSTANTRESULTANT"),
     "DSLOAD": Keyword(
@@ -426,7 +426,6 @@ UNSUPPORTED: dict[str, str] = {
 #: Parameters that change the answer and are refused by name.
 REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("STATIC", "TOTALTIMEATSTART"): "the total time starts at zero",
-    ("BOUNDARY", "FIXED"): "prescribe the value instead",
     ("BOUNDARY", "USER"): "no user subroutine is called; use *AMPLITUDE",
     ("BOUNDARY", "TIMEDELAY"): "shift the amplitude by SHIFTX",
     ("BOUNDARY", "SUBMODEL"): "submodels are not part of this version",

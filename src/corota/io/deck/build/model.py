@@ -11,6 +11,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck import numerals
+from corota.io.deck.build.base_motion import base_motion
 from corota.io.deck.build.contact import build_contacts
 from corota.io.deck.build.materials import build_material, settle_temperature, share_damping
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of, views_in
@@ -393,10 +394,12 @@ class ModelBuilder:
             return None
         return found.name
 
-    def _supports(self, drafts: list[Draft]) -> list[Fixed]:
+    def _supports(self, drafts: list[Draft], step: StepDraft | None = None) -> list[Fixed]:
         found = []
         for draft in drafts:
             nodes, amplitude = self._nodes(draft), self._amplitude(draft)
+            if draft.order and step is not None and amplitude is not None:
+                amplitude = base_motion(self.deck, self.model, draft, amplitude, step)
             if nodes is None or amplitude is None or draft.kind == "nothing":
                 continue
             if draft.index == 2:
@@ -407,7 +410,21 @@ class ModelBuilder:
                     continue
                 if not isinstance(nodes, str):
                     nodes = nodes[self.rotating[nodes]]
-            found.append(Fixed(nodes, draft.index, draft.value[0], amplitude, draft.row.where))
+            value, where = draft.value[0], draft.row.where
+            if draft.order == 2 and any(
+                np.isin(self.mesh.node_indices(v.nodes), self.mesh.node_indices(nodes)).any()
+                for v in self.model.velocities
+            ):
+                self.deck.row_error(
+                    draft.card,
+                    draft.row,
+                    0,
+                    "nodes with a prescribed acceleration start from rest; these have an initial "
+                    "velocity",
+                    "give TYPE=VELOCITY",
+                )
+                continue
+            found.append(Fixed(nodes, draft.index, value, amplitude, where, keep=draft.keep))
         return found
 
     def _rotating(self, nodes: str | Ints) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -568,7 +585,7 @@ class ModelBuilder:
         if draft.procedure is None:
             return None
         behind = {id(d) for d in (*draft.supports, *draft.loads) if self._is_imaginary(d, draft)}
-        supports = self._supports([d for d in draft.supports if id(d) not in behind])
+        supports = self._supports([d for d in draft.supports if id(d) not in behind], draft)
         ahead = [d for d in draft.loads if id(d) not in behind]
         loads = [load for item in ahead for load in self._loads(item)]
         for request in draft.outputs:
@@ -582,7 +599,7 @@ class ModelBuilder:
                 options = {
                     **options,
                     "imaginary_supports": self._supports(
-                        [d for d in draft.supports if id(d) in behind]
+                        [d for d in draft.supports if id(d) in behind], draft
                     ),
                     "imaginary_loads": late,
                 }

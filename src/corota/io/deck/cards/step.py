@@ -32,6 +32,8 @@ NAMED_SUPPORTS = {
     "YASYMM": (1, 3, 5),
     "ZASYMM": (1, 2, 6),
 }
+#: What a support prescribes, and how often that is integrated to a displacement.
+RATES = {"DISPLACEMENT": 0, "VELOCITY": 1, "ACCELERATION": 2}
 #: Cards that ``OP=NEW`` concerns together.
 _KINDS = {
     "support": "supports (*BOUNDARY)",
@@ -289,14 +291,23 @@ def time_points(deck: Deck, card: Card) -> None:
 
 
 def boundary(deck: Deck, card: Card) -> None:
-    """``*BOUNDARY[, OP=][, AMPLITUDE=]``: node or set, first dof[, last dof[, value]]."""
+    """``*BOUNDARY[, OP=][, AMPLITUDE=][, TYPE=][, FIXED]``: target, first dof[, last[, value]]."""
     if _renews(deck, deck.step, card, "support") and deck.step is not None:
         deck.step.new_supports = True
-    deck.choice(card, "TYPE", ("DISPLACEMENT",), "DISPLACEMENT")
+    kind = deck.choice(card, "TYPE", RATES, "DISPLACEMENT")
     into = deck.step.supports if deck.step is not None else deck.supports
+    keep = card.has("FIXED")
+    if deck.step is None and (keep or RATES[kind]):
+        name = "FIXED" if keep else "TYPE"
+        text = f"{card.parameters[name].name} belongs into a step"
+        deck.error(card, card.at(name), text, hint="put the card between *STEP and *END STEP")
+        return
     for row in card.rows():
         deck.extra_fields(card, row, 4)
-        into.extend(_supports(deck, card, row))
+        found = _supports(deck, card, row)
+        for draft in found:
+            draft.order, draft.keep = RATES[kind], keep
+        into.extend(found)
 
 
 def _supports(deck: Deck, card: Card, row: Row) -> list[Draft]:

@@ -355,8 +355,9 @@ class _Writer:
 def _boundary(writer: _Writer, supports: list[Fixed], new: bool) -> Iterator[str]:
     if new:
         yield "*BOUNDARY, OP=NEW\n"
-    for amplitude, group in groupby(supports, key=lambda s: s.amplitude):
+    for (amplitude, keep), group in groupby(supports, key=lambda s: (s.amplitude, s.keep)):
         option = f", AMPLITUDE={_plain(amplitude)}" if amplitude else ""
+        option += ", FIXED" if keep else ""
         yield f"*BOUNDARY{option}\n"
         for support in group:
             dof = _dof(support.dof)
