@@ -18,7 +18,7 @@ export VIRTUAL_ENV := $(abspath $(VENV))
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python lint clippy format bench docs wheel try-wheel \
+.PHONY: help setup demo test test-rust test-python test-view lint clippy format bench docs wheel try-wheel \
 	meshes lock clean
 
 help: ## Say what the targets do
@@ -49,6 +49,15 @@ test-rust: $(CORE)
 
 test-python: $(CORE) test-rust
 	$(BIN)/python -m pytest -n $(JOBS)
+
+VIEW := $(VENV)/.stamp-view
+
+$(VIEW): $(CORE) requirements-view.txt
+	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-view.txt
+	@touch $@
+
+test-view: $(VIEW) ## Run the tests against VTK, PyVista, xarray, pandas, meshio and ccx2paraview
+	$(BIN)/python -m pytest -n $(JOBS) tests/output tests/interface
 
 lint: $(DEPS) clippy ## Check style, types and lints of both languages
 	$(BIN)/ruff check .

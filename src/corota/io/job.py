@@ -188,7 +188,7 @@ class JobFiles(BaseObserver):
             endings.insert(0, "dat")
         for ending in endings:
             self._text[ending] = TextFile(self._path(name, ending), keep=resumed is not None)
-        self._csv = CsvWriter(self._path(name, "csv"))
+        self._csv = CsvWriter(self._path(name, "csv"), model.unit_system)
         if resumed is None:
             self._text["sta"].append(STA_HEAD)
             self._text["cvg"].append(CVG_HEAD)

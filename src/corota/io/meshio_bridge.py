@@ -25,6 +25,8 @@ KINDS = {
     "quad8": "quad8",
     "quad9": "quad9",
 }
+#: Line elements and points by meshio's names; they are written, not read.
+LINES = {"line2": "line", "line3": "line3", "point1": "vertex"}
 
 
 def read_meshio(path: str | os.PathLike[str]) -> Mesh:
@@ -57,9 +59,14 @@ def from_meshio(found: Any, path: str) -> Mesh:
     points = np.asarray(found.points, dtype=np.float64)
     if points.shape[1] == 3 and np.abs(points[:, 2]).max(initial=0.0) > 1e-6 * np.ptp(points):
         raise InputError(f"{path}: the part must lie in the plane z = 0")
-    cells, starts, total = [], [], 0
+    cells: list[Cells] = []
+    starts: list[int] = []
+    total = 0
+    lines: dict[int, Any] = {}
     for block in found.cells:
         kind = KINDS.get(block.type, "")
+        if block.type in ("line", "line3"):
+            lines[len(starts)] = np.asarray(block.data, dtype=np.int64)[:, :2]
         starts.append(total if kind else -1)
         if not kind:
             continue
@@ -78,6 +85,7 @@ def from_meshio(found: Any, path: str) -> Mesh:
     if not cells:
         raise InputError(f"{path}: the file has no triangles or quadrilaterals")
     mesh = Mesh(points[:, :2], cells)
+    _take_labels(found, mesh)
     for name, nodes in (getattr(found, "point_sets", None) or {}).items():
         mesh.node_sets[str(name)] = np.asarray(nodes, dtype=np.int64).ravel()
     for name, parts in (getattr(found, "cell_sets", None) or {}).items():
@@ -88,4 +96,66 @@ def from_meshio(found: Any, path: str) -> Mesh:
         ]
         if any(map(len, rows)):
             mesh.cell_sets[str(name)] = np.concatenate(rows)
+        ends = [
+            lines[block][np.asarray(part, dtype=np.int64)]
+            for block, part in enumerate(parts)
+            if block in lines and part is not None
+        ]
+        if any(map(len, ends)):
+            edges = mesh.edges_between(np.concatenate(ends))
+            if (edges >= 0).all():
+                mesh.edge_sets[str(name)] = edges
+            else:
+                mesh.notes.append(f"{path}: lines of set {name!r} are no edges of elements")
     return mesh
+
+
+def _take_labels(found: Any, mesh: Mesh) -> None:
+    """Labels that :func:`to_meshio` wrote."""
+    data = (getattr(found, "point_data", None) or {}).get("node label")
+    if data is not None and len(np.unique(data)) == mesh.n_nodes:
+        mesh.node_labels = np.asarray(data, dtype=np.int64).ravel()
+    parts = (getattr(found, "cell_data", None) or {}).get("element label")
+    if parts is not None:
+        own = [p for p, block in zip(parts, found.cells, strict=False) if block.type in KINDS]
+        if len(np.unique(np.concatenate(own))) == mesh.n_cells:
+            for cells, labels in zip(mesh.cells, own, strict=True):
+                cells.labels = np.asarray(labels, dtype=np.int64).ravel()
+
+
+def to_meshio(mesh: Mesh) -> Any:
+    """Convert to a ``meshio.Mesh``; see :meth:`corota.mesh.Mesh.to_meshio`."""
+    if find_spec("meshio") is None:
+        raise UnsupportedError("this needs meshio, which is not installed: pip install meshio")
+    names = {kind: name for name, kind in KINDS.items()} | LINES
+    blocks: list[tuple[str, Any]] = []
+    labels: list[Any] = []
+    starts: list[tuple[int, int]] = []
+    for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
+        if len(cells):
+            blocks.append((names[cells.kind], cells.nodes))
+            labels.append(cells.labels)
+            starts.append((int(offset), len(cells)))
+    sets: dict[str, list[Any]] = {}
+    for name, rows in mesh.cell_sets.items():
+        sets[name] = [rows[(rows >= o) & (rows < o + n)] - o for o, n in starts]
+    for name, edges in mesh.edge_sets.items():
+        sides = mesh.edge_nodes(edges)
+        for width, kind in ((2, "line"), (3, "line3")):
+            part = [s for s in sides if len(s) == width]
+            if not part:
+                continue
+            own = sets.setdefault(name, [])
+            own += [np.zeros(0, np.int64)] * (len(blocks) - len(own)) + [np.arange(len(part))]
+            blocks.append((kind, np.array(part)))
+            labels.append(np.zeros(len(part), np.int64))
+    for parts in sets.values():
+        parts += [np.zeros(0, np.int64)] * (len(blocks) - len(parts))
+    return import_module("meshio").Mesh(
+        np.column_stack([mesh.points, np.zeros(mesh.n_nodes)]),
+        blocks,
+        point_data={"node label": mesh.node_labels},
+        cell_data={"element label": labels},
+        point_sets=dict(mesh.node_sets),
+        cell_sets=sets,
+    )

@@ -18,6 +18,7 @@ from corota.io.vtk.vtkhdf import VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
 from corota.model.model import Model
+from corota.model.units import Units
 from corota.results import variables as vf
 from corota.results.results import Frame, PointFields, Results
 
@@ -235,6 +236,7 @@ class FileResults(Results):
         own = file["corota"]
         model = Model(_mesh(file), str(own.attrs["job"]))
         model.contacts = contacts_of_results(own)
+        model.unit_system = Units.of(*filter(None, str(own.attrs.get("units", "")).split(", ")))
         info = json.loads(own.attrs["info"]) if "info" in own.attrs else {}
         super().__init__(model, info=info)
         self._file = file

@@ -48,7 +48,8 @@ def _csv(results: Results, path: Path) -> None:
     from corota.io.tables.csv_history import Histories, csv_text
 
     histories = Histories(results.model, results.model.steps)
-    replace_text(path, csv_text([histories.row(f) for f in results.frames]))
+    rows = [histories.row(f) for f in results.frames]
+    replace_text(path, csv_text(rows, results.model.unit_system))
 
 
 def _dat(results: Results, path: Path) -> None:

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.display import CELLS_DRAWN, Brief, picture, table
 from corota.errors import InputError
 from corota.mesh import selection
 from corota.names import choose, did_you_mean, listed, match
@@ -45,7 +46,7 @@ N_NODES = {
 
 
 @dataclass
-class Cells:
+class Cells(Brief):
     """Cells of one kind.
 
     Parameters
@@ -83,7 +84,7 @@ class Cells:
 
 
 @dataclass
-class Mesh:
+class Mesh(Brief):
     """Points and cells with the user's numbers and named sets.
 
     A cell has one global index: blocks are numbered one after the other.
@@ -297,3 +298,75 @@ class Mesh:
                 rows = edges[here, 0] - offsets[number]
                 parts.append(cells.nodes[np.ix_(rows, local)].ravel())
         return np.asarray(np.unique(np.concatenate(parts)))
+
+    # Other programs.
+    def to_meshio(self) -> Any:
+        """A ``meshio.Mesh`` with all sets.
+
+        Edge sets are cells ``line`` or ``line3`` with cell sets; node and element labels are
+        the data ``node label`` and ``element label``.
+
+        Raises
+        ------
+        UnsupportedError
+            If meshio is not installed.
+        """
+        from corota.io.meshio_bridge import to_meshio
+
+        return to_meshio(self)
+
+    @staticmethod
+    def from_meshio(found: Any) -> Mesh:
+        """Take triangles, quadrilaterals and sets of a ``meshio.Mesh``.
+
+        Raises
+        ------
+        InputError
+            If the mesh is not planar or has no such cells.
+        """
+        from corota.io.meshio_bridge import from_meshio
+
+        return from_meshio(found, "meshio mesh")
+
+    def to_pyvista(self) -> Any:
+        """A ``pyvista.UnstructuredGrid`` with labels, and sets as arrays of 0 and 1.
+
+        Raises
+        ------
+        ResourceError
+            If PyVista is not installed (``pip install corota[view]``).
+        """
+        from corota.io.vtk.pyvista_bridge import mesh_grid
+
+        return mesh_grid(self)
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{len(cells):,} {cells.kind}" for cells in self.cells[:8])
+        names = [len(self.node_sets), len(self.cell_sets), len(self.edge_sets)]
+        return (
+            f"Mesh({self.n_nodes:,} nodes, {self.n_cells:,} elements: {kinds or 'none'}; "
+            f"{names[0]} node, {names[1]} element, {names[2]} edge sets)"
+        )
+
+    def _repr_html_(self) -> str:
+        from corota import plots
+
+        rows: dict[str, object] = {
+            "nodes": f"{self.n_nodes:,}",
+            "elements": ", ".join(f"{len(c):,} {c.kind}" for c in self.cells),
+        }
+        if self.n_nodes:
+            low, high = self.points.min(axis=0), self.points.max(axis=0)
+            rows["x"] = f"{low[0]:g} ... {high[0]:g}"
+            rows["y"] = f"{low[1]:g} ... {high[1]:g}"
+        for name, sets in (
+            ("node sets", self.node_sets),
+            ("element sets", self.cell_sets),
+            ("edge sets", self.edge_sets),
+        ):
+            if sets:
+                rows[name] = listed(sets)
+        drawn = ""
+        if 0 < self.n_cells <= CELLS_DRAWN:
+            drawn = picture(lambda path: plots.model(self, path=path, dpi=80.0))
+        return drawn + table(rows)

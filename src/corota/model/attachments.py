@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class PointMass:
+class PointMass(Brief):
     """A mass, and an inertia about its axis, at each node of a set.
 
     Parameters
@@ -41,7 +42,7 @@ class PointMass:
 
 
 @dataclass
-class Dashpot:
+class Dashpot(Brief):
     """A linear damper between two nodes, along their line, or from a node to the ground.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Equation:
+class Equation(Brief):
     """A linear relation ``sum coefficient * dof = rhs``; its first term is eliminated.
 
     Parameters
@@ -48,7 +49,7 @@ class Equation:
 
 
 @dataclass
-class Coupling:
+class Coupling(Brief):
     """Nodes that move with a reference node, or a reference node that follows nodes.
 
     Parameters
@@ -87,7 +88,7 @@ class Coupling:
 
 
 @dataclass
-class LocalAxes:
+class LocalAxes(Brief):
     """Axes of nodes in which their supports, forces and equations are meant.
 
     Parameters
@@ -111,7 +112,7 @@ class LocalAxes:
 
 
 @dataclass
-class StraightLine:
+class StraightLine(Brief):
     """Nodes that stay on the straight line through two others, in any motion of these.
 
     They may slide along it. Each loses the displacement along its axis that is further from

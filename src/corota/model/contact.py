@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError, Location
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ METHODS = ("mortar", "node_to_segment")
 
 
 @dataclass
-class RigidCurve:
+class RigidCurve(Brief):
     """A rigid curve of straight lines and arcs; the deformable body lies to its left.
 
     Its outward normal, from the rigid body towards the deformable one, points to the left of the
@@ -171,7 +172,7 @@ class RigidCurve:
 
 
 @dataclass
-class PressureLaw:
+class PressureLaw(Brief):
     """Pressure [force/length^2] against overclosure [length], instead of none below contact.
 
     Parameters
@@ -262,7 +263,7 @@ class PressureLaw:
 
 
 @dataclass
-class ContactPair:
+class ContactPair(Brief):
     """Two surfaces, or a surface and a rigid curve, that may touch.
 
     Parameters
@@ -349,7 +350,7 @@ class ContactPair:
 
 
 @dataclass
-class Tie:
+class Tie(Brief):
     """Two surfaces joined without the same nodes.
 
     Parameters

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError, Location, number
 from corota.mesh import selection
 from corota.model.dofs import dof_index
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Amplitude:
+class Amplitude(Brief):
     """A table of factor against time, constant outside.
 
     Parameters
@@ -164,7 +165,7 @@ def finite(value: object, what: str, where: Location | None) -> float | NDArray[
 
 
 @dataclass
-class Fixed:
+class Fixed(Brief):
     """A prescribed displacement or rotation.
 
     Parameters
@@ -196,7 +197,7 @@ class Fixed:
 
 
 @dataclass
-class NodalForce:
+class NodalForce(Brief):
     """A dead force [force] or drilling moment [force*length] at each node of a set.
 
     Parameters
@@ -225,7 +226,7 @@ class NodalForce:
 
 
 @dataclass
-class Force:
+class Force(Brief):
     """A dead force, meant as a resultant on edges and per node on nodes.
 
     What it is becomes known with the mesh: see :meth:`on`.
@@ -316,7 +317,7 @@ class Force:
 
 
 @dataclass
-class EdgeLoad:
+class EdgeLoad(Brief):
     """A distributed load on element edges.
 
     Parameters
@@ -349,7 +350,7 @@ class EdgeLoad:
 
 
 @dataclass
-class BodyForce:
+class BodyForce(Brief):
     """A load on the volume of cells.
 
     Parameters
@@ -387,7 +388,7 @@ class BodyForce:
 
 
 @dataclass
-class InitialVelocity:
+class InitialVelocity(Brief):
     """Velocity of nodes at the start of the first dynamic step.
 
     Parameters
@@ -412,7 +413,7 @@ class InitialVelocity:
 
 
 @dataclass
-class Temperature:
+class Temperature(Brief):
     """A prescribed temperature of nodes.
 
     Parameters
@@ -436,7 +437,7 @@ class Temperature:
 
 
 @dataclass
-class InitialTemperature:
+class InitialTemperature(Brief):
     """Temperature of nodes at which there is no thermal strain; 0 where none is given.
 
     Parameters
@@ -453,7 +454,7 @@ class InitialTemperature:
 
 
 @dataclass
-class InitialStress:
+class InitialStress(Brief):
     """Stress of cells in the reference, before any displacement.
 
     Parameters

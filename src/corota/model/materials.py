@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def _positive(value: float, name: str, where: Location | None) -> None:
 
 
 @dataclass(frozen=True)
-class Expansion:
+class Expansion(Brief):
     """Thermal expansion, constant or a table over the temperature.
 
     The thermal strain is ``alpha(T) (T - zero) - alpha(T0) (T0 - zero)`` with the temperature
@@ -101,7 +102,7 @@ class Expansion:
 
 
 @dataclass
-class Material:
+class Material(Brief):
     """Common data of all materials.
 
     Parameters

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from corota.display import CELLS_DRAWN, LONGEST, brief, picture, table
 from corota.errors import InputError, number
 from corota.mesh import selection
 from corota.model.attachments import Dashpot, PointMass
@@ -48,6 +49,7 @@ from corota.model.loads import (
     Temperature as Temperature,
 )
 from corota.model.sections import Section as Section
+from corota.model.units import Units
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -61,6 +63,9 @@ if TYPE_CHECKING:
 
     Ints = NDArray[np.int64]
     Where = str | ArrayLike
+
+#: Findings of a check that its ``repr`` shows; ``print`` shows all.
+FINDINGS_SHOWN = 10
 
 
 class Model(Loading, LineSections, InitialFields):
@@ -100,6 +105,8 @@ class Model(Loading, LineSections, InitialFields):
         Heading of a deck.
     time_points : dict of str to ndarray
         Times [time] within a step, by the name that :class:`corota.model.steps.Output` gives.
+    unit_system : Units
+        Names of the units, see :meth:`units`; empty if nobody told.
     """
 
     def __init__(self, mesh: Mesh, name: str = "model") -> None:
@@ -122,6 +129,33 @@ class Model(Loading, LineSections, InitialFields):
         self.notes: list[str] = []
         self.title = ""
         self.time_points: dict[str, NDArray[np.float64]] = {}
+        self.unit_system = Units()
+
+    def units(self, *names: str) -> None:
+        """Name the units the model is meant in; axes, tables and files then bear them.
+
+        Nothing is converted: the numbers must be consistent by themselves.
+
+        Parameters
+        ----------
+        *names : str
+            Units of length, force, mass, time and temperature, in any order; those that are
+            left out are not told.
+
+        Raises
+        ------
+        InputError
+            If a unit is unknown, or force, mass, length and time do not fit each other.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> model.units("mm", "N", "t", "s", "°C")
+        >>> model.unit_system.label("force/length^2")
+        'MPa'
+        """
+        self.unit_system = Units.of(*names)
 
     def section(
         self,
@@ -410,6 +444,36 @@ class Model(Loading, LineSections, InitialFields):
 
         return "\n".join(model_lines(self))
 
+    def __repr__(self) -> str:
+        mesh = self.mesh
+        return (
+            f"Model({brief(self.name)}: {mesh.n_nodes:,} nodes, {mesh.n_cells:,} elements, "
+            f"{len(self.sections)} sections, {len(self.supports)} supports, "
+            f"{len(self.loads)} loads, {len(self.steps)} steps)"
+        )
+
+    def _repr_html_(self) -> str:
+        from corota import plots
+
+        mesh = self.mesh
+        materials = {id(s.material): brief(s.material) for s in self.sections}
+        rows = {
+            "model": self.name,
+            "nodes": f"{mesh.n_nodes:,}",
+            "elements": f"{mesh.n_cells:,}",
+            "sections": ", ".join(f"{s.element} in {brief(s.cells)}" for s in self.sections[:8]),
+            "materials": ", ".join(list(materials.values())[:8]),
+            "supports, loads": f"{len(self.supports)}, {len(self.loads)}",
+            "steps": ", ".join(type(s).__name__ for s in self.steps[:8]),
+            "contact pairs": len(self.contacts),
+            "units": self.unit_system,
+        }
+        shown = {name: value for name, value in rows.items() if value}
+        drawn = ""
+        if mesh.n_cells <= CELLS_DRAWN:
+            drawn = picture(lambda path: plots.model(self, path=path, dpi=80.0))
+        return drawn + table(shown)
+
     def plot(self, **options: Any) -> Any:
         """Draw mesh, sets, supports, loads and contact; see :func:`corota.plots.model`."""
         from corota import plots
@@ -465,4 +529,7 @@ class Findings(list["Diagnostic"]):
     def __str__(self) -> str:
         return "\n".join(str(d) for d in self)
 
-    __repr__ = __str__
+    def __repr__(self) -> str:
+        shown = "\n".join(str(d) for d in self[:FINDINGS_SHOWN])
+        more = f"\n... {len(self) - FINDINGS_SHOWN} more" if len(self) > FINDINGS_SHOWN else ""
+        return shown[:LONGEST] + more

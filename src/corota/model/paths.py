@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError
 from corota.model.dofs import dof_index
 
@@ -24,7 +25,7 @@ class Label(int):
 
 
 @dataclass(kw_only=True)
-class ArcLength:
+class ArcLength(Brief):
     """Follow the path by its length: through limit points and snap-back, without tuning.
 
     The step ends where the first of the named ends is reached. With none named it ends at
@@ -93,7 +94,7 @@ class ArcLength:
 
 
 @dataclass
-class DisplacementControl:
+class DisplacementControl(Brief):
     """Follow the path by a displacement that grows to a target while the load adapts.
 
     Where the displacement turns back (snap-back), arc length takes over.
@@ -144,7 +145,7 @@ class DisplacementControl:
 
 
 @dataclass
-class CriticalPoint:
+class CriticalPoint(Brief):
     """A limit or bifurcation point of a path.
 
     Parameters
@@ -187,7 +188,7 @@ class CriticalPoint:
 
 
 @dataclass
-class Modes:
+class Modes(Brief):
     """Eigenvalues with their shapes.
 
     Parameters

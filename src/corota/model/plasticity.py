@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError
 from corota.model.materials import Material, _positive, isotropic_compliance
 
@@ -26,7 +27,7 @@ MAX_BACK_STRESSES = 6
 
 
 @dataclass
-class Voce:
+class Voce(Brief):
     """Isotropic hardening that saturates: ``Q (1 - exp(-b p)) + H p`` above the yield stress.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError, Location, number
 from corota.model import elements
 from corota.model.local_strain import local_strain
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Section:
+class Section(Brief):
     """Element type, material and thickness of a set of cells.
 
     Parameters

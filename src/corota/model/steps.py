@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.loading import Loading
 from corota.model.loads import LOAD_KINDS, check_loads, check_supports
@@ -30,7 +31,7 @@ MASSES = ("consistent", "constant", "lumped")
 
 
 @dataclass
-class Output:
+class Output(Brief):
     """One print, file or history request.
 
     Parameters
@@ -61,7 +62,7 @@ class Output:
 
 
 @dataclass(kw_only=True)
-class Step(Loading):
+class Step(Brief, Loading):
     """Common data of all steps.
 
     Supports and loads of a step are given by its methods ``fix``, ``force``, ``traction``,

@@ -5,6 +5,7 @@ it is written too, as PNG, SVG or PDF by the ending.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
+from corota.plots.along import along
 from corota.plots.animation import animate
 from corota.plots.contact import contact_line, status
 from corota.plots.contour import contour
@@ -13,6 +14,7 @@ from corota.plots.model import model
 from corota.plots.motion import energies, modes, response
 
 __all__ = [
+    "along",
     "animate",
     "contact_line",
     "contour",

@@ -114,7 +114,7 @@ def animate(
             aspect=38 if below else 28,
             pad=0.04,
         )
-        label_bar(bar, name, per_cell, limits)
+        label_bar(bar, name, per_cell, limits, results.model.unit_system)
         figure.canvas.draw()
         figure.set_layout_engine("none")  # else the axes would move with the titles
         rate = max(2, min(25, round(len(chosen) / seconds)))

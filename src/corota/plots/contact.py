@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.plots.contour import frame_title
-from corota.plots.figure import COLORS, INK, PALE, extent_size, look, new_figure, save
+from corota.plots.figure import COLORS, INK, PALE, extent_size, label_axes, look, new_figure, save
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
 
@@ -104,8 +104,10 @@ def contact_line(
         ax.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
         ax.grid(True, color="#e6e9ee", linewidth=0.6)
         ax.set_axisbelow(True)
-        ax.set_xlabel("along the slave surface [length]")
-        ax.set_ylabel("traction [force/length^2]")
+        units = results.model.unit_system
+        length, stress = (units.label(d) or d for d in ("length", "force/length^2"))
+        ax.set_xlabel(f"along the slave surface [{length}]")
+        ax.set_ylabel(f"traction [{stress}]")
         ax.ticklabel_format(style="sci", scilimits=(-3, 4))
         ax.legend()
         at_time = f"{chosen.name}: step {state.step}, time {state.time:.6g}"
@@ -170,8 +172,7 @@ def status(
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
         ax.set_aspect("equal")
-        ax.set_xlabel("x")
-        ax.set_ylabel("y")
+        label_axes(ax, results.model.unit_system)
         ax.legend(loc="best")
         ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
         if path is not None:

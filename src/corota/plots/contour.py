@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.plots.figure import INK, PALE, extent_size, look, new_figure, save
+from corota.plots.figure import INK, PALE, extent_size, label_axes, look, new_figure, save
 from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.mesh import Mesh
+    from corota.model.units import Units
     from corota.results.results import Results
 
     Floats = NDArray[np.float64]
@@ -210,7 +211,7 @@ def contour(
             aspect=38 if below else 28,
             pad=0.04,
         )
-        label_bar(bar, name, per_cell, drawing.range(frame))
+        label_bar(bar, name, per_cell, drawing.range(frame), results.model.unit_system)
         pad = 0.04 * float((high - low).max())
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
@@ -220,11 +221,13 @@ def contour(
     return figure
 
 
-def label_bar(bar: Any, name: str, per_cell: bool, limits: tuple[float, float]) -> None:
+def label_bar(
+    bar: Any, name: str, per_cell: bool, limits: tuple[float, float], units: Units
+) -> None:
     """Name a color bar, tell the smallest and largest value, keep the ticks few."""
     from matplotlib.ticker import MaxNLocator
 
-    meaning = vf.meaning(name)
+    meaning = vf.described(name, units)
     plain = name in vf.NODAL or name in LINE_ONLY
     how = ", element averages" if per_cell else "" if plain else ", averaged at nodes"
     label = f"{name}: {meaning}{how}" if meaning else name + how
@@ -323,8 +326,7 @@ def paint(
     )
     draw_rigid(ax, results.model, results.frame(frame), scale)
     ax.set_aspect("equal")
-    ax.set_xlabel("x")
-    ax.set_ylabel("y")
+    label_axes(ax, results.model.unit_system)
     ax.tick_params(length=2.5)
     painted = ScalarMappable(
         norm=BoundaryNorm(levels, _between(colors, norm, levels).N),

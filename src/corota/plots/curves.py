@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.model.units import Units
 from corota.plots.figure import INK, PALE, look, new_figure, save
 from corota.plots.path import draw_path, has_stability
-from corota.results.variables import meaning
+from corota.results.variables import described, dimension, labelled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -51,6 +52,7 @@ def curve(
     many = list(y) if isinstance(y, Sequence) else [y]
     if len(many) == 1 and x.name.startswith(_UPRIGHT) and not many[0].name.startswith(_UPRIGHT):
         many, x = [x], many[0]
+    units = x.results.model.unit_system if x.results is not None else Units()
     with look():
         if ax is None:
             figure = new_figure(5.2, 3.7, shown=path is None)
@@ -79,10 +81,11 @@ def curve(
         ax.axvline(0.0, color=PALE, linewidth=0.6, zorder=1)
         ax.grid(True, color="#e6e9ee", linewidth=0.6)
         ax.set_axisbelow(True)
-        ax.set_xlabel(axis_label(x.name))
+        ax.set_xlabel(axis_label(x.name, units))
         if len(many) == 1:
-            ax.set_ylabel(axis_label(many[0].name))
+            ax.set_ylabel(axis_label(many[0].name, units))
         else:
+            ax.set_ylabel(shared_label([one.name for one in many], units))
             ax.legend()
         ax.margins(0.03)
         ax.tick_params(length=2.5, colors=INK)
@@ -93,10 +96,18 @@ def curve(
     return figure
 
 
-def axis_label(name: str) -> str:
-    """Name of a history with its meaning."""
+def shared_label(names: Sequence[str], units: Units) -> str:
+    """The unit that all histories share, for the axis of several; else nothing."""
+    shared = {units.label(dimension(name)) for name in names}
+    unit = shared.pop() if len(shared) == 1 else ""
+    return f"[{unit}]" if unit else ""
+
+
+def axis_label(name: str, units: Units | None = None) -> str:
+    """Name of a history with its meaning and unit."""
+    told = units or Units()
     variable, _, place = name.partition(" at ")
-    what = meaning(variable)
+    what = described(variable, told)
     if not what:
-        return name
+        return labelled(name, told)
     return f"{variable}: {what}" + (f", at {place}" if place else "")

@@ -14,6 +14,8 @@ from corota.io.atomic_file import full
 if TYPE_CHECKING:
     from os import PathLike
 
+    from corota.model.units import Units
+
 #: Endings of the picture formats.
 FORMATS = (".png", ".svg", ".pdf")
 STYLE = {
@@ -114,6 +116,13 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
             hidden.unlink(missing_ok=True)
         raise full(error, target) from None
     return target
+
+
+def label_axes(ax: Any, units: Units) -> None:
+    """Name x and y, with the unit of length where it is told."""
+    unit = f" [{units.length}]" if units.length else ""
+    ax.set_xlabel(f"x{unit}")
+    ax.set_ylabel(f"y{unit}")
 
 
 def extent_size(low: Any, high: Any, wide: float = 7.2) -> tuple[float, float, bool]:

@@ -7,9 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.mesh import EDGES
+from corota.mesh import EDGES, Mesh
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
-from corota.plots.figure import COLORS, INK, extent_size, look, new_figure, save
+from corota.model.model import Model
+from corota.plots.figure import (
+    COLORS,
+    INK,
+    extent_size,
+    label_axes,
+    look,
+    new_figure,
+    save,
+)
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import edge_lines, outline, surface
@@ -36,7 +45,7 @@ LOAD, SUPPORT, MOVED = "#D55E00", "#0b6e4f", "#7b3fa0"
 
 
 def model(
-    subject: Model,
+    subject: Model | Mesh,
     *,
     sets: bool = True,
     edges: bool | None = None,
@@ -53,7 +62,7 @@ def model(
 
     Parameters
     ----------
-    subject : Model
+    subject : Model or Mesh
     sets : bool
         Mark node and edge sets, up to eight.
     edges : bool, optional
@@ -68,6 +77,8 @@ def model(
     -------
     matplotlib.figure.Figure
     """
+    if isinstance(subject, Mesh):
+        subject = Model(subject, "mesh")
     mesh = subject.mesh
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
     size = float(np.linalg.norm(high - low)) or 1.0
@@ -98,8 +109,7 @@ def model(
         pad = 0.10 * size
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
-        ax.set_xlabel("x")
-        ax.set_ylabel("y")
+        label_axes(ax, subject.unit_system)
         ax.tick_params(length=2.5)
         counts = f"{mesh.n_nodes:,} nodes, {mesh.n_cells:,} elements"
         ax.set_title(title if title is not None else f"{subject.name}: {counts}", loc="left")

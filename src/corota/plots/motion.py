@@ -11,6 +11,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.plots.contour import Drawing, paint
 from corota.plots.figure import COLORS, INK, PALE, look, new_figure, save
+from corota.results.variables import labelled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -191,10 +192,11 @@ def energies(
                 upper.plot(time, values, linewidth=1.4, label=label)
         balance = np.array([f.scalars["energy balance"] for f in frames])
         lower.plot(time, balance, color=INK, linewidth=1.2)
-        upper.set_ylabel("energy")
+        units = results.model.unit_system
+        upper.set_ylabel(labelled("energy", units, "energy"))
         upper.legend(ncols=2)
-        lower.set_ylabel("balance")
-        lower.set_xlabel("time")
+        lower.set_ylabel(labelled("balance", units, "energy"))
+        lower.set_xlabel(labelled("time", units))
         for ax in (upper, lower):
             ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
             ax.grid(True, color="#e6e9ee", linewidth=0.6)

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from corota.display import Brief, brief, picture, table
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class History:
+class History(Brief):
     """A quantity at every kept increment.
 
     Parameters
@@ -87,15 +88,33 @@ class History:
         other = against if isinstance(against, History) else self.results.history(against)
         return plots.curve(self, other, path=path, ax=ax)
 
-    def to_pandas(self) -> Any:
-        """Return a ``pandas.Series`` indexed by total time.
+    def to_dataframe(self) -> Any:
+        """One column over the total time, as a ``pandas.DataFrame``.
 
         Raises
         ------
-        ImportError
-            If pandas is not installed.
+        ResourceError
+            If pandas is not installed (``pip install corota[data]``).
         """
-        pandas = import_module("pandas")
+        return self.results.to_dataframe(self)
 
-        index = pandas.Index([f.time for f in self.results.frames], name="time")
-        return pandas.Series(self.values, index=index, name=self.name)
+    def __repr__(self) -> str:
+        if not len(self.values):
+            return f"History({self.name}: no frames)"
+        first, last = float(self.values[0]), float(self.values[-1])
+        return (
+            f"History({brief(self.name)}: {len(self.values):,} values, {first:g} ... {last:g}, "
+            f"smallest {self.min():g}, largest {self.max():g})"
+        )
+
+    def _repr_html_(self) -> str:
+        drawn = ""
+        if self.results is not None and len(self.values) > 1:
+            drawn = picture(lambda path: self.plot(path=path))
+        rows = {"history": self.name, "values": f"{len(self.values):,}"}
+        if len(self.values):
+            rows |= {
+                "first, last": f"{self.values[0]:g}, {self.values[-1]:g}",
+                "smallest, largest": f"{self.min():g}, {self.max():g}",
+            }
+        return drawn + table(rows)

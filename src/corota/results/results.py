@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
+from corota.display import CELLS_DRAWN, Brief, brief, picture, table
 from corota.errors import InputError
 from corota.names import choose
 from corota.results.observer import BaseObserver, Iteration, Observer
@@ -17,12 +17,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.paths import CriticalPoint, Modes
     from corota.results.history import History
+    from corota.results.probe import Line, Place
     from corota.results.variables import Averaging
 
     Floats = NDArray[np.float64]
@@ -32,7 +33,7 @@ __all__ = ["BaseObserver", "Frame", "Iteration", "Observer", "PointFields", "Res
 
 
 @dataclass
-class PointFields:
+class PointFields(Brief):
     """Values at the quadrature points of the cells of one block (same element, section).
 
     Parameters
@@ -63,7 +64,7 @@ class PointFields:
 
 
 @dataclass
-class Frame:
+class Frame(Brief):
     """One converged increment.
 
     Parameters
@@ -121,7 +122,7 @@ class Frame:
 
 
 @dataclass
-class Results:
+class Results(Brief):
     """All frames of an analysis.
 
     Parameters
@@ -406,42 +407,175 @@ class Results:
 
         return write(self, path)
 
-    def to_pandas(self) -> Any:
-        """Table of the scalars of the frames as a ``pandas.DataFrame``.
+    def at(
+        self,
+        where: str | ArrayLike | None = None,
+        *,
+        node: int | None = None,
+        point: ArrayLike | None = None,
+    ) -> Place:
+        """Results at one place.
+
+        Parameters
+        ----------
+        where : str or array_like of int, optional
+            Set, or node indices.
+        node : int, optional
+            The user's number of a node.
+        point : array_like, shape (2,), optional
+            A point of the undeformed shape [length]; values are interpolated in its element.
+
+        Returns
+        -------
+        Place
+            ``place["U2"]`` is the history of a variable there.
 
         Raises
         ------
-        ImportError
-            If pandas is not installed.
-        """
-        pandas = import_module("pandas")
+        InputError
+            If there is no such node or set, or the point is in no element.
 
-        rows = [
-            {"step": f.step, "increment": f.increment, "time": f.time, "load factor": f.factor}
-            | f.scalars
-            for f in self.frames
-        ]
-        return pandas.DataFrame(rows)
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+        >>> model.fix("left")
+        >>> model.force("right", y=0.01)
+        >>> results = ct.solve(model, ct.Static(), threads=1)
+        >>> results.at(point=(10.0, 0.5))["U2"].max() > results.at(point=(5.0, 0.5))["U2"].max()
+        True
+        """
+        from corota.results.probe import place
+
+        return place(self, node, point, where)
+
+    def along(
+        self,
+        path: str | ArrayLike,
+        *,
+        points: int = 101,
+        frame: int = -1,
+        spread: Literal["even", "given"] = "even",
+    ) -> Line:
+        """Results along a line of the undeformed shape.
+
+        Parameters
+        ----------
+        path : str or array_like, shape (n, 2)
+            Corners of the line [length], or an edge or node set, whose nodes are taken.
+        points : int
+            Points on the whole line, evenly spread.
+        frame : int
+        spread : {"even", "given"}
+            ``"given"`` takes the points of `path` themselves.
+
+        Returns
+        -------
+        Line
+            ``line["S11"]`` are the values at its points, nan outside of the body.
+
+        Raises
+        ------
+        InputError
+            If the path is none, or outside of all elements.
+        """
+        from corota.results.probe import line
+
+        return line(self, path, points, frame, spread)
+
+    def to_xarray(
+        self, variables: Sequence[str] | None = None, frames: Sequence[int] | None = None
+    ) -> Any:
+        """Fields at the nodes as an ``xarray.Dataset``.
+
+        Parameters
+        ----------
+        variables : sequence of str, optional
+            ``U``, ``S`` and the like with all components, or single ones as :meth:`nodal`
+            takes; all by default.
+        frames : sequence of int, optional
+            All by default, which may take much memory.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``frame``, ``node`` (the user's numbers) and ``component`` (x, y) or
+            ``tensor`` (11, 22, 33, 12); coordinates ``time``, ``load_factor``, ``step``,
+            ``increment``, ``x``, ``y``; the attribute ``units`` of each variable where the model
+            tells its units.
+
+        Raises
+        ------
+        ResourceError
+            If xarray is not installed (``pip install corota[data]``).
+        """
+        from corota.results.arrays import to_xarray
+
+        return to_xarray(self, variables, frames)
+
+    def to_dataframe(self, *histories: History | str) -> Any:
+        """Histories as a ``pandas.DataFrame`` over the total time.
+
+        Parameters
+        ----------
+        *histories : History or str
+            Columns; by default all scalars of the frames.
+
+        Raises
+        ------
+        ResourceError
+            If pandas is not installed (``pip install corota[data]``).
+        """
+        from corota.results.arrays import to_dataframe
+
+        return to_dataframe(self, histories)
+
+    def to_pyvista(self, frame: int = -1, *, scale: float = 0.0) -> Any:
+        """One frame as a ``pyvista.UnstructuredGrid`` with the arrays of result files.
+
+        Parameters
+        ----------
+        frame : int
+        scale : float
+            Factor of the displacements that move the points; 0 leaves them where they were.
+
+        Raises
+        ------
+        ResourceError
+            If PyVista is not installed (``pip install corota[view]``).
+        """
+        from corota.io.vtk.pyvista_bridge import results_grid
+
+        return results_grid(self, frame, scale)
+
+    def __repr__(self) -> str:
+        frames = len(self.frames)
+        text = f"Results({brief(self.model.name)}: {frames:,} frames"
+        if frames:
+            last = self.frames[-1]
+            text += f", last step {last.step} increment {last.increment} time {last.time:g}"
+        return text + f", {len(self.modes)} sets of modes)" if self.modes else text + ")"
 
     def _repr_html_(self) -> str:
-        from html import escape
-
-        rows = {
+        rows: dict[str, object] = {
             "model": self.model.name,
             "nodes": f"{self.mesh.n_nodes:,}",
-            "cells": f"{self.mesh.n_cells:,}",
+            "elements": f"{self.mesh.n_cells:,}",
             "frames": f"{len(self.frames):,}",
         }
+        drawn = ""
         if self.frames:
             last = self.frames[-1]
             rows["last"] = f"step {last.step}, increment {last.increment}, time {last.time:g}"
-            rows["largest displacement"] = f"{self.history('U').max():.6g}"
-        cells = "".join(
-            f"<tr><th style='text-align:left'>{escape(k)}</th><td>{escape(v)}</td></tr>"
-            for k, v in rows.items()
-        )
-        notes = "".join(f"<li>{escape(n)}</li>" for n in self.notes)
-        return f"<table>{cells}</table>" + (f"<ul>{notes}</ul>" if notes else "")
+            unit = self.model.unit_system.label("length")
+            rows["largest displacement"] = f"{self.history('U').max():.6g} {unit}"
+            rows["variables"] = ", ".join(self.variables()[:40])
+            if self.mesh.n_cells <= CELLS_DRAWN:
+                drawn = picture(lambda path: self.plot(path=path, dpi=80.0))
+        for number, note in enumerate(self.notes[:10], 1):
+            rows[f"note {number}"] = note
+        return drawn + table(rows)
 
 
 def _place(at: Any) -> str:

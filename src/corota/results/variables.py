@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from corota.mesh import Mesh
     from corota.model.model import Model
+    from corota.model.units import Units
     from corota.results.results import Frame, PointFields
 
     Floats = NDArray[np.float64]
@@ -163,6 +164,67 @@ MEANING = {
 def meaning(name: str) -> str:
     """What a variable is, with its dimension; empty where that is not known."""
     return MEANING.get(name) or (DERIVED[name].meaning if name in DERIVED else "")
+
+
+#: Dimension of variables, by their names without the numbers of components.
+_DIMENSIONS = {
+    "U": "length", "UR": "rad", "RF": "force", "RM": "force*length", "F": "force",
+    "M": "force*length", "V": "length/time", "VR": "rad/time", "A": "length/time^2",
+    "AR": "rad/time^2", "S": "force/length^2", "MISES": "force/length^2", "SP": "force/length^2",
+    "ALPHA": "force/length^2", "E": "", "EP": "", "PE": "", "YRATIO": "", "ENER": "energy/length^3",
+    "PWORK": "energy/length^3", "PDISS": "energy/length^3", "STH": "length", "N": "force",
+    "CPRESS": "force/length^2", "CSHEAR": "force/length^2", "COPEN": "length", "CSLIP": "length",
+    "CSTATUS": "", "STATUS": "",
+}  # fmt: skip
+#: Dimension of quantities of the whole model.
+_OF_THE_WHOLE = {
+    "time": "time", "step time": "time", "dt": "time", "external work": "energy",
+    "internal work": "energy", "plastic work": "energy", "ETOTAL": "energy",
+    "frequency": "1/time", "energy balance": "energy", "length": "length",
+}  # fmt: skip
+
+
+def dimension(name: str) -> str:
+    """Dimension of a variable, a history or a scalar of frames, as ``force/length^2``.
+
+    Empty for numbers without one, and where it is not known.
+
+    Examples
+    --------
+    >>> dimension("S11"), dimension("RF1 at left"), dimension("ALLKE"), dimension("load factor")
+    ('force/length^2', 'force', 'energy', '')
+    """
+    if name in _OF_THE_WHOLE:
+        return _OF_THE_WHOLE[name]
+    if name.endswith((" energy", " dissipation")) or (name.startswith("ALL") and name.isupper()):
+        return "energy"
+    variable = name.removeprefix("largest ").split(" ")[0].rstrip(":")
+    if variable in DERIVED:
+        found = DERIVED[variable].meaning.partition("[")[2].partition("]")[0]
+        return found if found in ("length", "force", "force/length^2", "rad") else ""
+    stem = variable.rstrip("0123456789")
+    return _DIMENSIONS.get(stem, "") if variable.isupper() else ""
+
+
+def labelled(name: str, units: Units, of: str = "") -> str:
+    """A name with its unit in brackets, where both are known: ``time [s]``.
+
+    Parameters
+    ----------
+    of : str
+        The dimension, for names that :func:`dimension` does not know.
+    """
+    unit = units.label(of or dimension(name))
+    return f"{name} [{unit}]" if unit and unit != "rad" else name
+
+
+def described(name: str, units: Units) -> str:
+    """What a variable is, with its unit; with its dimension where no unit is told."""
+    text = meaning(name)
+    unit = units.label(dimension(name))
+    if not unit or not text:
+        return text
+    return f"{text.partition(' [')[0]} [{unit}]"
 
 
 #: The order of operations, written into result files.

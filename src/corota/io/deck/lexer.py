@@ -26,6 +26,9 @@ MAX_BYTES = 8 << 30
 READ = 8.0
 
 _QUOTED = re.compile(r'^"(.*)"$')
+#: A comment such as ``** UNITS: N, mm, t, s`` in the first bytes of a deck.
+_UNITS = re.compile(rb"^[ \t]*\*\*[ \t]*units[ \t]*[:=]([^\r\n]*)", re.IGNORECASE | re.MULTILINE)
+UNITS_WITHIN = 65536
 _BLANK = re.compile(r'[\s"]+')
 
 
@@ -192,6 +195,8 @@ class Lexer:
         self.allow_include = allow_include
         self.cards: list[Card] = []
         self.diagnostics: list[Diagnostic] = []
+        #: What a comment ``** UNITS: N, mm`` says, and where.
+        self.units: tuple[str, Location] | None = None
         self._root = path.resolve().parent
         self._bytes = 0
         self._parameters = Parameters()
@@ -208,8 +213,16 @@ class Lexer:
             data = self._load(self.path)
         except (OSError, ValueError) as error:
             raise FileError(f"{self.path}: {_why(error)}") from error
+        self._find_units(data)
         self.scan(self._source(str(self.path), data), [self.path.resolve()])
         return self.cards
+
+    def _find_units(self, data: bytes) -> None:
+        """Look for the comment that names the units, near the head of the deck."""
+        found = _UNITS.search(data, 0, UNITS_WITHIN)
+        if found is not None:
+            line = data.count(b"\n", 0, found.start(1)) + 1
+            self.units = decode(found.group(1)).strip(), Location(str(self.path), line)
 
     def _source(self, name: str, data: bytes) -> Source:
         """The text of a file with its parameters put in."""

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.keywords import interpret
 from corota.io.deck.lexer import Lexer, key
+from corota.model.units import Units
 
 if TYPE_CHECKING:
     import os
@@ -74,9 +76,21 @@ def read_deck(
         deck.diagnostics.append(Diagnostic("error", f"{deck.hidden} more errors are not listed"))
     if deck.n_errors or model is None:
         raise DeckError(deck.diagnostics)
+    _name_units(model, lexer)
     for finding in deck.diagnostics:
         warnings.warn(str(finding), stacklevel=2)
     return model
+
+
+def _name_units(model: Model, lexer: Lexer) -> None:
+    """Take the units of a comment; one that is not understood is a note, not a fault."""
+    if lexer.units is None:
+        return
+    text, where = lexer.units
+    try:
+        model.unit_system = Units.of(*filter(None, re.split(r"[,;\s]+", text)), where=where)
+    except InputError as error:
+        model.notes.append(f"{where}: the units of this comment are left out: {error.message}")
 
 
 def _open_ends(deck: Deck) -> None:

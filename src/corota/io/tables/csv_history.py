@@ -10,7 +10,8 @@ import numpy as np
 
 from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full, replace_text
-from corota.results.variables import NODAL, mises, nodal_value
+from corota.model.units import Units
+from corota.results.variables import NODAL, labelled, mises, nodal_value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -174,14 +175,20 @@ class Histories:
         return f"about ({center[0]:.6g} {center[1]:.6g})", float(total)
 
 
-def csv_text(rows: Sequence[dict[str, float]]) -> str:
-    """Table of rows; a quantity that a row lacks is 0."""
+def csv_text(rows: Sequence[dict[str, float]], units: Units | None = None) -> str:
+    """Table of rows; a quantity that a row lacks is 0. Headings bear the units that are told."""
     names = list(dict.fromkeys(name for row in rows for name in row))
-    return _line(names) + "".join(_values(row, names) for row in rows)
+    return _line(headings(names, units)) + "".join(_values(row, names) for row in rows)
+
+
+def headings(names: Sequence[str], units: Units | None) -> list[str]:
+    """Names of columns with their units, without quotes."""
+    told = units or Units()
+    return [labelled(name, told).replace('"', "'") for name in names]
 
 
 def _line(names: Sequence[str]) -> str:
-    quoted = (f'"{n.replace(chr(34), chr(39))}"' if "," in n else n for n in names)
+    quoted = (f'"{n}"' if "," in n else n for n in names)
     return ",".join(quoted) + "\n"
 
 
@@ -195,10 +202,12 @@ class CsvWriter:
     Parameters
     ----------
     path : Path
+    units : Units, optional
+        For the headings.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, units: Units | None = None) -> None:
+        self.path, self._units = path, units
         self._rows: list[dict[str, float]] = []
         self._names: list[str] = []
         self._file: TextFile | None = None
@@ -227,14 +236,14 @@ class CsvWriter:
         except OSError as error:
             raise full(error, self.path) from None
         head, rows = (table[0], table[1:]) if table else ([], [])
-        if len(rows) < count or head[: len(names)] != [n.replace('"', "'") for n in names]:
+        if len(rows) < count or head[: len(names)] != headings(names, self._units):
             raise FileError(f"{self.path}: {len(rows)} rows, the checkpoint knows {count}")
         self._names = list(names)
         self._rows = [
             {name: float(text) for name, text in zip(names, row, strict=False)}
             for row in rows[:count]
         ]
-        replace_text(self.path, csv_text(self._rows))
+        replace_text(self.path, csv_text(self._rows, self._units))
         self._file = TextFile(self.path, keep=True)
 
     def add(self, row: dict[str, float]) -> None:
@@ -248,7 +257,7 @@ class CsvWriter:
         self._rows.append(row)
         if self._file is None or any(name not in self._names for name in row):
             self.close()
-            text = csv_text(self._rows)
+            text = csv_text(self._rows, self._units)
             self._names = list(dict.fromkeys(n for r in self._rows for n in r))
             replace_text(self.path, text)
             self._file = TextFile(self.path, keep=True)

@@ -272,6 +272,7 @@ class VtkhdfWriter:
         own.attrs["version"] = __version__
         own.attrs["job"] = self.model.name
         own.attrs["run"] = self.run
+        own.attrs["units"] = str(self.model.unit_system)
         own.attrs["averaging"] = vf.AVERAGING
         own.attrs["tensors"] = "order xx yy zz xy yz xz; shear strain is the angle (engineering)"
         own["node labels"] = mesh.node_labels

@@ -95,6 +95,8 @@ class _Writer:
             loads = again + applied(step.loads, model.mesh)
             tail += self._step(step, loads, number)
         yield f"*HEADING\n{model.title or model.name}\n"
+        if model.unit_system:
+            yield f"** UNITS: {model.unit_system}\n"
         yield from self._mesh()
         yield from self._sets
         yield from tail

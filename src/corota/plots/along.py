@@ -1,0 +1,71 @@
+"""Variables along a line through the body."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from corota.plots.figure import INK, PALE, look, new_figure, save
+from corota.results.variables import described, labelled
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+
+    from corota.results.probe import Line
+
+
+def along(
+    line: Line,
+    variables: Sequence[str],
+    *,
+    path: str | PathLike[str] | None = None,
+    ax: Any = None,
+    dpi: float = 150.0,
+) -> Any:
+    """Draw variables over the distance along a line.
+
+    Parameters
+    ----------
+    line : Line
+        Of :meth:`corota.results.Results.along`.
+    variables : sequence of str
+    path : path-like, optional
+        Write PNG, SVG or PDF there.
+    ax : matplotlib axes, optional
+    dpi : float
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    units = line.results.model.unit_system
+    names = [name.upper() for name in variables or ("U1", "U2")]
+    with look():
+        if ax is None:
+            figure = new_figure(5.2, 3.7, shown=path is None)
+            ax = figure.add_subplot()
+        else:
+            figure = ax.figure
+        for name in names:
+            ax.plot(line.distance, line.values(name), linewidth=1.4, label=name, zorder=3)
+        ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
+        ax.grid(True, color="#e6e9ee", linewidth=0.6)
+        length = units.label("length")
+        ax.set_xlabel("distance along the line" + (f" [{length}]" if length else ""))
+        if len(names) == 1:
+            ax.set_ylabel(f"{names[0]}: {described(names[0], units)}")
+        else:
+            of = {labelled(name, units).partition(" [")[2] for name in names}
+            ax.set_ylabel(f"[{of.pop()}" if len(of) == 1 and of != {""} else "")
+            ax.legend()
+        ax.margins(x=0.0)
+        ax.tick_params(length=2.5, colors=INK)
+        ax.ticklabel_format(style="sci", scilimits=(-3, 4))
+        ax.set_title(line.results.model.name, loc="left")
+        if path is not None:
+            save(figure, path, dpi)
+    return figure
+
+
+__all__ = ["along"]
