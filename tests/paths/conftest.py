@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from corota.analysis.newton import Settings
-from corota.analysis.procedures.path.corrector import Point
+from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.tracer import PathTracer, Plan
 
 

@@ -190,8 +190,9 @@ def test_displacement_control_hands_over_to_arc_length_at_a_snap_back(follow):
 def test_iterations_converge_quadratically(follow):
     """The last residuals of an increment fall with order two."""
     from corota.analysis.newton import Settings
+    from corota.analysis.path_system import Point
     from corota.analysis.procedures.path.controls import Arc
-    from corota.analysis.procedures.path.corrector import Point, correct
+    from corota.analysis.procedures.path.corrector import correct
 
     system = soft_column()
     base = follow(system, increments=2)[-1]

@@ -85,11 +85,7 @@ class Energies:
         in the first increment, as if a force had held it.
         """
         if self._driving is None or (step.procedure == "static" and self.scheme != "static"):
-            contact_term = self.system.contact_term
-            contact = (
-                0.0 if contact_term is None or contact_term.at is None else contact_term.at.force
-            )
-            self._driving = internal - contact
+            self._driving = internal - self.system.contact_term.force
         self.scheme = getattr(step, "scheme", "static")
         if step.procedure == "static":
             self.set_kinetic(0.0)
@@ -129,7 +125,6 @@ class Energies:
 
         `sums` are those of the elements; without them the work of their forces counts.
         """
-        contact_term = self.system.contact_term
         inside = (
             {"ALLIE": self.internal, "ALLTH": 0.0}
             if sums is None
@@ -145,10 +140,7 @@ class Energies:
             **inside,
             "ALLKE": self.kinetic,
             "ALLVD": self.viscous,
-            "ALLFD": 0.0,
-            "ALLSD": 0.0,
-            "ALLCL": 0.0,
-            **({} if contact_term is None else contact_term.energies()),
+            **self.system.contact_term.energies(),
             "ALLWK": self.work,
         }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
@@ -176,7 +168,7 @@ class Energies:
     def made_by_contact(self) -> bool:
         """Whether impacts have made more energy than rounding and increments explain."""
         implicit = self.scheme in ("newmark", "hht", "generalized_alpha")
-        return implicit and self.system.contact_term is not None and self.error > LARGE_ERROR
+        return implicit and self.system.contact_term.opens and self.error > LARGE_ERROR
 
     def remark(self) -> str:
         """What to say of the largest error, empty where it is small."""
@@ -187,20 +179,18 @@ class Energies:
             f"energy balance: {abs(self.error):.1%} of the largest energy is {verb} by step "
             f"{self.where[0]}, increment {self.where[1]} (ETOTAL): "
         )
-        contact_term = self.system.contact_term is not None
-        if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not contact_term):
+        impacts = self.system.contact_term.opens
+        if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not impacts):
             return text + "use smaller increments"
         if self.scheme in ("newmark", "hht", "generalized_alpha"):
-            if contact_term and self.error > 0.0:
+            if impacts and self.error > 0.0:
                 return text + (
                     f"{self.scheme} does not conserve energy where contact opens and closes; use "
                     "scheme='energy_momentum', which does, or smaller increments"
                 )
             cause = "" if self.scheme == "newmark" else f"numerical dissipation of {self.scheme}"
-            if contact_term:
-                cause += (
-                    f"{' and ' if cause else ''}contact that opens and closes within increments"
-                )
+            if impacts:
+                cause += f"{' and ' * bool(cause)}contact that opens and closes within increments"
             if self.error < 0.0:
                 return text + (
                     f"{cause}; use smaller increments, or scheme='energy_momentum', which has none"
@@ -232,17 +222,8 @@ class Balance:
         account.set_kinetic(first[0])
         self.energy, self.mass = first[0], first[4]
         self._inside = self._outside = 0.0
-        contact_term = system.contact_term
-        self._contact = None
-        if contact_term is not None:
-            at = contact_term.at
-            self._contact = np.zeros(system.n_dofs) if at is None else at.force
-        account.drive(now.external, self._reaction(now, self._contact))
-
-    @staticmethod
-    def _reaction(now: MotionState, contact: Floats | None) -> Floats:
-        reaction = now.reaction()
-        return reaction if contact is None else reaction - contact
+        self._contact = system.contact_term.force
+        account.drive(now.external, now.reaction() - self._contact)
 
     def _kinetic(self, now: MotionState) -> list[float]:
         return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
@@ -258,9 +239,7 @@ class Balance:
         speed = np.abs(now.v[moved]).max(initial=0.0)
         return 0.5 * self.mass * float(speed) ** 2
 
-    def accept(
-        self, motion: NewmarkMotion | ConservingMotion, contact: Floats | None = None
-    ) -> None:
+    def accept(self, motion: NewmarkMotion | ConservingMotion, contact: Floats) -> None:
         """Add the work of an increment, in which contact has a force, shape (n_dofs,)."""
         begin, end, account = motion.start, motion.end, self.account
         middle = hasattr(motion, "increment")
@@ -272,12 +251,11 @@ class Balance:
             internal = 0.5 * (begin.internal + end.internal)
             damping = 0.5 * (begin.damping + end.damping)
         before = account.work
-        account.add_work(d, end.external, self._reaction(end, contact), middle)
+        account.add_work(d, end.external, end.reaction() - contact, middle)
         inside = float(internal @ d)
         account.internal += inside
         account.viscous += float(damping @ d)
-        if contact is not None:
-            account.contact += float(contact @ d)
+        account.contact += float(contact @ d)
         self._contact, self.now = contact, end
         momenta = self._kinetic(end)
         account.kinetic = momenta[0]
@@ -289,8 +267,7 @@ class Balance:
     def add_to(self, scalars: dict[str, Any]) -> None:
         """Write momenta and the scheme's own sums into a frame's scalars."""
         account = self.account
-        if self.system.contact_term is not None:
-            scalars["contact work"] = account.contact
+        scalars.update(self.system.contact_term.work_sums(account.contact))
         px, py, angular = self.momenta
         scalars.update(
             {

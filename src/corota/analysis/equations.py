@@ -27,6 +27,7 @@ from corota.analysis.newton import ElementFailure, ResidualNorms
 from corota.analysis.recovery import recover
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
+from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains
 from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.linear.solvers import LinearSolver
-    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.timer import Timer
     from corota.model.materials import Material
     from corota.model.model import Model
@@ -150,17 +150,13 @@ class System:
         #: The constraints as they were linearized for the last correction.
         self.link = self.constraints.link(np.zeros(self.n_dofs))
         self.conditions = Conditions(self)
-        self.contact_term: ContactTerm | None = None
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
         #: Whether the structure without its loads was seen to have no free motion in this step.
         self.free_motion_excluded = False
         self.scales = Scales(self)
         self._spare: list[Floats] = []
-        if model.contacts or model.ties:
-            from corota.analysis.terms.contact.contact import ContactTerm
-
-            self.contact_term = ContactTerm(self)
+        self.contact_term = ContactTerm(self)
 
     # -- numbering ---------------------------------------------------------------------
 
@@ -202,8 +198,7 @@ class System:
         self.conditions.begin(step, time, u, reaction)
         self.scales.begin(getattr(step, "tolerance", 1e-9), u)
         self.free_motion_excluded = False
-        if self.contact_term is not None:
-            self.contact_term.begin(step)
+        self.contact_term.begin(step)
 
     def borrow_tangent(self) -> Floats:
         """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
@@ -236,6 +231,13 @@ class System:
         external, stiffness = self.conditions.external(step_time, u, values)
         link = self.constraints.link(u)
         return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
+
+    def with_loads(self, at: Evaluation, u: Floats, step_time: float) -> Evaluation:
+        """An evaluation at `u` with the loads of another time; its tangent is a copy."""
+        external, stiffness = self.conditions.external(step_time, u)
+        values = self.borrow_tangent()
+        values[:] = at.values
+        return Evaluation(at.internal, external, at.scale, values, stiffness, at.link)
 
     def forces(self, u: Floats, step_time: float) -> Evaluation:
         """Forces at a state without the tangent."""

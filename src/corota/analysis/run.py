@@ -43,8 +43,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Procedures that know contact and ties between surfaces.
-WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
 #: Threads beyond so many for each core, and beyond this number, only cost memory.
 THREADS_PER_CORE, LEAST_CAP = 4, 64
 
@@ -243,12 +241,6 @@ class Analysis:
             raise UnsupportedError(
                 f"no procedure {step.procedure!r}; there are {', '.join(PROCEDURES)}", step.where
             )
-        if system.contact_term is not None and step.procedure not in WITH_CONTACT:
-            raise UnsupportedError(
-                f"a {step.procedure} step takes no contact pairs or ties; leave them out, or use "
-                f"{' or '.join(WITH_CONTACT)} steps",
-                step.where,
-            )
         self.observers.step(number, step)
         state.loop = None
         if self.start is not None:
@@ -334,8 +326,7 @@ class Analysis:
         assert state.energies is not None
         state.energies.begin(step, state.at.internal)
         if number == 1:
-            if system.contact_term is not None:
-                state.notes += system.contact_term.notes
+            state.notes += system.contact_term.notes
             self._save(number, state, 0, 0.0, {})
 
     def _keep_iterate(self, state: State) -> None:
@@ -406,11 +397,8 @@ class Analysis:
         if kind == "dynamic" or (kind == "static" and elements is not None):
             assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
-        contact = None
-        pairs: dict[str, Floats] = {}
-        if system.contact_term is not None:
-            contact, sums, pairs = system.contact_term.output()
-            scalars = {**scalars, **sums}
+        contact, sums, pairs = system.contact_term.output()
+        scalars = {**scalars, **sums}
         held = None
         if state.reaction is None and state.at is not None and state.at.link is not None:
             held = system.by_node(state.at.residual - system.reaction(state.at))

@@ -98,7 +98,8 @@ def _check_unloaded(system: System, step: Buckle) -> None:
 
 def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats, Floats]:
     force, move, loads = _perturbation(system, step, number, u)
-    if system.contact_term is not None:
+    if system.contact_term.n:
+        # With multipliers the stiffness is indefinite.
         factors, shapes = factors_with_contact(system, u, force, move, loads, step.modes)
         return factors, _largest_one(system, shapes)
     base = _symmetric(system, system.evaluate(u, 0.0))

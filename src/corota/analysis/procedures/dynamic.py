@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.analysis.energies import Balance
 from corota.analysis.increments import CUT, SAME, Increments
-from corota.analysis.newton import Outcome, Settings, newton
+from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
 from corota.analysis.procedures.motion import (
     ConservingMotion,
@@ -24,7 +24,7 @@ from corota.analysis.procedures.motion import (
 from corota.analysis.procedures.motion_output import EndForces
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.procedures.static import iteration_reporter
-from corota.analysis.terms.contact.newton import newton_with_contact
+from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.damping import mass_damping
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
@@ -37,10 +37,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.analysis.terms.contact.equations import ContactEquations
     from corota.model.loads import Amplitude
     from corota.model.steps import Dynamic
 
@@ -95,8 +94,7 @@ def dynamic_step(
     control = Increments(step, stops)
     if not step.fixed_increments and step.first_increment >= step.period:
         control.size = step.period / 100.0
-    again = system.correct_with_last_factor if system.contact_term is None else None
-    settings = Settings(step.tolerance, step.max_iterations, again)
+    settings = Settings(step.tolerance, step.max_iterations, system.correct_with_last_factor)
     count = state.counters
     turned: Floats | float = 0.0
     if resumes:
@@ -115,31 +113,26 @@ def dynamic_step(
         prescribed = system.conditions.prescribed(target, now.u)
         driven = _driven(system, prescribed, target, target - control.time)
         motion = _motion(system, step, inertia, now, target - control.time, driven, viscous)
-        outcome: Outcome[Evaluation]
-        if system.contact_term is None:
-            outcome = newton(motion, now.u, prescribed, target, settings, None, report)
-        else:
-            outcome, contact_term = newton_with_contact(
-                motion,
-                system,
-                now.u,
-                prescribed,
-                target,
-                settings,
-                report,
-                last_chance=step.fixed_increments,
-            )
+        outcome, contact = solve_increment(
+            motion,
+            system,
+            now.u,
+            prescribed,
+            target,
+            settings,
+            report,
+            last_chance=step.fixed_increments,
+        )
         count["iterations"] = count.get("iterations", 0) + outcome.iterations
         reason = outcome.reason if not outcome.converged else ""
         error = 0.0
         if outcome.converged and not step.fixed_increments:
             error = _local_error(system, motion, step, inertia.massless)
-            if system.contact_term is not None:
+            # An impact that no increment is short enough for is taken as it is.
+            if CUT * (target - control.time) >= step.smallest_increment:
                 energy = max(book.energy, book.driven(motion.end))
-                missed = _contact_error(contact_term, motion, step, energy)
-                # An impact that no increment is short enough for is taken as it is.
-                if CUT * (target - control.time) >= step.smallest_increment:
-                    error = max(error, missed)
+                moved = motion.end.u - motion.start.u
+                error = max(error, contact.impact_error(moved, energy, step.error_tolerance))
             if error > 1.0:
                 reason = f"local error {error:.2g} times the allowed one"
         if reason:
@@ -158,14 +151,10 @@ def dynamic_step(
             continue
         system.commit()
         inertia.settle(now, motion.end, target - control.time)
-        contact = None
-        if system.contact_term is not None:
-            contact_term.accept(outcome.u, target)
-            assert contact_term.contact_state is not None
-            contact = contact_term.contact_state.force
-        book.accept(motion, contact)
+        state.notes += contact.accept(outcome.u, target)
+        book.accept(motion, contact.force)
         now = motion.end
-        ends.find(motion, contact, target)
+        ends.find(motion, contact.force, target)
         state.u, state.v, state.a = now.u + turned, now.v, now.a
         if (more := _whole_turns(system, now.u)) is not None:
             now.u = now.u - more
@@ -213,7 +202,7 @@ def _whole_turns(system: System, u: Floats) -> Floats | None:
     supports and constraints may know the number of turns.
     """
     mask = system.is_rotation
-    known = system.link.couples or system.contact_term is not None
+    known = system.link.couples or system.contact_term.acts
     if known or not (mask.any() and system.nlgeom):
         return None
     turns = np.round(float(u[mask].mean()) / (2.0 * np.pi))
@@ -304,11 +293,9 @@ def start_motion(
     system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
     rayleigh = _damping(system, step, u, viscous)
-    resting = np.zeros_like(zero)
-    if system.contact_term is not None:
-        # Bodies may rest on each other from a step before.
-        contact_term = system.contact_term
-        resting = contact_term.evaluate(u, contact_term.committed, 0.0, at.values).force
+    # Bodies may rest on each other from a step before.
+    contact = system.contact_term
+    resting = contact.evaluate(u, contact.committed, 0.0, at.values).force
     damping = inertia.damping(at, u, v, 0.0, rayleigh)
     internal, external = at.internal, at.external
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
@@ -482,40 +469,3 @@ def _local_error(
         worst = max(worst, float(np.abs(wrong).max() / size))
     # No increment is short enough for the relative error of a motion out of rest.
     return abs(beta - 1.0 / 6.0) * dt * dt * worst / step.error_tolerance
-
-
-def _contact_error(
-    contact: ContactEquations,
-    motion: NewmarkMotion | ConservingMotion,
-    step: Dynamic,
-    energy: float,
-) -> float:
-    """What an increment misses of the moment of impact, over the allowed share.
-
-    Gaps that close within the increment: the work contact does on the way, against a thousandth
-    of the energy for a tolerance of one percent; where a rate condition keeps that at zero, the
-    depth they are left with, against a tenth of an edge.
-    """
-    contact_state, contact_term = contact.contact_state, contact.contact_term
-    assert contact_state is not None
-    if contact_term.persistent:
-        depth = 0.0
-        for pair, terms in zip(contact_term.pairs, contact_state.terms, strict=True):
-            if pair.start is not None and pair.n:
-                deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
-                edge = float(pair.slave.length.mean())
-                depth = max(depth, float((deeper / pair.full).max()) / edge)
-        return 0.1 * depth / step.error_tolerance
-    work = float(contact_state.force @ (motion.end.u - motion.start.u))
-    parts = contact_term.parts(contact_state.multipliers)
-    for pair, terms, (_, q) in zip(contact_term.pairs, contact_state.terms, parts, strict=True):
-        if pair.friction:
-            work -= float(q @ terms.slip)
-        if pair.law is not None:
-            before = (
-                0.0
-                if contact_term.at is None
-                else pair.law_energy(contact_term.at.terms[contact_term.pairs.index(pair)])
-            )
-            work += pair.law_energy(terms) - before
-    return 10.0 * abs(work) / (step.error_tolerance * energy) if energy > 0.0 else 0.0

@@ -131,12 +131,7 @@ def explicit_step(
             "the masses of others, and the mass is no diagonal any more; use an implicit scheme",
             step.where,
         )
-    if system.contact_term is not None:
-        raise UnsupportedError(
-            "central differences take no contact pairs and no ties; use an implicit scheme "
-            "(hht, generalized_alpha, energy_momentum; *DYNAMIC without EXPLICIT)",
-            step.where,
-        )
+    system.contact_term.check_explicit(step)
     mass = diagonal(system)
     constrained = system.conditions.constrained
     resumes = bool(state.resumes)

@@ -46,9 +46,9 @@ class EndForces:
         self._lag = 0.0
 
     def find(
-        self, motion: NewmarkMotion | ConservingMotion, contact: Floats | None, step_time: float
+        self, motion: NewmarkMotion | ConservingMotion, contact: Floats, step_time: float
     ) -> None:
-        """Find the forces at the end of an accepted increment, where contact has a force."""
+        """Find the forces at the end of an accepted increment, in which contact has a force."""
         system, begin, end = self.system, motion.start, motion.end
         inertia = end.inertia + end.damping
         internal, external, link = end.internal, end.external, end.link
@@ -61,8 +61,7 @@ class EndForces:
             internal, external = own.internal, own.external
             # Forces of the end have their moments about the masters as they lie there.
             link = system.constraints.link(end.u)
-        if contact is not None:
-            internal = internal - contact
+        internal = internal - contact
         self.at = Evaluation(internal, external, internal, np.empty(0), None, link)
         whole = link.gather(internal + inertia - external)
         self.reaction = np.where(system.conditions.constrained, whole, 0.0)

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.equations import Evaluation
 from corota.analysis.increments import Increments
-from corota.analysis.newton import Outcome, Settings, newton
+from corota.analysis.newton import Outcome, Settings
 from corota.analysis.procedures.path.arc_length import path_step
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, reason
-from corota.analysis.terms.contact.newton import newton_with_contact
+from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.contact.relaxation import relax
 from corota.errors import (
     ConvergenceError,
@@ -29,11 +28,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.equations import Evaluation, System
     from corota.analysis.newton import ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
-    from corota.analysis.terms.contact.equations import ContactEquations
+    from corota.analysis.terms.contact.newton import ContactIncrement
     from corota.model.steps import Static
 
     Floats = NDArray[np.float64]
@@ -86,34 +85,24 @@ def static_step(
                 f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
             )
         target = control.target()
-        begin = None
         # Temperatures that change need a new evaluation.
         heated = system.free.expands and not system.free.follows(
             system.conditions.temperatures(target)
         )
-        if state.at is not None and not heated and system.contact_term is None:
-            begin = _with_loads(system, state.at, state.u, target)
-            # Newton's method overwrites the tangent; a further attempt needs it again.
-            begin.values = system.borrow_tangent()
-            begin.values[:] = state.at.values
         report = iteration_reporter(observers, system, number, control)
         prescribed = system.conditions.prescribed(target, state.u)
         try:
-            if system.contact_term is None:
-                outcome = newton(system, state.u, prescribed, target, settings, begin, report)
-            else:
-                known = None if state.at is None or heated else state.at.values
-                outcome, contact_term = newton_with_contact(
-                    system,
-                    system,
-                    state.u,
-                    prescribed,
-                    target,
-                    settings,
-                    report,
-                    tangent=known,
-                    last_chance=step.fixed_increments,
-                )
+            outcome, contact = solve_increment(
+                system,
+                system,
+                state.u,
+                prescribed,
+                target,
+                settings,
+                report,
+                known=None if heated else state.at,
+                last_chance=step.fixed_increments,
+            )
         except SingularError as error:
             if number == 1 and control.number == 0:
                 raise
@@ -140,7 +129,7 @@ def static_step(
             if (end or early) and (
                 rested := _relaxed(system, control, state, settings, report, early)
             ) is not None:
-                outcome, contact_term, target = rested
+                outcome, contact, target = rested
                 count["iterations"] += outcome.iterations
         if not outcome.converged:
             if (end or (softer and control.attempt > STALLED)) and _go_along_path(
@@ -155,8 +144,7 @@ def static_step(
                 number, control.number + 1, control.attempt - 1, outcome.reason, control.size
             )
             continue
-        if system.contact_term is not None:
-            state.notes += contact_term.accept(outcome.u, target)
+        state.notes += contact.accept(outcome.u, target)
         dt = target - control.time
         rate = float(np.abs(outcome.u - state.u).max(initial=0.0)) / dt
         first = first or rate
@@ -190,13 +178,13 @@ def _relaxed(
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, str], None] | None,
     early: bool,
-) -> tuple[Outcome[Evaluation], ContactEquations, float] | None:
+) -> tuple[Outcome[Evaluation], ContactIncrement, float] | None:
     """The increment by relaxation, where contact is driven by supports; None where it fails.
 
     Where loads drive, an equilibrium that ends is a limit point, which is for the user to judge.
     While increments may still be cut (`early`), what is far away is not taken.
     """
-    if system.contact_term is None or not control.number:
+    if not (system.contact_term.acts and control.number):
         return None
     period = control.step.period
     force, _ = system.load_rate(state.u)
@@ -207,22 +195,22 @@ def _relaxed(
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
         prescribed = system.conditions.prescribed(target, state.u)
         try:
-            outcome, contact_term = relax(system, state.u, prescribed, target, settings, report)
+            outcome, contact = relax(system, state.u, prescribed, target, settings, report)
         except SingularError:
             continue
-        if outcome.converged and early and not contact_term.near(outcome.u):
+        if outcome.converged and early and not contact.near(outcome.u):
             system.contact_term.restore()
             return None
         if outcome.converged:
             jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
-            if not contact_term.near(outcome.u):
+            if not contact.near(outcome.u):
                 state.notes.append(
                     f"step time {target:.6g}: the equilibrium before ended and the bodies moved "
                     f"on to another, by up to {jump:.3g} ({outcome.note}); statics has no path "
                     "between, and there may be others: Dynamic follows the motion"
                 )
             control.size = max(target - control.time, control.step.smallest_increment)
-            return outcome, contact_term, target
+            return outcome, contact, target
     return None
 
 
@@ -243,7 +231,7 @@ def _go_along_path(
     ConvergenceError
         At the limit point, unless the step is to follow the path beyond it.
     """
-    if system.contact_term is not None and system.contact_term.damped.any():
+    if system.contact_term.damped.any():
         return False  # damping needs a time
     try:
         system.conditions.check_proportional()
@@ -307,18 +295,12 @@ def _go_along_path(
     raise ConvergenceError(at_limit(system, step, number, limit.factor, state))
 
 
-def _with_loads(system: System, at: Evaluation, u: Floats, time: float) -> Evaluation:
-    """An evaluation at `u` with the loads of another time."""
-    external, stiffness = system.conditions.external(time, u)
-    return Evaluation(at.internal, external, at.scale, at.values, stiffness, at.link)
-
-
 def _accept(system: System, state: State, outcome: Outcome[Evaluation], target: float) -> None:
     new = outcome.at
     assert new is not None
     assert state.energies is not None
     state.energies.add_quasi_static(outcome.u, state.u, new)
-    if state.at is not None and system.contact_term is None:
+    if state.at is not None:
         system.return_tangent(state.at)
     system.commit()
     state.u, state.at, state.failed = outcome.u, new, None

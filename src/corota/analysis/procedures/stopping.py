@@ -58,7 +58,7 @@ def collapse(
     why : str
         Why the last attempt failed: where all yields at once, by a mechanism.
     """
-    if system.contact_term is not None and system.contact_term.damped.any():
+    if system.contact_term.damped.any():
         return ""  # a body flies away as its damping ends: that is no collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     yields = any(isinstance(b.section.material, Mises) for b in system.blocks)

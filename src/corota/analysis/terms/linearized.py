@@ -15,26 +15,24 @@ import numpy as np
 import scipy.sparse as sp
 
 from corota.analysis.linear.factor import Factor
+from corota.analysis.linear.triplets import Triplets
 from corota.analysis.procedures.motion import Inertia
 from corota.analysis.terms.attachments import Attachments
-from corota.analysis.terms.contact.equations import ContactEquations
-from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
+from corota.analysis.terms.contact.linear import linearized_contact
 from corota.analysis.terms.damping import damping_matrix
 from corota.errors import SingularError, UnsupportedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.linear.saddle_point import Coupling
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 #: Skew part of a stiffness, relative to its largest entry, that is rounding.
 SKEW = 1e-9
-#: Compliance of closed constraints relative to that of their nodes: constraints that follow from
-#: others then leave the matrix regular.
-COMPLIANCE = 1e-10
 
 
 class Linearized:
@@ -72,18 +70,16 @@ class Linearized:
     ) -> None:
         self.system = system
         self.u = u.copy()
-        self.states = states
-        contact_term = system.contact_term
-        self.multipliers = np.zeros(0) if contact_term is None else contact_term.committed
+        self.multipliers = system.contact_term.committed
         if multipliers is not None:
             self.multipliers = multipliers
         self._load = load
         with system.conditions.as_reached():
-            self.at, coupling = self._evaluate(u)
+            self.at, coupling, self.states = linearized_contact(system, u, self.multipliers, states)
         self.link = self.at.link
         self.free = system.constraints.free
         self.nf = len(self.free)
-        self.n_multipliers = 0 if coupling is None else len(coupling.diagonal)
+        self.n_multipliers = len(coupling.diagonal)
         self.n = self.nf + self.n_multipliers
         constrained = np.zeros(self.n, bool)
         constrained[: self.nf] = system.conditions.constrained[self.free]
@@ -96,60 +92,19 @@ class Linearized:
         size = abs(k).max() if k.nnz else 0.0
         self.symmetric = not k.nnz or abs(k - k.T).max() <= SKEW * size
 
-    def _evaluate(self, u: Floats) -> tuple[Evaluation, Any]:
-        """Evaluation of the bodies with the forces of contact, and the rows of contact."""
-        system, contact_term = self.system, self.system.contact_term
-        if contact_term is None:
-            return system.evaluate(u.copy(), 0.0), None
-        contact = ContactEquations(system, system)
-        found = contact.evaluate(np.concatenate([u, self.multipliers]), 0.0)
-        if self.states is not None:
-            states = self.states
-        elif contact_term.at is not None and contact_term.at.states:
-            states = contact_term.at.states
-        else:
-            states = [
-                pair.states(terms, p, q)
-                for pair, terms, (p, q) in contact._pairs(found.contact_state)
-            ]
-        states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
-        self.states = states
-        contact.slip_directions = {p.first: np.ones(p.n) for p in contact_term.pairs}
-        coupling = contact._coupling(found.contact_state, states)[0]
-        own = np.zeros(contact_term.n)
-        for pair in contact_term.pairs:
-            part = pair.full / pair.stiffness
-            own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
-        bare = coupling.diagonal == 0.0
-        coupling.diagonal[bare] = -COMPLIANCE * own[bare]
-        contact_term.restore()
-        return found.at, coupling
-
-    def _stiffness(self, coupling: Any) -> Any:
-        at = self.at
-        triplets: Any = None
+    def _stiffness(self, coupling: Coupling) -> Any:
+        at, more = self.at, coupling.geometric_stiffness
         if at.load_stiffness is not None:
             rows, columns, values = at.load_stiffness
-            triplets = (rows, columns, -values)
-        if coupling is not None and len(coupling.geometric_stiffness.values):
-            geometric_stiffness = coupling.geometric_stiffness
-            more = (
-                geometric_stiffness.rows,
-                geometric_stiffness.columns,
-                geometric_stiffness.values,
-            )
-            triplets = (
-                more
-                if triplets is None
-                else tuple(np.concatenate(pair) for pair in zip(triplets, more, strict=True))
-            )
+            more = Triplets.join([Triplets(rows, columns, -values), more])
+        triplets = (more.rows, more.columns, more.values) if len(more.values) else None
         residual = at.residual if self._load is None else at.residual - self._load
         k = self.reduce(at.values, triplets, residual)
-        if coupling is None:
+        if not self.n_multipliers:
             return k
         shape = (self.system.n_dofs, self.n_multipliers)
-        rows = coupling.rows
-        side = sp.coo_array((rows.values, (rows.rows, rows.columns)), shape=shape).tocsc()
+        border = coupling.rows
+        side = sp.coo_array((border.values, (border.rows, border.columns)), shape=shape).tocsc()
         side = self.link.reduce_columns(side)
         return sp.block_array(
             [[k, side], [side.T, sp.diags_array(coupling.diagonal)]], format="csc"
@@ -350,4 +305,4 @@ def spin(system: System) -> float:
     return float(sum(rates))
 
 
-__all__ = ["COMPLIANCE", "LinearMotion", "Linearized", "spin"]
+__all__ = ["LinearMotion", "Linearized", "spin"]

@@ -11,13 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from corota.model.steps import Dynamic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from corota.model.steps import Step
@@ -57,13 +56,8 @@ def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
     A contact force that acts on nodes without mass is bounded and does no work in the limit of
     small increments; on nodes with mass it creates energy and chatters.
     """
-    if system.contact_term is None or not redistribute:
-        return None
-    massless = np.zeros(len(system.per_node), bool)
-    for pair in system.contact_term.pairs:
-        if not pair.tied:
-            massless[pair.slave.node_list] = True
-    return massless
+    massless: NDArray[np.bool_] = system.contact_term.massless_nodes()
+    return massless if redistribute and massless.any() else None
 
 
 __all__ = ["MovingMass", "mass_of_step", "massless_nodes"]

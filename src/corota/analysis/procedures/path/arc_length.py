@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.newton import ElementFailure, Settings
+from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.controls import Row
-from corota.analysis.procedures.path.corrector import Point
-from corota.analysis.procedures.path.equations import path_system
 from corota.analysis.procedures.path.tracer import End, PathStalled, PathTracer, Plan
+from corota.analysis.terms.contact.path import path_system
 from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
 from corota.model.dofs import dof_index
 from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label

@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.controls import Row
-from corota.analysis.procedures.path.corrector import Point, tangent_at
+from corota.analysis.procedures.path.corrector import tangent_at
 from corota.analysis.procedures.path.plan import Increment, PathStalled
 from corota.errors import SingularError
 

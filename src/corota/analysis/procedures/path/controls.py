@@ -17,20 +17,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from corota.analysis.path_system import product
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     Mask = NDArray[np.bool_]
-
-
-def product(u: Floats, v: Floats, counted: Mask) -> float:
-    """Scalar product over the counted dofs.
-
-    Without a linear algebra library: its threads cost more than such a sum.
-    """
-    return float(np.einsum("i,i,i->", u, v, counted))
 
 
 class Control(Protocol):
@@ -157,4 +151,4 @@ class Factor:
         return self.value - dfactor
 
 
-__all__ = ["Arc", "Control", "Factor", "Plane", "Row", "product"]
+__all__ = ["Arc", "Control", "Factor", "Plane", "Row"]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.newton import DIVERGED, ElementFailure, GiveUp, ResidualNorms, Settings
-from corota.analysis.procedures.path.controls import product
+from corota.analysis.path_system import Metric, Point, Tangent, product
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -20,70 +20,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.analysis.path_system import PathSystem
     from corota.analysis.procedures.path.controls import Control
-    from corota.analysis.procedures.path.equations import PathSystem
 
     Floats = NDArray[np.float64]
     Mask = NDArray[np.bool_]
 
 #: Displacements below this share of the structure's size are rounding.
 STILL = 1e-12
-
-
-@dataclass
-class Point:
-    """An equilibrium: displacement, load factor and the evaluation there."""
-
-    u: Floats
-    factor: float
-    at: Any
-
-
-@dataclass
-class Tangent:
-    """Direction of the path at a point.
-
-    Parameters
-    ----------
-    u : ndarray, shape (n_dofs,)
-        Displacement per unit of path.
-    factor : float
-        Load factor per unit of path.
-    negative : int
-        Negative pivots of the tangent matrix, -1 if unknown.
-    """
-
-    u: Floats
-    factor: float
-    negative: int
-
-    def reversed(self) -> Tangent:
-        """The other sense."""
-        return Tangent(-self.u, -self.factor, self.negative)
-
-
-@dataclass
-class Metric:
-    """Length of directions in displacement and load factor.
-
-    The displacement that a unit of load factor makes at the start of the step counts as much
-    as that unit, so that arcs have no unit and a linear structure takes one to factor one.
-    """
-
-    counted: Mask
-    length: float  # displacement of a unit of load factor at the start
-
-    def dot(self, u: Floats, f: float, v: Floats, g: float) -> float:
-        """Scalar product of two directions."""
-        return 0.5 * (product(u, v, self.counted) / self.length**2 + f * g)
-
-    def size(self, u: Floats, f: float) -> float:
-        """Length of a direction."""
-        return float(np.sqrt(self.dot(u, f, u, f)))
-
-    def displacement(self, u: Floats) -> float:
-        """Length of the displacements alone [length]."""
-        return float(np.sqrt(product(u, u, self.counted)))
 
 
 @dataclass
@@ -241,4 +185,4 @@ def tangent_at(
     return Tangent(x / size, 1.0 / size, negative), metric
 
 
-__all__ = ["Corrected", "Metric", "Point", "Tangent", "correct", "tangent_at"]
+__all__ = ["Corrected", "correct", "tangent_at"]

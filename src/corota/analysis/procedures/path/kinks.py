@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.procedures.path.corrector import Metric, Point, Tangent, tangent_at
+from corota.analysis.path_system import Metric, Point, Tangent
+from corota.analysis.procedures.path.corrector import tangent_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.procedures.path.equations import PathSystem
+    from corota.analysis.path_system import PathSystem
 
     Floats = NDArray[np.float64]
 

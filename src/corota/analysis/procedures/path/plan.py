@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Literal
 from corota.analysis.procedures.path.controls import Factor, Row
 
 if TYPE_CHECKING:
+    from corota.analysis.path_system import Point, Tangent
     from corota.analysis.procedures.path.controls import Control
-    from corota.analysis.procedures.path.corrector import Point, Tangent
     from corota.analysis.procedures.path.stability import Critical
 
 

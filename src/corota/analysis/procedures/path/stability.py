@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.procedures.path.corrector import Point, Tangent
-    from corota.analysis.procedures.path.equations import PathSystem
+    from corota.analysis.path_system import PathSystem, Point, Tangent
 
     Floats = NDArray[np.float64]
 

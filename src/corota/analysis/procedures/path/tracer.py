@@ -16,16 +16,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.analysis.path_system import Metric, Point, Tangent
 from corota.analysis.procedures.path.branches import returned, switch
 from corota.analysis.procedures.path.controls import Arc, Factor, Plane, Row
-from corota.analysis.procedures.path.corrector import (
-    STILL,
-    Metric,
-    Point,
-    Tangent,
-    correct,
-    tangent_at,
-)
+from corota.analysis.procedures.path.corrector import STILL, correct, tangent_at
 from corota.analysis.procedures.path.kinks import direction, shares
 from corota.analysis.procedures.path.plan import End, Increment, PathStalled, Plan
 from corota.analysis.procedures.path.stability import Critical, Station, has_event, locate
@@ -37,9 +31,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.newton import ResidualNorms, Settings
+    from corota.analysis.path_system import PathSystem
     from corota.analysis.procedures.path.controls import Control
     from corota.analysis.procedures.path.corrector import Corrected
-    from corota.analysis.procedures.path.equations import PathSystem
 
     Floats = NDArray[np.float64]
     Report = Callable[[int, int, ResidualNorms, float, float, float], None]

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.advice import corner_note, fillet_note
+from corota.analysis.terms.contact.output import output
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.analysis.terms.contact.side import check_side
-from corota.errors import ModelError
+from corota.errors import ModelError, UnsupportedError
 from corota.model.contact import ContactPair, Tie
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
+#: Procedures that know contact and ties between surfaces.
+WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
 #: Damping of stabilised surfaces per stiffness of their nodes and period.
 STABILISE = 1e-3
 
@@ -58,7 +61,7 @@ class ContactState:
 
 
 class ContactTerm:
-    """All contact pairs and ties of a model.
+    """All contact pairs and ties of a model; where there are none, nothing is done or added.
 
     Parameters
     ----------
@@ -107,10 +110,61 @@ class ContactTerm:
             None  # linear algebra with the multipliers, made when needed
         )
 
+    # -- facts -------------------------------------------------------------------------
+
+    @property
+    def acts(self) -> bool:
+        """Whether any pair or tie holds bodies: they may be free otherwise, and turn with them."""
+        return bool(self.pairs)
+
+    @property
+    def opens(self) -> bool:
+        """Whether any surfaces may open and close."""
+        return any(not pair.tied for pair in self.pairs)
+
+    @property
+    def force(self) -> Floats:
+        """Of the pairs on the nodes in the committed state, shape (n_dofs,)."""
+        return np.zeros(self.system.n_dofs) if self.at is None else self.at.force
+
+    def massless_nodes(self) -> NDArray[np.bool_]:
+        """Slave nodes of contact, shape (n_nodes,): others may carry their mass."""
+        found = np.zeros(len(self.system.per_node), bool)
+        for pair in self.pairs:
+            if not pair.tied:
+                found[pair.slave.node_list] = True
+        return found
+
+    def check_explicit(self, step: Step) -> None:
+        """Refuse a step without linear equations.
+
+        Raises
+        ------
+        UnsupportedError
+        """
+        if self.pairs:
+            raise UnsupportedError(
+                "central differences take no contact pairs and no ties; use an implicit scheme "
+                "(hht, generalized_alpha, energy_momentum; *DYNAMIC without EXPLICIT)",
+                step.where,
+            )
+
     # -- steps -------------------------------------------------------------------------
 
     def begin(self, step: Step) -> None:
-        """Start a step."""
+        """Start a step.
+
+        Raises
+        ------
+        UnsupportedError
+            If its procedure is none that solves with multipliers.
+        """
+        if self.pairs and step.procedure not in WITH_CONTACT:
+            raise UnsupportedError(
+                f"a {step.procedure} step takes no contact pairs or ties; leave them out, or use "
+                f"{' or '.join(WITH_CONTACT)} steps",
+                step.where,
+            )
         self.number += 1
         self.period, self.time = step.period, 0.0
         self.damps = step.procedure == "static"
@@ -315,29 +369,31 @@ class ContactTerm:
             pair.core.restore()
             pair.frozen = False
 
-    def output(self) -> tuple[Floats, dict[str, float], dict[str, Floats]]:
+    def output(self) -> tuple[Floats | None, dict[str, float], dict[str, Floats]]:
         """Contact at the nodes of the committed state, and sums of the pairs.
 
         Returns
         -------
-        values : ndarray, shape (n_nodes, 5)
+        values : ndarray, shape (n_nodes, 5), or None without pairs
             See :attr:`corota.results.Frame.C`.
         sums : dict of str to float
             Force on the slave surface, its moment about the origin, and energies.
         pairs : dict of str to ndarray, shape (n_nodes, 5)
             See :attr:`corota.results.Frame.pairs`.
         """
-        from corota.analysis.terms.contact.output import output
+        return output(self) if self.pairs else (None, {}, {})
 
-        return output(self)
+    def work_sums(self, work: float) -> dict[str, float]:
+        """The work of contact in a motion as a frame shows it; nothing without pairs."""
+        return {"contact work": work} if self.pairs else {}
 
     def energies(self) -> dict[str, float]:
         """What contact has dissipated so far and what its laws store [force*length]."""
         terms = [] if self.at is None else self.at.terms
         return {
-            "ALLFD": sum(pair.friction_work for pair in self.pairs),
+            "ALLFD": float(sum(pair.friction_work for pair in self.pairs)),
             "ALLSD": self.damping_work,
-            "ALLCL": sum(p.law_energy(t) for p, t in zip(self.pairs, terms, strict=False)),
+            "ALLCL": float(sum(p.law_energy(t) for p, t in zip(self.pairs, terms, strict=False))),
         }
 
     def label(self, pair: Pair, constraint: int) -> int:

@@ -19,6 +19,7 @@ from corota.analysis.linear.triplets import Triplets
 from corota.analysis.newton import PROGRESS, GiveUp, Outcome, ResidualNorms
 from corota.analysis.terms.contact.columns import border, stacked
 from corota.analysis.terms.contact.contact import ContactState, ContactTerm
+from corota.analysis.terms.contact.impact import impact_error
 from corota.analysis.terms.contact.messages import explained
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.pivoting import pivoted
@@ -115,13 +116,10 @@ class ContactEquations:
     inner : System, or a motion around it
         What gives residual and tangent without contact.
     system : System
-    weight : float
-        Share of the contact forces in the residual.
     """
 
-    def __init__(self, inner: Any, system: System, weight: float = 1.0) -> None:
-        assert system.contact_term is not None
-        self.inner, self.system, self.weight = inner, system, weight
+    def __init__(self, inner: Any, system: System) -> None:
+        self.inner, self.system = inner, system
         self.contact_term: ContactTerm = system.contact_term
         self.n = system.n_dofs
         self.forget()
@@ -157,8 +155,8 @@ class ContactEquations:
         u, multipliers = z[: self.n], z[self.n :].copy()
         at = self.inner.evaluate(u, step_time)
         contact_state = self.contact_term.evaluate(u, multipliers, step_time, at.values)
-        at.internal = at.internal - self.weight * contact_state.force
-        at.scale = at.scale + self.weight * contact_state.size
+        at.internal = at.internal - contact_state.force
+        at.scale = at.scale + contact_state.size
         if contact_state.damping is not None:
             at.internal += contact_state.damping * (u - self.contact_term.u)
             at.added = contact_state.damping
@@ -480,7 +478,7 @@ class ContactEquations:
         self, contact_state: ContactState, states: States
     ) -> tuple[Coupling, Floats, int]:
         """The border for states, its right-hand side, and its negative pivots."""
-        contact_term, w = self.contact_term, self.weight
+        contact_term = self.contact_term
         m = contact_term.n
         geometric_stiffness, rows, follow = [], [], []
         diagonal, rhs = np.ones(m), np.zeros(m)
@@ -495,18 +493,18 @@ class ContactEquations:
             where = contact_term.dofs(terms.variables)
             k = terms.constraint
             closed = state != OPEN
-            rows.append(border(where, first + k, -w * terms.gap_gradient, closed[k]))
+            rows.append(border(where, first + k, -terms.gap_gradient, closed[k]))
             # Tractions that are known after the correction go to the right-hand side.
             known = np.where(closed, 0.0, -p)
-            part = w * known[k, None] * terms.gap_gradient
+            part = known[k, None] * terms.gap_gradient
             if pair.two:
                 second = first + n
                 diagonal[second : second + n], rhs[second : second + n] = dq, rq
                 expected += int((state == CLOSED).sum())
-                rows.append(border(where, second + k, -w * terms.slip_gradient, state[k] == CLOSED))
+                rows.append(border(where, second + k, -terms.slip_gradient, state[k] == CLOSED))
                 known = np.where(state == CLOSED, 0.0, ratio * p - q)
-                part += w * known[k, None] * terms.slip_gradient
-                slope = -w * ratio[k, None] * terms.slip_gradient
+                part += known[k, None] * terms.slip_gradient
+                slope = -ratio[k, None] * terms.slip_gradient
                 follow.append(border(where, first + k, slope, state[k] == SLIPPING))
             np.add.at(force, where, part)
             if self.system.nlgeom and (p.any() or q.any()):
@@ -528,7 +526,7 @@ class ContactEquations:
         where = self.contact_term.dofs(variables)
         v = where.shape[1]
         a, b = np.repeat(where, v, axis=1).ravel(), np.tile(where, (1, v)).ravel()
-        entries = -self.weight * values.reshape(-1)
+        entries = -values.reshape(-1)
         keep = (a >= 0) & (b >= 0) & (entries != 0.0)
         return Triplets(a[keep], b[keep], entries[keep])
 
@@ -607,6 +605,17 @@ class ContactEquations:
         forces = bool(np.any(self.system.load_rate(u)[0]))
         limit = (JUMP_OF_FORCE if forces else JUMP) * self.first_move
         return limit == 0.0 or moved <= limit
+
+    @property
+    def force(self) -> Floats:
+        """Of contact on the nodes at the end of the increment, shape (n_dofs,)."""
+        assert self.contact_state is not None
+        return self.contact_state.force
+
+    def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
+        """See :func:`corota.analysis.terms.contact.impact.impact_error`."""
+        assert self.contact_state is not None
+        return impact_error(self.contact_term, self.contact_state, moved, energy, tolerance)
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
+from corota.analysis.path_system import Metric, Point, Tangent
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
 from corota.errors import SingularError
 

@@ -1,11 +1,11 @@
-"""Newton's method with contact, for the procedures that have it."""
+"""Newton's method for one increment with whatever contact there is."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -18,12 +18,56 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import Evaluation, System
     from corota.analysis.newton import Outcome, ResidualNorms, Settings
-    from corota.analysis.terms.contact.equations import ContactEquations
 
     Floats = NDArray[np.float64]
 
 
-def newton_with_contact(
+class ContactIncrement(Protocol):
+    """What a procedure asks of contact about an increment that was solved."""
+
+    @property
+    def force(self) -> Floats:
+        """Of contact on the nodes at the end, shape (n_dofs,)."""
+        ...
+
+    def accept(self, u: Floats, step_time: float) -> list[str]:
+        """Commit contact with the increment; returns remarks that are new."""
+        ...
+
+    def near(self, u: Floats) -> bool:
+        """Whether an equilibrium is near the committed one."""
+        ...
+
+    def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
+        """What an increment misses of the moment of impact."""
+        ...
+
+
+class NoContact:
+    """An increment of a model without pairs and ties.
+
+    Parameters
+    ----------
+    n_dofs : int
+    """
+
+    def __init__(self, n_dofs: int) -> None:
+        self.force: Floats = np.zeros(n_dofs)
+
+    def accept(self, u: Floats, step_time: float) -> list[str]:
+        """Nothing to commit."""
+        return []
+
+    def near(self, u: Floats) -> bool:
+        """Without contact, states do not jump."""
+        return True
+
+    def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
+        """Nothing touches."""
+        return 0.0
+
+
+def solve_increment(
     inner: Any,
     system: System,
     u: Floats,
@@ -31,11 +75,10 @@ def newton_with_contact(
     step_time: float,
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
-    weight: float = 1.0,
-    tangent: Floats | None = None,
+    known: Evaluation | None = None,
     last_chance: bool = False,
-) -> tuple[Outcome[Evaluation], ContactEquations]:
-    """Newton's method on displacements and multipliers of contact.
+) -> tuple[Outcome[Evaluation], ContactIncrement]:
+    """Newton's method on displacements and, with contact, on its multipliers.
 
     Parameters
     ----------
@@ -44,10 +87,8 @@ def newton_with_contact(
     system : System
     u, prescribed, step_time, settings, report
         As for :func:`corota.analysis.newton.newton`.
-    weight : float
-        Share of the contact forces in the residual.
-    tangent : ndarray, shape (nnz,), optional
-        Tangent of the committed increment to start with.
+    known : Evaluation, optional
+        Of `inner` at `u` and an earlier time: its tangent is the first one.
     last_chance : bool
         Whether no shorter increment may follow: nothing is given up early then.
 
@@ -55,7 +96,7 @@ def newton_with_contact(
     -------
     outcome : Outcome
         In terms of the system; the internal force holds that of contact.
-    touching : TouchingSystem
+    contact : ContactIncrement
         Its ``accept`` commits contact, once the increment is taken.
     """
     from corota.analysis.terms.contact.equations import (
@@ -64,19 +105,24 @@ def newton_with_contact(
         ContactEquations,
     )
 
-    problem = ContactEquations(inner, system, weight)
+    if not system.contact_term.pairs:
+        begin = None if known is None else system.with_loads(known, u, step_time)
+        outcome = newton(inner, u, prescribed, step_time, settings, begin, report)
+        return outcome, NoContact(system.n_dofs)
+    problem = ContactEquations(inner, system)
     n = system.n_dofs
     z = problem.start(u)
     target = np.concatenate([prescribed, z[n:]])
     most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
-    more = replace(settings, max_iterations=most, patience=0 if last_chance else PATIENCE)
+    patience = 0 if last_chance else PATIENCE
+    more = replace(settings, max_iterations=most, patience=patience, reuse=None)
     start = None
-    if tangent is not None:
+    if known is not None:
         with contextlib.suppress(ElementFailure):  # which Newton's method reports
             start = problem.evaluate(z, step_time)
-            start.at.values[:] = tangent
-    outcome = newton(problem, z, target, step_time, more, start, report)
-    return problem.settle(outcome), problem
+            start.at.values[:] = known.values
+    found = newton(problem, z, target, step_time, more, start, report)
+    return problem.settle(found), problem
 
 
-__all__ = ["newton_with_contact"]
+__all__ = ["ContactIncrement", "NoContact", "solve_increment"]

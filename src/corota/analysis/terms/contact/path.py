@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.procedures.path.equations import NOT_CONSERVATIVE
+from corota.analysis.path_system import NOT_CONSERVATIVE, SmoothPath
 from corota.analysis.terms.contact.equations import (
     MAX_EXTRA_CONTACT_ITERATIONS,
     ContactEquations,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation, System
-    from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
+    from corota.analysis.path_system import Metric, Point, Tangent
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
@@ -64,7 +64,7 @@ class Along(ContactEvaluation):
 
 
 class ContactPathEquations(ContactEquations):
-    """See :class:`corota.analysis.procedures.path.equations.PathSystem`.
+    """See :class:`corota.analysis.path_system.PathSystem`.
 
     Parameters
     ----------
@@ -264,4 +264,9 @@ class ContactPathEquations(ContactEquations):
         return *found, states
 
 
-__all__ = ["SLIPS", "Along", "ContactPathEquations"]
+def path_system(system: System, notes: list[str]) -> Any:
+    """The system as a path sees it; `notes` takes remarks for the user."""
+    return ContactPathEquations(system, notes) if system.contact_term.pairs else SmoothPath(system)
+
+
+__all__ = ["SLIPS", "Along", "ContactPathEquations", "path_system"]

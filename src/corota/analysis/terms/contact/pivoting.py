@@ -213,7 +213,7 @@ class Pivoting:
             np.add.at(
                 force,
                 (where[of_open], np.repeat(column[i][of_open][:, None], wide, 1)),
-                problem.weight * push[of_open],
+                push[of_open],
             )
             closed = c.rows[state[c.rows] != OPEN]
             rows[pair.first + closed, column[closed]] = -1.0
@@ -222,7 +222,7 @@ class Pivoting:
                 np.add.at(
                     force,
                     (where[less], np.repeat(column[i][less][:, None] + 1, wide, 1)),
-                    -problem.weight * slip_direction[i[less], None] * terms.slip_gradient[less],
+                    -slip_direction[i[less], None] * terms.slip_gradient[less],
                 )
                 stuck = c.rows[state[c.rows] == CLOSED]
                 rows[pair.first + pair.n + stuck, column[stuck] + 1] = -1.0

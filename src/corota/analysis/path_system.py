@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import Evaluation, System
     from corota.analysis.newton import ResidualNorms
-    from corota.analysis.procedures.path.corrector import Metric, Point, Tangent
 
     Floats = NDArray[np.float64]
     Mask = NDArray[np.bool_]
@@ -22,6 +22,70 @@ NOT_CONSERVATIVE = (
     "the loads follow the structure and have no potential: the tangent is not symmetric, its "
     "pivots do not tell stability (non-conservative: use dynamics)"
 )
+
+
+def product(u: Floats, v: Floats, counted: Mask) -> float:
+    """Scalar product over the counted dofs.
+
+    Without a linear algebra library: its threads cost more than such a sum.
+    """
+    return float(np.einsum("i,i,i->", u, v, counted))
+
+
+@dataclass
+class Point:
+    """An equilibrium: displacement, load factor and the evaluation there."""
+
+    u: Floats
+    factor: float
+    at: Any
+
+
+@dataclass
+class Tangent:
+    """Direction of the path at a point.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n_dofs,)
+        Displacement per unit of path.
+    factor : float
+        Load factor per unit of path.
+    negative : int
+        Negative pivots of the tangent matrix, -1 if unknown.
+    """
+
+    u: Floats
+    factor: float
+    negative: int
+
+    def reversed(self) -> Tangent:
+        """The other sense."""
+        return Tangent(-self.u, -self.factor, self.negative)
+
+
+@dataclass
+class Metric:
+    """Length of directions in displacement and load factor.
+
+    The displacement that a unit of load factor makes at the start of the step counts as much
+    as that unit, so that arcs have no unit and a linear structure takes one to factor one.
+    """
+
+    counted: Mask
+    length: float  # displacement of a unit of load factor at the start
+
+    def dot(self, u: Floats, f: float, v: Floats, g: float) -> float:
+        """Scalar product of two directions."""
+        return 0.5 * (product(u, v, self.counted) / self.length**2 + f * g)
+
+    def size(self, u: Floats, f: float) -> float:
+        """Length of a direction."""
+        return float(np.sqrt(self.dot(u, f, u, f)))
+
+    def displacement(self, u: Floats) -> float:
+        """Length of the displacements alone [length]."""
+        return float(np.sqrt(product(u, u, self.counted)))
 
 
 class PathSystem(Protocol):
@@ -169,13 +233,4 @@ class SmoothPath:
         return x[:, 0], x[:, 1]
 
 
-def path_system(system: System, notes: list[str]) -> Any:
-    """The system as a path sees it; `notes` takes remarks for the user."""
-    if system.contact_term is None:
-        return SmoothPath(system)
-    from corota.analysis.terms.contact.path import ContactPathEquations
-
-    return ContactPathEquations(system, notes)
-
-
-__all__ = ["NOT_CONSERVATIVE", "PathSystem", "SmoothPath", "path_system"]
+__all__ = ["NOT_CONSERVATIVE", "Metric", "PathSystem", "Point", "SmoothPath", "Tangent", "product"]
