@@ -1,79 +1,177 @@
-"""Balance error of every verification problem and example.
+"""Balance error of every verification problem and example, and how it falls with the increment.
 
 Usage::
 
-    python -m benchmarks.energy_balance [NAME ...] [--markdown]
+    python -m benchmarks.energy_balance [NAME ...] [--markdown] [--no-orders]
 
-Each analysis of a problem leaves its largest error of the energy account over its largest energy;
-the worst of a problem is shown, with how many of its analyses are above 1e-3. Names choose
-problems of the catalogue, or examples by their path (``examples/motion/pendulum.py``).
+Each analysis of a problem leaves its largest error of the energy account over its largest energy.
+The worst of a problem is shown, with how many of its analyses are above 1e-3. A problem above 1e-3
+runs again with increments cut to a half and a quarter: the row then shows the errors of the same
+analysis and the order, from the numbers of increments that were made. Names choose problems of the
+catalogue, or examples by their path (``examples/motion/pendulum.py``).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import copy
+import math
 import runpy
 import sys
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from corota.analysis.run import Analysis
+from corota.model.steps import Dynamic, Static
 from corota.verification import catalogue, runner
+
+if TYPE_CHECKING:
+    from corota.model.steps import Step
 
 ROOT = Path(__file__).resolve().parents[1]
 #: Error that counts as small.
 SMALL = 1e-3
+#: Cuts of the increments of a second and a third run.
+CUTS = (2, 4)
 
 
-def watch() -> list[tuple[str, float]]:
-    """Let every analysis note its scheme and balance error."""
-    found: list[tuple[str, float]] = []
-    run = Analysis.run
+@dataclass
+class Run:
+    """Scheme, balance error, increments and largest increment of each step of one analysis."""
 
-    def measured(self: Analysis) -> Any:
+    scheme: str
+    error: float
+    increments: int
+    largest: dict[int, float]
+
+
+class Watch:
+    """Lets every analysis note its balance error; cuts its increments where asked to."""
+
+    def __init__(self) -> None:
+        self.found: list[Run | None] = []
+        self.cut = 1
+        self.before: list[Run | None] = []
+        run = Analysis.run
+
+        def measured(analysis: Analysis) -> Any:
+            number = len(self.found)
+            self.found.append(None)
+            first = self.before[number] if number < len(self.before) else None
+            if self.cut > 1 and first is not None:
+                analysis.steps = [
+                    finer(step, self.cut, first.largest.get(i, 0.0))
+                    for i, step in enumerate(analysis.steps, start=1)
+                ]
+            try:
+                return run(analysis)
+            finally:
+                account = getattr(analysis, "energies", None)
+                if account is not None:
+                    self.found[number] = Run(account.scheme, account.error, *made(analysis))
+
+        Analysis.run = measured  # type: ignore[method-assign]
+
+
+def made(analysis: Analysis) -> tuple[int, dict[int, float]]:
+    """Number of increments, and the largest one of each step [time]."""
+    largest: dict[int, float] = {}
+    step, before = 0, 0.0
+    for frame in analysis.results.frames:
+        if frame.step != step:
+            step, before = frame.step, 0.0
+        largest[step] = max(largest.get(step, 0.0), frame.step_time - before)
+        before = frame.step_time
+    return analysis.results.info.get("increments", len(analysis.results.frames)), largest
+
+
+def finer(step: Step, cut: int, largest: float) -> Step:
+    """The same step with shorter increments."""
+    if not isinstance(step, Static | Dynamic):
+        return step
+    step = copy.copy(step)
+    if isinstance(step, Static) and step.path is not None:
+        bound = min(step.largest_increment, 4.0 * step.first_increment)
+    else:
+        bound = min(step.largest_increment, largest or step.largest_increment)
+    step.first_increment = min(step.first_increment, bound) / cut
+    step.largest_increment = bound / cut
+    step.smallest_increment = min(step.smallest_increment, 1e-3 * step.first_increment)
+    step.max_increments *= 4 * cut
+    if isinstance(step, Dynamic):
+        step.error_tolerance /= cut * cut
+    return step
+
+
+def forget() -> None:
+    """Empty the caches in which the problems keep their analyses."""
+    for name, module in list(sys.modules.items()):
+        if name.startswith("corota.verification.problems"):
+            for item in vars(module).values():
+                if hasattr(item, "cache_clear"):
+                    item.cache_clear()
+
+
+def play(name: str) -> str:
+    """Run a problem or an example; name what stopped it."""
+    forget()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
         try:
-            return run(self)
-        finally:
-            account = getattr(self, "energies", None)
-            if account is not None:
-                found.append((account.scheme, account.error))
+            if name.endswith(".py"):
+                runpy.run_path(str(ROOT / name), run_name="__main__")
+            else:
+                runner.measure(name)
+        except (Exception, SystemExit) as error:  # a row says what an example stopped at
+            return f" {type(error).__name__}"
+    return ""
 
-    Analysis.run = measured  # type: ignore[method-assign]
-    return found
+
+def orders(watch: Watch, name: str, number: int) -> str:
+    """Errors of one analysis with shorter increments, and the order of the last two."""
+    watch.before, runs, note = watch.found, [watch.found[number]], ""
+    for watch.cut in CUTS:
+        watch.found = []
+        note = play(name)
+        runs.append(watch.found[number] if number < len(watch.found) else None)
+    watch.cut = 1
+    known = [run for run in runs if run is not None]
+    cells = " ".join(f"{abs(run.error):.1e} ({run.increments})" for run in known)
+    a, b = known[0], known[-1]
+    if b.increments <= a.increments or b.error == 0.0:
+        return f"{cells} -{note}"
+    order = math.log(abs(a.error / b.error)) / math.log(b.increments / a.increments)
+    return f"{cells}, order {order:.1f}{note}"
 
 
 def main(names: list[str]) -> None:
     """Print one row for each problem and example."""
-    markdown = "--markdown" in names
+    markdown, refine = "--markdown" in names, "--no-orders" not in names
     names = [name for name in names if not name.startswith("--")]
-    found = watch()
+    watch = Watch()
     every = [
         *catalogue.problems(),
         *(str(p.relative_to(ROOT)) for p in sorted((ROOT / "examples").rglob("*.py"))),
     ]
-    heads = ("problem", "analyses", "worst error", "scheme", "above 1e-3")
-    row = "| {} | {} | {} | {} | {} |" if markdown else "{:42s} {:>9} {:>12} {:20s} {}"
+    heads = ("problem", "analyses", "worst error", "scheme", "above 1e-3", "error (increments)")
+    row = "| {} | {} | {} | {} | {} | {} |" if markdown else "{:42s} {:>9} {:>12} {:20s} {:11} {}"
     print(row.format(*heads))
     if markdown:
-        print("|---|---|---|---|---|")
+        print("|---|---|---|---|---|---|")
     for name in names or every:
-        found.clear()
-        note = ""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                if name.endswith(".py"):
-                    runpy.run_path(str(ROOT / name), run_name="__main__")
-                else:
-                    runner.measure(name)
-            except (Exception, SystemExit) as error:  # a row says what an example stopped at
-                note = f" {type(error).__name__}"
-        if not found:
+        watch.found = []
+        note = play(name)
+        runs = [(abs(run.error), i) for i, run in enumerate(watch.found) if run is not None]
+        if not runs:
             continue
-        scheme, worst = max(found, key=lambda pair: abs(pair[1]))
-        above = sum(abs(error) > SMALL for _, error in found)
-        cells = (name, len(found), f"{worst:+.1e}", scheme, f"{above}{note}")
+        worst, number = max(runs)
+        above = sum(error > SMALL for error, _ in runs)
+        run = watch.found[number]
+        assert run is not None
+        text = orders(watch, name, number) if refine and worst > SMALL else ""
+        cells = (name, len(runs), f"{run.error:+.1e}", run.scheme, f"{above}{note}", text)
         print(row.format(*cells), flush=True)
 
 
