@@ -33,6 +33,8 @@ LOOK = {
     "Q9": ("#009E73", "s"),
     "OPT": ("#D55E00", "^"),
     "Q4D": ("#CC79A7", "v"),
+    "Q4S": ("#E69F00", "p"),
+    "Q4DI": ("#F0E442", "<"),
 }
 
 
@@ -128,7 +130,7 @@ def cost(records: list[dict[str, Any]], error: float, key: str) -> float:
 def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> str:
     """Table of the errors on the finest mesh and of the cost of one per cent."""
     rows: list[list[object]] = []
-    more = [key for key in ("energy lacking",) if any(key in r for r in records)]
+    more = [key for key in ("balance error",) if any(key in r for r in records)]
     for variant in case.variants:
         for element in case.elements:
             found = [r for r in records if (r["element"], r["variant"]) == (element, variant)]

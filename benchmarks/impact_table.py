@@ -4,7 +4,7 @@ The bar (200 elements, increments of half the time a wave takes through one) wit
 scheme, with the mass of the contact nodes redistributed and without; an elastic ring that hits the
 wall straight and obliquely with friction: momenta, energies and where they go; then bars and rings
 that hit a wall at two speeds and yield, with four elements, consistent inertia and the scheme of
-energy and momentum with automatic increments: rebound, energies, what their balance lacks, momentum
+energy and momentum with automatic increments: rebound, energies, balance error, momentum
 along the wall, residual shape, iterations, time.
 
 ``--quick`` runs coarser models; ``--write`` puts the tables between the marks in docs/impact.md
@@ -146,7 +146,7 @@ def yielding(around: int, cells: int) -> tuple[list[str], dict[str, Flight]]:
     lines = [
         f"Energies over that of the start. Ring: {around} x 2 elements; bar: {cells} x 4.",
         "",
-        "| body | element | speed | rebound | kinetic | strain | plastic | lack | momentum along "
+        "| body | element | speed | rebound | kinetic | strain | plastic | balance error | momentum along "
         "wall | shape | increments | iterations | CPU s |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]

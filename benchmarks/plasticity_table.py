@@ -1,6 +1,6 @@
 """Elements and local strains beyond yield, side by side: writes ``docs/plasticity-table.md``.
 
-Q4I, Q8, OPT and Q4D with the simplified, modified and logarithmic local strain on two meshes of
+Six elements with the linear and the logarithmic local strain on two meshes of
 the perforated strip, Cook's panel and a perfectly plastic cantilever; and OPT's weight, locking in
 plane strain. Results, iterations and seconds of one thread. ``--write`` writes the page.
 """
@@ -27,7 +27,7 @@ from corota.verification.plastic_models import (
     perforated_strip,
 )
 
-ELEMENTS = ("Q4I", "Q8", "OPT", "Q4D")
+ELEMENTS = ("Q4I", "Q8", "OPT", "Q4D", "Q4S", "Q4DI")
 MEASURES = ("linear", "logarithmic")
 PAGE = Path(__file__).parents[1] / "docs" / "plasticity-table.md"
 

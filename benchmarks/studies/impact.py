@@ -82,16 +82,16 @@ def path(results: ct.Results) -> Floats:
 
 
 def energy_error(results: ct.Results, first: float) -> dict[str, float]:
-    """What the balance of energy lacks at its worst, over the energy at the start."""
+    """Largest energy-balance error over the energy at the start."""
     worst = max(abs(f.scalars.get("energy balance", 0.0)) for f in results.frames)
-    return {"energy lacking": worst / first}
+    return {"balance error": worst / first}
 
 
-def ring_lack(results: ct.Results) -> dict[str, float]:
+def ring_error(results: ct.Results) -> dict[str, float]:
     return energy_error(results, 0.25 * np.pi * (OUTER**2 - INNER**2) * RING_SPEED**2)
 
 
-def block_lack(results: ct.Results) -> dict[str, float]:
+def block_error(results: ct.Results) -> dict[str, float]:
     return energy_error(results, 0.5 * WIDTH * HEIGHT * BLOCK_SPEED**2)
 
 
@@ -130,7 +130,7 @@ CASES = (
         "error of the path",
         per_variant=True,
         coarser=lambda v: ring_on(6, scheme(v)),
-        extra=ring_lack,
+        extra=ring_error,
     ),
     Case(
         "impact",
@@ -150,6 +150,6 @@ CASES = (
         "error of the path",
         per_variant=True,
         coarser=lambda v: block_on(8, scheme(v)),
-        extra=block_lack,
+        extra=block_error,
     ),
 )
