@@ -23,6 +23,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from corota.analysis.run import Analysis
 from corota.model.steps import Dynamic, Static
 from corota.verification import catalogue, runner
@@ -39,12 +41,15 @@ CUTS = (2, 4)
 
 @dataclass
 class Run:
-    """Scheme, balance error, increments and largest increment of each step of one analysis."""
+    """Scheme, balance error and step times of one analysis."""
 
     scheme: str
     error: float
-    increments: int
-    largest: dict[int, float]
+    times: dict[int, list[float]]
+
+    @property
+    def increments(self) -> int:
+        return sum(len(times) - 1 for times in self.times.values())
 
 
 class Watch:
@@ -60,31 +65,45 @@ class Watch:
             number = len(self.found)
             self.found.append(None)
             first = self.before[number] if number < len(self.before) else None
+            # Without fields there is no account.
+            analysis.fields, analysis.results.keep = True, "all"
             if self.cut > 1 and first is not None:
-                analysis.steps = [
-                    finer(step, self.cut, first.largest.get(i, 0.0))
-                    for i, step in enumerate(analysis.steps, start=1)
-                ]
+                refine(analysis, self.cut, first.times)
             try:
                 return run(analysis)
             finally:
                 account = getattr(analysis, "energies", None)
                 if account is not None:
-                    self.found[number] = Run(account.scheme, account.error, *made(analysis))
+                    times = step_times(analysis)
+                    self.found[number] = Run(account.scheme, account.error, times)
 
         Analysis.run = measured  # type: ignore[method-assign]
 
 
-def made(analysis: Analysis) -> tuple[int, dict[int, float]]:
-    """Number of increments, and the largest one of each step [time]."""
-    largest: dict[int, float] = {}
-    step, before = 0, 0.0
+def step_times(analysis: Analysis) -> dict[int, list[float]]:
+    """Times of the frames of each step, its start first."""
+    found: dict[int, list[float]] = {}
     for frame in analysis.results.frames:
-        if frame.step != step:
-            step, before = frame.step, 0.0
-        largest[step] = max(largest.get(step, 0.0), frame.step_time - before)
-        before = frame.step_time
-    return analysis.results.info.get("increments", len(analysis.results.frames)), largest
+        times = found.setdefault(frame.step, [0.0])
+        if frame.step_time > times[-1]:
+            times.append(frame.step_time)
+    return found
+
+
+def refine(analysis: Analysis, cut: int, times: dict[int, list[float]]) -> None:
+    """Cut each increment of an earlier run into so many."""
+    stops: dict[int, list[float]] = {}
+    steps = []
+    for number, step in enumerate(analysis.steps, start=1):
+        known = np.array(times.get(number, [0.0]))
+        steps.append(finer(step, cut, float(np.diff(known).max(initial=0.0))))
+        shares = np.arange(1, cut + 1) / cut
+        stops[id(steps[-1])] = (
+            (known[:-1, None] + np.diff(known)[:, None] * shares).ravel().tolist()
+        )
+    analysis.steps = steps
+    before = analysis._stops
+    analysis._stops = lambda step: [*before(step), *stops[id(step)]]  # type: ignore[method-assign]
 
 
 def finer(step: Step, cut: int, largest: float) -> Step:
