@@ -146,8 +146,8 @@ def yielding(around: int, cells: int) -> tuple[list[str], dict[str, Flight]]:
     lines = [
         f"Energies over that of the start. Ring: {around} x 2 elements; bar: {cells} x 4.",
         "",
-        "| body | element | speed | rebound | kinetic | strain | plastic | balance error | momentum along "
-        "wall | shape | increments | iterations | CPU s |",
+        "| body | element | speed | rebound | kinetic | strain | plastic | balance error | "
+        "momentum along wall | shape | increments | iterations | CPU s |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
     for line in lines:

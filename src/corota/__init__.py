@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from corota.results.history import History
     from corota.results.observer import BaseObserver, Iteration, Observer
     from corota.results.results import Frame, PointFields, Results
+    from corota.sweeps import Sweep, grid, sample, sweep
 
 
 #: Module of each public name; a module stands for itself.
@@ -125,18 +126,22 @@ _HOMES = {
     "Static": "model.steps",
     "SteadyState": "model.steps",
     "StraightLine": "model.constraints",
+    "Sweep": "sweeps",
     "Temperature": "model.loads",
     "Tie": "model.contact",
     "UnsupportedError": "errors",
     "UserMaterial": "model.user_material",
     "Voce": "model.plasticity",
     "examples": "",
+    "grid": "sweeps",
     "mesh": "",
     "plots": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
     "resume": "io.resume",
+    "sample": "sweeps",
     "solve": "analysis.run",
+    "sweep": "sweeps",
     "write": "io.formats",
 }
 
@@ -198,18 +203,22 @@ __all__ = [
     "Static",
     "SteadyState",
     "StraightLine",
+    "Sweep",
     "Temperature",
     "Tie",
     "UnsupportedError",
     "UserMaterial",
     "Voce",
     "examples",
+    "grid",
     "mesh",
     "plots",
     "read",
     "read_results",
     "resume",
+    "sample",
     "solve",
+    "sweep",
     "write",
 ]
 

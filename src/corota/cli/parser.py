@@ -90,6 +90,38 @@ def make_parser() -> Parser:
     )
     resume.add_argument("--threads", type=_count, metavar="N", help="threads; else all cores")
 
+    sweep = command("sweep", "Run a deck with many values of its *PARAMETER names.")
+    sweep.add_argument("deck", help="input deck (.inp)")
+    sweep.add_argument(
+        "-p",
+        dest="grid",
+        action="append",
+        metavar="NAME=VALUES",
+        required=True,
+        type=_values,
+        help="values t=0.2:0.6:9 (first, last, count) or n=1,2,4; repeatable, all combinations",
+    )
+    sweep.add_argument(
+        "-m",
+        dest="measures",
+        action="append",
+        metavar="MEASURE",
+        required=True,
+        help="what is kept: max(RM3@hub), last(U2@tip); repeatable",
+    )
+    sweep.add_argument(
+        "--sample",
+        type=_count,
+        metavar="N",
+        help="N points of a Latin hypercube between the first and last values, not a grid",
+    )
+    sweep.add_argument("--seed", type=int, default=0, help="of the sample")
+    sweep.add_argument("--workers", type=_count, metavar="N", help="processes; else all cores")
+    sweep.add_argument("-o", "--output", metavar="FILE", help="table; else DECK_sweep.csv")
+    sweep.add_argument("--plot", metavar="FILE", help="picture of the first measure")
+    sweep.add_argument("--again", action="store_true", help="run rows that are kept again")
+    _reading(sweep)
+
     demo = command("demo", "Run an example that comes with Corota; needs no file and no network.")
     demo.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
     demo.add_argument("--list", action="store_true", help="name the examples and run none")
@@ -162,6 +194,15 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         help="replace an element type, such as CPS4=Q4D, repeatable",
     )
     parser.add_argument(
+        "--parameter",
+        dest="parameters",
+        action="append",
+        metavar="NAME=VALUE",
+        default=[],
+        type=_value,
+        help="another value of a *PARAMETER of the deck, repeatable",
+    )
+    parser.add_argument(
         "--as-written",
         action="store_true",
         help="take reduced integration literally: CPS4R becomes Q4R instead of Q4I",
@@ -177,6 +218,38 @@ def _pair(text: str) -> tuple[str, str]:
     if not (old.strip() and sign and new.strip()):
         raise argparse.ArgumentTypeError(f"{text!r} is not of the form OLD=NEW, such as CPS4=Q4D")
     return old.strip().upper(), new.strip().upper()
+
+
+def _value(text: str) -> tuple[str, float]:
+    name, sign, value = text.partition("=")
+    try:
+        if not (name.strip() and sign):
+            raise ValueError
+        return name.strip(), int(value) if value.strip().lstrip("+-").isdigit() else float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not of the form NAME=NUMBER, such as t=0.5"
+        ) from None
+
+
+def _values(text: str) -> tuple[str, list[float]]:
+    """``t=0.2:0.6:9`` (nine values from .2 to .6) or ``n=1,2,4``."""
+    name, sign, values = text.partition("=")
+    try:
+        if not (name.strip() and sign):
+            raise ValueError
+        if ":" not in values:
+            return name.strip(), [_value(f"x={v}")[1] for v in values.split(",")]
+        low, high, *count = values.split(":")
+        n = int(count[0]) if count else 2
+        if n < 1 or len(count) > 1:
+            raise ValueError
+        a, b = float(low), float(high)
+        return name.strip(), [a + (b - a) * i / max(n - 1, 1) for i in range(n)]
+    except (ValueError, argparse.ArgumentTypeError):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not of the form NAME=FIRST:LAST:COUNT or NAME=VALUE,VALUE,..."
+        ) from None
 
 
 def _whole(text: str) -> int:

@@ -41,6 +41,7 @@ def read(
     lenient: bool = False,
     allow_include: bool = False,
     as_written: bool = False,
+    parameters: Mapping[str, float] | None = None,
 ) -> Model:
     """Read a model from a deck.
 
@@ -56,6 +57,8 @@ def read(
         Let ``*INCLUDE`` leave the deck's folder.
     as_written : bool, optional
         Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
+    parameters : mapping of str to float, optional
+        Values of ``*PARAMETER`` names that replace those of the deck.
 
     Returns
     -------
@@ -82,6 +85,7 @@ def read(
         lenient=lenient,
         allow_include=allow_include,
         as_written=as_written,
+        parameters=parameters,
     )
 
 

@@ -12,6 +12,7 @@ from corota.plots.contour import contour
 from corota.plots.curves import curve
 from corota.plots.model import model
 from corota.plots.motion import energies, modes, response
+from corota.plots.sweep import sweep
 
 __all__ = [
     "along",
@@ -24,4 +25,5 @@ __all__ = [
     "modes",
     "response",
     "status",
+    "sweep",
 ]

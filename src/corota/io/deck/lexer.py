@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from corota import _core
-from corota.errors import Diagnostic, FileError, Location
+from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
 from corota.io.deck.parameters import Parameters
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
+
+    from corota.io.deck.parameters import Value
 
 #: Files inside files.
 MAX_DEPTH = 16
@@ -183,6 +185,8 @@ class Lexer:
         The deck.
     allow_include : bool
         Whether includes may leave the deck's folder.
+    parameters : mapping of str to number, optional
+        Values of ``*PARAMETER`` names that replace those of the deck.
 
     Attributes
     ----------
@@ -190,7 +194,12 @@ class Lexer:
     diagnostics : list of Diagnostic
     """
 
-    def __init__(self, path: Path, allow_include: bool = False) -> None:
+    def __init__(
+        self,
+        path: Path,
+        allow_include: bool = False,
+        parameters: Mapping[str, Value] | None = None,
+    ) -> None:
         self.path = path
         self.allow_include = allow_include
         self.cards: list[Card] = []
@@ -199,7 +208,7 @@ class Lexer:
         self.units: tuple[str, Location] | None = None
         self._root = path.resolve().parent
         self._bytes = 0
-        self._parameters = Parameters()
+        self._parameters = Parameters(parameters)
 
     def read(self) -> list[Card]:
         """Read everything.
@@ -215,6 +224,9 @@ class Lexer:
             raise FileError(f"{self.path}: {_why(error)}") from error
         self._find_units(data)
         self.scan(self._source(str(self.path), data), [self.path.resolve()])
+        if lost := self._parameters.unused():
+            known = ", ".join(name for name in self._parameters.values if name != "pi") or "none"
+            raise InputError(f"{self.path}: no *PARAMETER named {lost[0]}; there are {known}")
         return self.cards
 
     def _find_units(self, data: bytes) -> None:

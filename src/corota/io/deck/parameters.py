@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 Value = int | float | str
 
@@ -57,10 +57,22 @@ _LONG = 1 << 20
 
 
 class Parameters:
-    """The parameters that a deck has given so far."""
+    """The parameters that a deck has given so far.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    given : mapping of str to number, optional
+        Values that replace those of the deck.
+    """
+
+    def __init__(self, given: Mapping[str, Value] | None = None) -> None:
         self.values: dict[str, Value] = {"pi": math.pi}
+        self._given = {name.lower(): (name, value) for name, value in (given or {}).items()}
+        self._used: set[str] = set()
+
+    def unused(self) -> list[str]:
+        """Given names that the deck does not have."""
+        return [name for key, (name, _) in self._given.items() if key not in self._used]
 
     def applied(
         self, data: bytes, decode: Callable[[bytes], str]
@@ -114,12 +126,17 @@ class Parameters:
         name = name.strip()
         if not equals or not name.isidentifier():
             raise ValueError(f"expected name = expression, found {line[:60]!r}")
+        key = name.lower()
+        if key in self._given:
+            self._used.add(key)
+            self.values[key] = _limited(self._given[key][1])
+            return
         text = text.split("#")[0].strip()
         try:
             tree = ast.parse(text, mode="eval")
         except (SyntaxError, RecursionError, MemoryError):
             raise ValueError(f"{name}: {text[:60]!r} is no expression") from None
-        self.values[name.lower()] = self._value(tree.body, 0)
+        self.values[key] = self._value(tree.body, 0)
 
     def _value(self, node: ast.AST, depth: int) -> Value:
         """Value of an expression of numbers, names, + - * / ** and functions of mathematics."""

@@ -30,6 +30,7 @@ def read_deck(
     lenient: bool = False,
     allow_include: bool = False,
     as_written: bool = False,
+    parameters: Mapping[str, float] | None = None,
 ) -> Model:
     """Read a CalculiX or Abaqus deck.
 
@@ -44,6 +45,8 @@ def read_deck(
         Whether ``*INCLUDE`` may leave the deck's folder.
     as_written : bool, optional
         Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
+    parameters : mapping of str to float, optional
+        Values of ``*PARAMETER`` names that replace those of the deck.
 
     Returns
     -------
@@ -57,7 +60,7 @@ def read_deck(
     FileError
         If the file cannot be read.
     """
-    lexer = Lexer(Path(path), allow_include)
+    lexer = Lexer(Path(path), allow_include, parameters)
     cards = lexer.read()
     deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}), literal=as_written)
     deck.diagnostics = lexer.diagnostics

@@ -149,14 +149,14 @@ class Histories:
         for name, nodes in self._supports.items():
             total = frame.RF[nodes].sum(axis=0)
             row[f"RF1 {name}"], row[f"RF2 {name}"] = total[:2].tolist()
-            heading, moment = self._moment(frame, nodes)
+            heading, moment = self.moment(frame, nodes)
             row[f"RM3 {name} {heading}"] = moment
         for heading, name, nodes in self._nodes:
             values = nodal_value(frame, name)[nodes]
             row[heading] = float(values.sum() if name[0] in "RFM" else values.mean())
         return row
 
-    def _moment(self, frame: Frame, nodes: Ints) -> tuple[str, float]:
+    def moment(self, frame: Frame, nodes: Ints) -> tuple[str, float]:
         """Total moment of the reactions, and the point it is about.
 
         Of one node that is the node itself, where it is; of several the centroid of their

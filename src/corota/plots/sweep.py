@@ -1,0 +1,103 @@
+"""Measures of a sweep over its parameters."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.plots.figure import INK, look, new_figure, save
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    class Table(Protocol):
+        """What is drawn of a sweep."""
+
+        parameters: list[str]
+        measures: list[str]
+
+        def __getitem__(self, name: str) -> NDArray[Any]: ...
+        def column(self, name: str) -> NDArray[np.float64]: ...
+
+
+#: Most lines of one picture.
+MOST_LINES = 12
+
+
+def sweep(
+    table: Table,
+    x: str,
+    y: str,
+    by: str = "",
+    *,
+    path: str | PathLike[str] | None = None,
+    ax: Any = None,
+    dpi: float = 150.0,
+) -> Any:
+    """Draw a measure of a sweep over a parameter.
+
+    Parameters
+    ----------
+    table : Sweep
+    x, y : str
+        Columns along and upright.
+    by : str
+        A line for each value of this column. Without it rows are points, joined where no other
+        parameter varies.
+    path : path-like, optional
+        Write PNG, SVG or PDF there.
+    ax : matplotlib axes, optional
+    dpi : float
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If a column is unknown or holds no numbers, or `by` has too many values.
+    """
+    across, up = table.column(x), table.column(y)
+    groups = table[by] if by else np.zeros(len(across))
+    values = list(dict.fromkeys(groups.tolist()))
+    if len(values) > MOST_LINES:
+        raise InputError(f"{by!r} has {len(values)} values; a picture shows up to {MOST_LINES}")
+    varying = [p for p in table.parameters if p not in (x, by) and len(set(table[p].tolist())) > 1]
+    with look():
+        if ax is None:
+            figure = new_figure(5.2, 3.7, shown=path is None)
+            ax = figure.add_subplot()
+        else:
+            figure = ax.figure
+        for value in values:
+            mine = groups == value
+            order = np.argsort(across[mine], kind="stable")
+            ax.plot(
+                across[mine][order],
+                up[mine][order],
+                marker="o",
+                markersize=3.2,
+                markerfacecolor="white",
+                markeredgewidth=0.9,
+                linewidth=0.0 if varying else 1.4,
+                label=f"{by} = {value:g}" if by and isinstance(value, float | int) else str(value),
+                clip_on=False,
+                zorder=3,
+            )
+        ax.grid(True, color="#e6e9ee", linewidth=0.6)
+        ax.set_axisbelow(True)
+        ax.set_xlabel(x)
+        ax.set_ylabel(y)
+        if by:
+            ax.legend()
+        ax.margins(0.03)
+        ax.tick_params(length=2.5, colors=INK)
+        if path is not None:
+            save(figure, path, dpi)
+    return figure

@@ -1,0 +1,126 @@
+"""Rows of a sweep on disk: one line of JSON each, found again by a digest of what made them."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+from dataclasses import asdict
+from typing import IO, TYPE_CHECKING, Any
+
+from corota.errors import FileError
+from corota.sweeps.measures import Measure
+from corota.sweeps.variant import DeckBuild, Job, Outcome
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+    from types import TracebackType
+
+
+class Store:
+    """Keeps outcomes in a file, or nowhere.
+
+    A row is known again by its parameters, the measures, and the text of the build function or of
+    the deck. A change elsewhere, as in a function that the build function calls, is not noticed.
+
+    Parameters
+    ----------
+    path : Path or None
+    job : Job
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or written, or is another one.
+    """
+
+    def __init__(self, path: Path | None, job: Job) -> None:
+        self.path = path
+        self._known: dict[str, Outcome] = {}
+        self._file: IO[str] | None = None
+        if path is None:
+            return
+        self._job = digest(job)
+        try:
+            text = path.read_text(encoding="utf-8") if path.exists() else ""
+        except (OSError, UnicodeDecodeError) as error:
+            raise FileError(f"{path}: cannot be read as the store of a sweep: {error}") from None
+        # A line without an end was being written when the sweep was stopped.
+        self._whole = text[: text.rfind("\n") + 1]
+        for number, line in enumerate(self._whole.splitlines(), 1):
+            try:
+                found = json.loads(line)
+                outcome = Outcome(**found["outcome"])
+                self._known[found["digest"]] = outcome
+            except (ValueError, KeyError, TypeError):
+                raise FileError(f"{path}:{number}: no row of a sweep; name another file") from None
+        self._cut = len(self._whole) < len(text)
+
+    def find(self, row: Mapping[str, Any]) -> Outcome | None:
+        """Outcome of a row that ended well."""
+        if self.path is None:
+            return None
+        known = self._known.get(self._digest(row))
+        return None if known is None or known.error else known
+
+    def add(self, row: Mapping[str, Any], outcome: Outcome) -> None:
+        """Write a row."""
+        if self.path is None or self._file is None:
+            return
+        line = {"digest": self._digest(row), "row": row, "outcome": asdict(outcome)}
+        try:
+            self._file.write(json.dumps(line, default=repr) + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise FileError(f"{self.path}: {error.strerror}") from None
+
+    def __enter__(self) -> Store:
+        if self.path is not None:
+            try:
+                if self._cut:
+                    self.path.write_text(self._whole, encoding="utf-8")
+                self._file = self.path.open("a", encoding="utf-8")
+            except OSError as error:
+                raise FileError(f"{self.path}: {error.strerror}") from None
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._file is not None:
+            self._file.close()
+
+    def _digest(self, row: Mapping[str, Any]) -> str:
+        text = json.dumps(row, sort_keys=True, default=repr)
+        return hashlib.sha256(f"{self._job}\n{text}".encode()).hexdigest()[:32]
+
+
+def digest(job: Job) -> str:
+    """Digest of what all rows share."""
+    from corota import __version__
+
+    parts = [__version__]
+    if isinstance(job.build, DeckBuild):
+        from corota.io.provenance import source_of
+
+        parts += [str(source_of(job.build.path)["sha256"]), repr(dict(job.build.options))]
+    else:
+        parts.append(text_of(job.build))
+    for name, measure in job.measures.items():
+        parts += [name, measure.text if isinstance(measure, Measure) else text_of(measure)]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def text_of(function: Any) -> str:
+    """Source of a function, or its name where there is none."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError):
+        return (
+            f"{getattr(function, '__module__', '')}.{getattr(function, '__qualname__', function)}"
+        )
