@@ -23,6 +23,7 @@ REFERENCE = {
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
+    "Sweeps": "sweep sample grid Sweep",
     "Results": "Results Frame PointFields History CriticalPoint Modes",
     "Observers": "BaseObserver Observer Iteration",
     "Errors": "CorotaError InputError DeckError ModelError UnsupportedError SingularError "
