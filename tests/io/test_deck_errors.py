@@ -18,7 +18,7 @@ CASES = [
     ("*STATIC", "*QWERTY", 20, 1, "unknown keyword *QWERTY"),
     ("*STATIC", "*VISCO", 20, 1, "not part of this version"),
     ("*STATIC", "*STATIC, DIRCT", 20, 10, "did you mean DIRECT?"),
-    ("*BOUNDARY", "*BOUNDARY, FIXED", 16, 12, "FIXED is not supported"),
+    ("*BOUNDARY", "*BOUNDARY, SUBMODEL", 16, 12, "SUBMODEL is not supported"),
     ("*BOUNDARY", "*BOUNDARY, OP=OLD", 16, 15, "expected NEW, MOD"),
     ("*CLOAD", "*CONTACT PAIR, INTERACTION=i", 22, 1, "inside a step"),
     ("*CLOAD", "*CLOAD, AMPLITUDE=up", 22, 19, "no amplitude named 'up'"),
