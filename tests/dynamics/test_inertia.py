@@ -114,7 +114,7 @@ def block(element):
 def test_rigid_spin_has_the_kinetic_energy_of_the_body(element, mass):
     from corota.analysis.equations import System
     from corota.analysis.linear.solvers import Multifrontal
-    from corota.analysis.procedures.dynamic import initial_velocity
+    from corota.analysis.procedures.motion_start import initial_velocity
 
     model = block(element)
     omega, velocity = 1.7, (0.3, -0.4)

@@ -5,30 +5,33 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.energies import Balance
+from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.increments import CUT, SAME, Increments
 from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
 from corota.analysis.procedures.motion import (
     ConservingMotion,
-    Damping,
     Driven,
     Inertia,
     MotionState,
     NewmarkMotion,
 )
 from corota.analysis.procedures.motion_output import EndForces
+from corota.analysis.procedures.motion_start import (
+    check_density,
+    damping_at,
+    resting,
+    start_motion,
+)
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
-from corota.analysis.procedures.static import iteration_reporter
 from corota.analysis.terms.contact.newton import solve_increment
-from corota.analysis.terms.damping import mass_damping
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
-from corota.errors import ConvergenceError, Interrupted, ModelError
 from corota.model import elements
 from corota.model.schemes import SCHEMES
 
@@ -47,16 +50,12 @@ if TYPE_CHECKING:
 
 #: An automatic increment aims at this share of the allowed local error.
 AIM = 0.7
-#: Share of the increment whose square weighs the stiffness in the first accelerations.
-TRACE = 1e-3
 #: Increments that a wave of a load needs at least, and those that follow it well.
 LEAST_PER_WAVE, PER_WAVE = 4.0, 20.0
 #: Displacements below this share of the model's size are as good as none.
 REST = 1e-5
 #: Automatic increments may miss the straight line of an amplitude by this share of its size.
 LOAD_ERROR = 0.05
-#: Initial velocities may break constraints by this share of the largest.
-UNEQUAL = 1e-9
 #: It shrinks or grows at most by these factors.
 LEAST, MOST = 0.25, 1.5
 
@@ -80,119 +79,152 @@ def dynamic_step(
         With the reason, when no smaller increment helps.
     """
     check_density(system)
+    loop = IncrementLoop(system, step, number, state, observers, save)
     if step.scheme == "central_difference":
-        explicit_step(system, step, number, state, observers, save, stops)
+        explicit_step(loop, step, stops)
         return
     warn_of_long_increments(system, step, state)
-    inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
-    viscous = ViscousElements(system, step.rayleigh[1])
-    resumes = bool(state.resumes)
-    now = resting(system) if resumes else start_motion(system, step, state, inertia, viscous)
-    assert state.energies is not None
-    book = Balance(system, step, now, inertia, state.energies)
-    ends = EndForces(system)
-    control = Increments(step, stops)
-    if not step.fixed_increments and step.first_increment >= step.period:
-        control.size = step.period / 100.0
-    settings = Settings(step.tolerance, step.max_iterations, system.correct_with_last_factor)
-    count = state.counters
-    turned: Floats | float = 0.0
-    if resumes:
-        loop = state.resume("dynamic", control=control, book=book, ends=ends)
-        now, turned = loop["now"], loop["turned"]
-    while not control.finished:
-        if control.number >= step.max_increments:
-            raise ConvergenceError(
-                f"step {number} used its {step.max_increments} increments at step time "
-                f"{control.time:g} of {step.period:g}; allow more (INC=) or longer ones"
-            )
-        target = control.target()
-        if not step.fixed_increments:
-            target = _not_over_a_load(system, step, control.time, target)
-        report = iteration_reporter(observers, system, number, control)
+    loop.run(DynamicStepper(loop, step, stops))
+    if step.scheme == "energy_momentum" and state.v is not None:
+        state.carried = (state.u, state.v)
+    state.reaction = None
+    # A static step that follows needs the static equation at this displacement.
+    state.at = system.evaluate(state.u, step.period)
+
+
+class DynamicStepper(NewtonStepper):
+    """Increments of an implicit time scheme.
+
+    Parameters
+    ----------
+    loop : IncrementLoop
+    step : Dynamic
+    stops : list of float
+        Step times that must be hit exactly.
+    """
+
+    kind = "dynamic"
+
+    def __init__(self, loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
+        super().__init__(loop, Increments(step, stops))
+        system, state, control = loop.system, loop.state, self.control
+        self.system, self.state, self.step = system, state, step
+        self.inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
+        self.viscous = ViscousElements(system, step.rayleigh[1])
+        resumes = bool(state.resumes)
+        self.now = (
+            resting(system)
+            if resumes
+            else start_motion(system, step, state, self.inertia, self.viscous)
+        )
+        assert state.energies is not None
+        self.book = Balance(system, step, self.now, self.inertia, state.energies)
+        self.ends = EndForces(system)
+        if not step.fixed_increments and step.first_increment >= step.period:
+            control.size = step.period / 100.0
+        again = system.correct_with_last_factor
+        self.settings = Settings(step.tolerance, step.max_iterations, again)
+        #: Whole turns that were taken off the rotations [rad].
+        self.turned: Floats | float = 0.0
+        #: Of the last attempt: its motion, and its local error over the allowed one.
+        self.motion: NewmarkMotion | ConservingMotion
+        self.error = 0.0
+        if resumes:
+            found = state.resume(self.kind, control=control, book=self.book, ends=self.ends)
+            self.now, self.turned = found["now"], found["turned"]
+
+    def memory(self) -> dict[str, Any]:
+        """What a checkpoint holds beside the committed state."""
+        return {
+            "control": self.control,
+            "book": self.book,
+            "ends": self.ends,
+            "now": self.now,
+            "turned": self.turned,
+        }
+
+    def target(self) -> float:
+        """Step time that the next attempt aims at [time]."""
+        target = super().target()
+        if self.step.fixed_increments:
+            return target
+        return _not_over_a_load(self.system, self.step, self.control.time, target)
+
+    def solve(self, target: float) -> Attempt:
+        """Newton's method; automatic increments are refused where the local error is too large."""
+        system, step, now = self.system, self.step, self.now
+        dt = target - self.control.time
         prescribed = system.conditions.prescribed(target, now.u)
-        driven = _driven(system, prescribed, target, target - control.time)
-        motion = _motion(system, step, inertia, now, target - control.time, driven, viscous)
+        driven = _driven(system, prescribed, target, dt)
+        self.motion = _motion(system, step, self.inertia, now, dt, driven, self.viscous)
         outcome, contact = solve_increment(
-            motion,
+            self.motion,
             system,
             now.u,
             prescribed,
             target,
-            settings,
-            report,
+            self.settings,
+            self.report,
             last_chance=step.fixed_increments,
         )
-        count["iterations"] = count.get("iterations", 0) + outcome.iterations
-        reason = outcome.reason if not outcome.converged else ""
-        error = 0.0
+        reason = "" if outcome.converged else outcome.reason or "no convergence"
+        self.error = 0.0
         if outcome.converged and not step.fixed_increments:
-            error = _local_error(system, motion, step, inertia.massless)
+            self.error = _local_error(system, self.motion, step, self.inertia.massless)
             # An impact that no increment is short enough for is taken as it is.
-            if CUT * (target - control.time) >= step.smallest_increment:
-                energy = max(book.energy, book.driven(motion.end))
-                moved = motion.end.u - motion.start.u
-                error = max(error, contact.impact_error(moved, energy, step.error_tolerance))
-            if error > 1.0:
-                reason = f"local error {error:.2g} times the allowed one"
-        if reason:
-            state.failed = outcome
-            count["cut-backs"] = count.get("cut-backs", 0) + 1
-            end = control.cut(target)
-            if end:
-                raise ConvergenceError(
-                    f"step {number} stopped at step time {control.time:g} of {step.period:g}: "
-                    f"{end}; last attempt: {reason}. "
-                    "All converged increments are kept"
-                )
-            observers.cut_back(
-                number, control.number + 1, control.attempt - 1, reason, control.size
-            )
-            continue
+            if CUT * dt >= step.smallest_increment:
+                begin, end, book = self.motion.start, self.motion.end, self.book
+                energy = max(book.energy, book.driven(end))
+                missed = contact.impact_error(end.u - begin.u, energy, step.error_tolerance)
+                self.error = max(self.error, missed)
+            if self.error > 1.0:
+                reason = f"local error {self.error:.2g} times the allowed one"
+        return Attempt(target, outcome, contact, reason)
+
+    def refusal(self, failed: Attempt, end: str) -> str:
+        """Why the step stopped."""
+        return (
+            f"step {self.loop.number} stopped at {self.where}: {end}; last attempt: "
+            f"{failed.reason}. All converged increments are kept"
+        )
+
+    def accept(self, attempt: Attempt) -> Accepted:
+        """Commit an increment; automatic ones take their next size from its local error."""
+        system, state, step, control = self.system, self.state, self.step, self.control
+        outcome, contact, target, motion = (
+            attempt.outcome,
+            attempt.contact,
+            attempt.target,
+            self.motion,
+        )
+        assert contact is not None
+        dt = target - control.time
         system.commit()
-        inertia.settle(now, motion.end, target - control.time)
+        self.inertia.settle(self.now, motion.end, dt)
         state.notes += contact.accept(outcome.u, target)
-        book.accept(motion, contact.force)
-        now = motion.end
-        ends.find(motion, contact.force, target)
-        state.u, state.v, state.a = now.u + turned, now.v, now.a
+        self.book.accept(motion, contact.force)
+        now = self.now = motion.end
+        self.ends.find(motion, contact.force, target)
+        state.u, state.v, state.a = now.u + self.turned, now.v, now.a
         if (more := _whole_turns(system, now.u)) is not None:
             now.u = now.u - more
-            turned = turned + more
-        state.at, state.reaction = ends.at, ends.reaction
+            self.turned = self.turned + more
+        state.at, state.reaction = self.ends.at, self.ends.reaction
         state.step_time = target
-        dt = target - control.time
         attempts = control.attempt
         control.accept(target, outcome.iterations)
         if not step.fixed_increments:
-            grown = AIM * dt * math.sqrt(1.0 / max(error, 1e-6))
+            grown = AIM * dt * math.sqrt(1.0 / max(self.error, 1e-6))
             control.size = min(max(grown, LEAST * dt), MOST * dt, step.largest_increment)
         scalars = {
             "dt": dt,
             "iterations": float(outcome.iterations),
             "attempts": float(attempts),
             "residual": outcome.sizes[-1],
-            "external work": book.external,
+            "external work": self.book.external,
         }
-        book.add_to(scalars)
-        state.loop = {
-            "kind": "dynamic",
-            "control": control,
-            "book": book,
-            "ends": ends,
-            "now": now,
-            "turned": turned,
-        }
-        save(state, control.number, target / step.period, scalars)
-        if observers.stop_requested:
-            raise Interrupted(
-                f"stopped at step {number}, step time {target:g}; everything up to there is kept"
-            )
-    if step.scheme == "energy_momentum" and state.v is not None:
-        state.carried = (state.u, state.v)
-    state.reaction = None
-    # A static step that follows needs the static equation at this displacement.
-    state.at = system.evaluate(state.u, step.period)
+        self.book.add_to(scalars)
+        return Accepted(control.number, target / step.period, scalars)
 
 
 def _whole_turns(system: System, u: Floats) -> Floats | None:
@@ -210,18 +242,6 @@ def _whole_turns(system: System, u: Floats) -> Floats | None:
     if turns == 0.0 or lines or system.conditions.constrained[mask].any():
         return None
     return np.where(mask, 2.0 * np.pi * turns, 0.0)
-
-
-def check_density(system: System) -> None:
-    """Refuse materials without mass."""
-    for block in system.blocks:
-        material = block.section.material
-        if material.rho <= 0.0 and not elements.find(block.section.element).spring:
-            raise ModelError(
-                f"material {material.name or material.law!r} has no density, which motion needs; "
-                "add one (*DENSITY, rho=)",
-                material.where or block.section.where,
-            )
 
 
 def warn_of_long_increments(system: System, step: Dynamic, state: State) -> None:
@@ -275,124 +295,6 @@ def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) 
     return target
 
 
-def start_motion(
-    system: System, step: Dynamic, state: State, inertia: Inertia, viscous: ViscousElements
-) -> MotionState:
-    """Velocities and accelerations at the start of a step."""
-    zero = np.zeros(system.n_dofs)
-    if state.v is None:
-        state.v = initial_velocity(system, state.u)
-    support_a = _start_supports(system, step, state)
-    at = system.evaluate(state.u, 0.0)
-    u, v = state.u, state.v
-    last = state.carried
-    goes_on = last is not None and last[0] is u and last[1] is v
-    goes_on = goes_on and step.scheme == "energy_momentum"
-    # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
-    # they keep their own velocities, which are those of its mid-point relations.
-    system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
-    force = inertia.force(u, v, zero)
-    rayleigh = _damping(system, step, u, viscous)
-    # Bodies may rest on each other from a step before.
-    contact = system.contact_term
-    resting = contact.evaluate(u, contact.committed, 0.0, at.values).force
-    damping = inertia.damping(at, u, v, 0.0, rayleigh)
-    internal, external = at.internal, at.external
-    # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
-    # The consistent mass of drilling elements has none for a uniform drilling rotation, which
-    # follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness
-    # decides it.
-    mass = inertia.tangent(u)
-    if system.is_rotation.any() or inertia.massless.any():
-        trace = step.period if not step.fixed_increments else step.first_increment
-        mass += (TRACE * trace) ** 2 * at.values
-    at.values[:] = mass
-    at.internal, at.load_stiffness = internal + force + damping - resting, None
-    link = at.link
-    at.link = link.linear()
-    # Dependent dofs have their centripetal accelerations besides.
-    a = zero + system.predict(at, support_a)[0]
-    # What nodes without mass need for their balance is no acceleration; drilling rotations near
-    # them follow it.
-    if inertia.massless.any():
-        a[(inertia.massless | system.is_rotation) & ~system.conditions.constrained] = 0.0
-    state.a = a
-    if not goes_on:
-        system.core.start_motion(system.in_space(u), system.in_space(v))
-    return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
-
-
-def resting(system: System) -> MotionState:
-    """No motion at all."""
-    return MotionState(*np.zeros((7, system.n_dofs)))
-
-
-def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
-    """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
-
-    Both are looked at over the first increment.
-    """
-    assert state.v is not None
-    constrained = system.conditions.constrained
-    whole = not step.fixed_increments and step.first_increment >= step.period
-    window = step.period / 100.0 if whole else step.first_increment
-    v, a = system.conditions.support_rates(0.0, window)
-    state.v[constrained] = v[constrained]
-    for name, time in system.conditions.support_kinks():
-        state.notes.append(
-            f"the amplitude {name!r} of a support changes its velocity at once at step time "
-            f"{time:.4g}: acceleration and reaction are a pulse there, as high as the increment "
-            "is short; round it off if that is not meant"
-        )
-    return a
-
-
-def initial_velocity(system: System, u: Floats | None = None) -> Floats:
-    """The model's initial velocities by dof; a spin is that of the displaced body."""
-    out = np.zeros((len(system.per_node), 3))
-    points = system.model.mesh.points
-    u = np.zeros(system.n_dofs) if u is None else u
-    if system.nlgeom:
-        points = points + system.by_node(u)[:, :2]
-    for item in system.model.velocities:
-        if isinstance(item.nodes, str):
-            everywhere = np.arange(len(points))
-            nodes = system.model.mesh.nodes_of(item.nodes) if item.nodes else everywhere
-        else:
-            nodes = np.asarray(item.nodes, np.int64)
-        if item.dof is not None:
-            out[nodes, item.dof] = item.value[0]
-            continue
-        vx, vy, spin, x0, y0 = (*item.value, 0.0, 0.0, 0.0)[:5]
-        out[nodes, 0] = vx - spin * (points[nodes, 1] - y0)
-        out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
-        out[nodes, 2] = spin
-    v = system.from_nodes(out)
-    _follow_constraints(system, u, v)
-    return v
-
-
-def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
-    """Give dependent dofs the velocity that follows from the others, in place.
-
-    Raises
-    ------
-    ModelError
-        If another one was given.
-    """
-    given = v.copy()
-    system.constraints.complete_rates(u, v)
-    off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
-    if off.any():
-        dof = int(np.flatnonzero(off)[0])
-        raise ModelError(
-            f"the initial velocity of {system.describe(dof)}, {given[dof]:g}, breaks the "
-            f"constraint that determines it, which gives {v[dof]:g}: give the velocity to the "
-            "nodes it depends on too (a reference node has a rotation, dof 6 in decks)",
-            next((item.where for item in system.model.velocities if item.where), None),
-        )
-
-
 def _motion(
     system: System,
     step: Dynamic,
@@ -402,7 +304,7 @@ def _motion(
     driven: Driven,
     viscous: ViscousElements,
 ) -> NewmarkMotion | ConservingMotion:
-    damping = _damping(system, step, now.u, viscous)
+    damping = damping_at(system, step, now.u, viscous)
     if step.scheme == "energy_momentum":
         return ConservingMotion(system, inertia, now, dt, driven, damping)
     scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)
@@ -423,11 +325,6 @@ def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Drive
     constrained = constrained.copy()
     constrained[constraints.dependent[free == 0.0]] = True
     return Driven(constrained, u, v, a)
-
-
-def _damping(system: System, step: Dynamic, u: Floats, elements: ViscousElements) -> Damping:
-    """Rayleigh damping at the start of an increment."""
-    return Damping(step.rayleigh[0], mass_damping(system, u, step.mass), elements)
 
 
 def _local_error(
@@ -469,3 +366,6 @@ def _local_error(
         worst = max(worst, float(np.abs(wrong).max() / size))
     # No increment is short enough for the relative error of a motion out of rest.
     return abs(beta - 1.0 / 6.0) * dt * dt * worst / step.error_tolerance
+
+
+__all__ = ["DynamicStepper", "dynamic_step", "warn_of_long_increments"]

@@ -4,21 +4,20 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.increment_loop import Accepted, IncrementLoop
+from corota.analysis.procedures.motion import Inertia
+from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.terms.damping import material_pairs
-from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, UnsupportedError
+from corota.errors import ConvergenceError, InputError, ModelError, UnsupportedError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from corota.analysis.equations import Evaluation, System
-    from corota.analysis.observers import Observers
-    from corota.analysis.state import State
     from corota.model.steps import Dynamic
 
     Floats = NDArray[np.float64]
@@ -35,12 +34,15 @@ ROUND_OFF = 1e-12
 BALANCED = 1e-9
 #: Most frames that are kept of a step unless outputs ask for times.
 FRAMES = 200
+#: Attributes of the stepper that a checkpoint holds.
+MEMORY = (
+    *("known", "done", "n", "keep", "wanted", "dt", "stable", "u", "v", "at"),
+    *("begin", "work", "internal", "told", "driven"),
+)
 
 
 def diagonal(system: System) -> Floats:
     """Lumped mass by dof, shape (n_dofs,) [mass], [mass*length^2] for rotations."""
-    from corota.analysis.procedures.motion import Inertia
-
     values = Inertia(system, "lumped").matrix
     assert values is not None
     return values[system.pattern.diagonal]
@@ -94,15 +96,7 @@ def _refuse_idle(system: System, idle: NDArray[np.bool_], what: str) -> None:
         )
 
 
-def explicit_step(
-    system: System,
-    step: Dynamic,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Callable[[State, int, float, dict[str, float]], None],
-    stops: list[float],
-) -> None:
+def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
     """Run a step with central differences.
 
     Raises
@@ -117,8 +111,7 @@ def explicit_step(
     ConvergenceError
         If the motion blows up all the same.
     """
-    from corota.analysis.procedures.dynamic import initial_velocity
-
+    system = loop.system
     if system.model.dashpots or any(step.rayleigh) or material_pairs(system):
         raise InputError(
             "central differences take no damping: use an implicit scheme, or remove dashpots and "
@@ -132,143 +125,178 @@ def explicit_step(
             step.where,
         )
     system.contact_term.check_explicit(step)
-    mass = diagonal(system)
-    constrained = system.conditions.constrained
-    resumes = bool(state.resumes)
-    stable = np.inf if resumes else stable_increment(system, state.u, mass)
-    if resumes:
-        dt = step.period  # the checkpoint knows it
-    elif step.fixed_increments:
-        dt = step.first_increment
-        if dt > stable:
+    stepper = ExplicitStepper(loop, step, stops)
+    loop.run(stepper)
+    loop.state.reaction = None
+    if stepper.keep > 1:
+        warnings.warn(
+            f"central differences took {stepper.n} increments of {stepper.dt:.3g} (stable: "
+            f"{stepper.stable:.3g}); every {stepper.keep}th is kept",
+            stacklevel=2,
+        )
+
+
+class ExplicitStepper:
+    """Increments of central differences, all of one size; some of many are shown.
+
+    Parameters
+    ----------
+    loop : IncrementLoop
+    step : Dynamic
+    stops : list of float
+        Step times that are shown.
+    """
+
+    kind, advice = "explicit", ""
+
+    def __init__(self, loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
+        self.system, self.state, self.step = loop.system, loop.state, step
+        system, state = loop.system, loop.state
+        self.mass = mass = diagonal(system)
+        constrained = system.conditions.constrained
+        resumes = bool(state.resumes)
+        self.stable = np.inf if resumes else stable_increment(system, state.u, mass)
+        # A checkpoint knows the increment.
+        dt = step.period if resumes else self._increment()
+        self.n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
+        self.dt = dt = step.period / self.n
+        self.keep = max(self.n // FRAMES, 1)
+        self.wanted = {round(s / dt) for s in stops}
+        state.counters["stable increment"] = self.stable  # type: ignore[assignment]
+        if state.v is None:
+            state.v = initial_velocity(system, state.u)
+        rates = system.conditions.support_rates(0.0, dt)[0]
+        state.v[constrained] = rates[constrained]
+        self.u = state.u.copy()
+        self.at = system.evaluate(self.u, 0.0)
+        self.moving = ~constrained & (mass > 0.0)
+        self.idle = ~constrained & ~self.moving
+        self.inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=self.moving)
+        if not resumes:
+            _refuse_pushed(system, self.idle, self.at)
+        a = -self.inverse * self.at.residual
+        assert state.energies is not None
+        self.account = account = state.energies
+        account.drive(self.at.external, self.at.residual)
+        self.begin = account.work
+        #: Velocity half an increment ahead.
+        self.v = state.v + 0.5 * dt * a
+        self.work = self.internal = self.told = 0.0
+        first = 0.5 * float(state.v @ (mass * state.v))
+        self.known = Known(system, mass, first, dt)
+        account.set_kinetic(first)
+        self.driven = 0.5 * float((mass * state.v**2)[constrained].sum())
+        self.done = 0
+        if resumes:
+            for name, value in state.resume(self.kind, known=self.known).items():
+                if name != "kind":
+                    setattr(self, name, value)
+
+    def _increment(self) -> float:
+        """Increment that was asked for, or a stable one [time]."""
+        step, stable = self.step, self.stable
+        if step.fixed_increments:
+            if step.first_increment > stable:
+                raise ModelError(
+                    f"the increment {step.first_increment:g} is above the stable one of central "
+                    f"differences, {stable:.4g}; use at most {SAFETY * stable:.3g}, or an "
+                    "implicit scheme",
+                    step.where,
+                )
+            return step.first_increment
+        if not np.isfinite(stable):
             raise ModelError(
-                f"the increment {dt:g} is above the stable one of central differences, "
-                f"{stable:.4g}; use at most {SAFETY * stable:.3g}, or an implicit scheme",
+                "nothing that is free to move has stiffness at the start, so there is no stable "
+                "increment to take: give increments, or use an implicit scheme",
                 step.where,
             )
-    elif not np.isfinite(stable):
-        raise ModelError(
-            "nothing that is free to move has stiffness at the start, so there is no stable "
-            "increment to take: give increments, or use an implicit scheme",
-            step.where,
+        return min(SAFETY * stable, step.largest_increment)
+
+    def memory(self) -> dict[str, Any]:
+        """What a checkpoint holds beside the committed state."""
+        return {name: getattr(self, name) for name in MEMORY}
+
+    @property
+    def finished(self) -> bool:
+        """Whether the step is at its end."""
+        return self.done >= self.n
+
+    @property
+    def taken(self) -> int:
+        """Increments so far."""
+        return self.done
+
+    @property
+    def where(self) -> str:
+        """How far the step has come, in words."""
+        return f"step time {self.done * self.dt:g} of {self.step.period:g}"
+
+    def advance(self) -> Accepted:
+        """Take increments up to the next one that is shown."""
+        while True:
+            shown = self._one()
+            if shown is not None:
+                return shown
+
+    def _one(self) -> Accepted | None:
+        """Take one increment; None where it is not shown."""
+        system, state, account, mass, dt = (
+            self.system,
+            self.state,
+            self.account,
+            self.mass,
+            self.dt,
         )
-    else:
-        dt = min(SAFETY * stable, step.largest_increment)
-    n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
-    dt = step.period / n
-    keep = max(n // FRAMES, 1)
-    wanted = {round(s / dt) for s in stops}
-    state.counters["stable increment"] = stable  # type: ignore[assignment]
-    if state.v is None:
-        state.v = initial_velocity(system, state.u)
-    rates = system.conditions.support_rates(0.0, dt)[0]
-    state.v[constrained] = rates[constrained]
-    u = state.u.copy()
-    at = system.evaluate(u, 0.0)
-    moving = ~constrained & (mass > 0.0)
-    idle = ~constrained & ~moving
-    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=moving)
-    if not resumes:
-        _refuse_pushed(system, idle, at)
-    a = -inverse * at.residual
-    account = state.energies
-    assert account is not None
-    account.drive(at.external, at.residual)
-    begin = account.work
-    v = state.v + 0.5 * dt * a
-    work = internal = told = 0.0
-    first = 0.5 * float(state.v @ (mass * state.v))
-    known = Known(system, mass, first, dt)
-    account.set_kinetic(first)
-    driven = 0.5 * float((mass * state.v**2)[constrained].sum())
-    done = 0
-    if resumes:
-        loop = state.resume("explicit", known=known)
-        done, n, keep, wanted = loop["done"], loop["n"], loop["keep"], loop["wanted"]
-        dt, stable, u, v, at = loop["dt"], loop["stable"], loop["u"], loop["v"], loop["at"]
-        begin, work, internal, told = loop["begin"], loop["work"], loop["internal"], loop["told"]
-        driven = loop["driven"]
-    for i in range(done + 1, n + 1):
+        constrained = system.conditions.constrained
+        i = self.done + 1
         time = i * dt
-        du = np.where(constrained, system.conditions.prescribed(time, u) - u, dt * v)
-        u = u + du
-        new = system.evaluate(u, time)
+        before = self.at
+        du = np.where(constrained, system.conditions.prescribed(time, self.u) - self.u, dt * self.v)
+        self.u = self.u + du
+        self.at = at = system.evaluate(self.u, time)
         system.commit()
-        _refuse_pushed(system, idle, new)
-        a = -inverse * new.residual
-        account.add_work(du, new.external, new.residual)
-        internal += float(0.5 * (at.internal + new.internal) @ du)
+        _refuse_pushed(system, self.idle, at)
+        a = -self.inverse * at.residual
+        account.add_work(du, at.external, at.residual)
+        self.internal += float(0.5 * (before.internal + at.internal) @ du)
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
         given_v, given_a = system.conditions.support_rates(time, dt)
-        whole = np.where(constrained, given_v, v + 0.5 * dt * a)
+        whole = np.where(constrained, given_v, self.v + 0.5 * dt * a)
         # Supports accelerate the mass that moves with them.
         moved = 0.5 * float((mass * whole**2)[constrained].sum())
-        account.work += moved - driven
-        worked = account.work - begin - work
-        driven, work = moved, account.work - begin
-        v = np.where(constrained, given_v, v + dt * a)
-        stiff = float(np.where(moving, new.internal - at.internal, 0.0) @ du)
-        inert = float(np.where(moving, mass * du, 0.0) @ du)
-        at = new
+        account.work += moved - self.driven
+        worked = account.work - self.begin - self.work
+        self.driven, self.work = moved, account.work - self.begin
+        self.v = np.where(constrained, given_v, self.v + dt * a)
+        stiff = float(np.where(self.moving, at.internal - before.internal, 0.0) @ du)
+        inert = float(np.where(self.moving, mass * du, 0.0) @ du)
         kinetic = 0.5 * float(whole @ (mass * whole))
-        pending = float((new.external + np.where(constrained, new.residual, 0.0)) @ whole) * dt
-        allowed = BLOW_UP * known.energy(worked, internal, pending)
+        pending = float((at.external + np.where(constrained, at.residual, 0.0)) @ whole) * dt
+        allowed = BLOW_UP * self.known.energy(worked, self.internal, pending)
         # The frequency of the increment itself is above the stable one, and energy comes of it.
-        unstable = stiff * dt**2 > 4.0 * inert and kinetic + internal > allowed
-        if unstable or not np.isfinite(kinetic + internal):
+        unstable = stiff * dt**2 > 4.0 * inert and kinetic + self.internal > allowed
+        if unstable or not np.isfinite(kinetic + self.internal):
             raise ConvergenceError(
                 f"the motion blows up at step time {time:g}; the stable increment has become "
                 f"smaller than {dt:g}: use automatic increments with a smaller first one"
             )
-        if i % keep and i != n and i not in wanted:
-            continue
-        state.u, state.v, state.at = u, whole, new
+        self.done = i
+        if i % self.keep and i != self.n and i not in self.wanted:
+            return None
+        state.u, state.v, state.at = self.u, whole, at
         state.a = np.where(constrained, given_a, a)
         state.step_time, account.kinetic = time, kinetic
-        account.internal += internal - told
-        told = internal
-        state.reaction = np.where(constrained, new.residual + mass * given_a, 0.0)
-        state.loop = {
-            "kind": "explicit",
-            "known": known,
-            "done": i,
-            "n": n,
-            "keep": keep,
-            "wanted": wanted,
+        account.internal += self.internal - self.told
+        self.told = self.internal
+        state.reaction = np.where(constrained, at.residual + mass * given_a, 0.0)
+        scalars = {
             "dt": dt,
-            "stable": stable,
-            "u": u,
-            "v": v,
-            "at": at,
-            "begin": begin,
-            "work": work,
-            "internal": internal,
-            "told": told,
-            "driven": driven,
+            "iterations": 1.0,
+            "external work": account.work,
+            "internal work": account.internal,
+            "kinetic energy": kinetic,
         }
-        save(
-            state,
-            i,
-            time / step.period,
-            {
-                "dt": dt,
-                "iterations": 1.0,
-                "external work": account.work,
-                "internal work": account.internal,
-                "kinetic energy": kinetic,
-            },
-        )
-        if observers.stop_requested:
-            raise Interrupted(
-                f"stopped at step {number}, step time {time:g}; everything up to there is kept"
-            )
-    state.reaction = None
-    if keep > 1:
-        warnings.warn(
-            f"central differences took {n} increments of {dt:.3g} (stable: {stable:.3g}); every "
-            f"{keep}th is kept",
-            stacklevel=2,
-        )
+        return Accepted(i, time / self.step.period, scalars)
 
 
 class Known:

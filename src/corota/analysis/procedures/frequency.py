@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.linear.eigen import quadratic_modes, symmetric_modes, unsymmetric_modes
+from corota.analysis.procedures.motion_start import check_density
 from corota.analysis.terms.linearized import LinearMotion
 from corota.errors import ModelError
 from corota.model.paths import Modes
@@ -54,8 +55,6 @@ def frequency_step(
     ModelError
         If a material has no density, or nothing that moves has mass.
     """
-    from corota.analysis.procedures.dynamic import check_density
-
     check_density(system)
     lin = LinearMotion(system, state.u, step.mass)
     lin.turns = step.complex_modes

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.sparse as sp
 
+from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.linear.factor import Factor
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.modal import supported
@@ -58,50 +59,82 @@ def steady_state_step(
     """
     u0, at0 = state.u.copy(), state.at
     v0, a0 = state.v, state.a
-    own = np.zeros(0)
-    if step.direct:
-        lin = LinearMotion(system, u0, step.mass)
-        found = [m for m in state.modes if m.kind == "frequency"]
-        if found and state.linear is not None:
-            own, lin.turns = found[-1].factors, state.linear.turns
-    else:
-        modes, lin = last_modes(system, state, step, number)
-        own = modes.factors
-    frequencies = step.sweep(own)
-    loads, moves = _amplitudes(system, lin, step, number, frequencies)
-    answer: Answer
-    if step.direct:
-        answer = _direct(lin, step, number)
-    else:
-        answer = _by_modes(system, state, step, number, loads, moves)
-    fields = LinearFields(system, lin.u)
-    moves_only = ~system.is_rotation
-    for i, f in enumerate(frequencies, start=1):
+    loop = IncrementLoop(system, step, number, state, observers, save)
+    loop.run(HarmonicStepper(loop, step))
+    state.u, state.at, state.v, state.a = u0, at0, v0, a0
+    state.recover = None
+    state.step_time = 0.0
+
+
+class HarmonicStepper:
+    """One frequency after the other.
+
+    Parameters
+    ----------
+    loop : IncrementLoop
+    step : SteadyState
+    """
+
+    kind, advice = "", ""
+
+    def __init__(self, loop: IncrementLoop, step: SteadyState) -> None:
+        self.system, self.state, self.step = loop.system, loop.state, step
+        system, state, number = loop.system, loop.state, loop.number
+        own = np.zeros(0)
+        if step.direct:
+            lin = LinearMotion(system, state.u.copy(), step.mass)
+            found = [m for m in state.modes if m.kind == "frequency"]
+            if found and state.linear is not None:
+                own, lin.turns = found[-1].factors, state.linear.turns
+        else:
+            modes, lin = last_modes(system, state, step, number)
+            own = modes.factors
+        self.lin, self.frequencies = lin, step.sweep(own)
+        self.loads, self.moves = _amplitudes(system, lin, step, number, self.frequencies)
+        self.answer: Answer
+        if step.direct:
+            self.answer = _direct(lin, step, number)
+        else:
+            self.answer = _by_modes(system, state, step, number, self.loads, self.moves)
+        self.fields = LinearFields(system, lin.u)
+        self.taken = 0
+
+    @property
+    def finished(self) -> bool:
+        """Whether all frequencies are done."""
+        return self.taken >= len(self.frequencies)
+
+    @property
+    def where(self) -> str:
+        """How far the step has come, in words."""
+        return f"frequency {self.frequencies[self.taken - 1]:g}"
+
+    def memory(self) -> dict[str, Any]:
+        """Nothing: harmonic steps are not resumed."""
+        return {}
+
+    def advance(self) -> Accepted:
+        """Find the response at the next frequency."""
+        state, step, lin = self.state, self.step, self.lin
+        f, load, move = (x[self.taken] for x in (self.frequencies, self.loads, self.moves))
+        self.taken += 1
         w = 2.0 * math.pi * f
-        load, move = loads[i - 1], moves[i - 1]
-        response = answer(w, load, move)
+        response = self.answer(w, load, move)
         state.u = lin.u + response.real
         state.v, state.a = (1j * w * response).real, -(w**2) * response.real
         z = lin.restrict(response)
         forces = (lin.stiffness - w**2 * lin.mass) @ z + 1j * w * (lin.damping(step.rayleigh) @ z)
         state.at = supported(lin, forces.real, lin.at.external + load.real)
         state.step_time = f
-        state.recover = lambda x=response.real: fields.at(x)
-        size = np.abs(response)
+        state.recover = lambda: self.fields.at(response.real)
+        size, moves_only = np.abs(response), ~self.system.is_rotation
         largest = int(np.where(moves_only, size, 0.0).argmax())
-        save(
-            state,
-            i,
-            1.0,
-            {
-                "frequency": f,
-                "largest amplitude": float(size[moves_only].max(initial=0.0)),
-                "phase at largest": float(np.angle(response[largest])),
-            },
-        )
-    state.u, state.at, state.v, state.a = u0, at0, v0, a0
-    state.recover = None
-    state.step_time = 0.0
+        scalars = {
+            "frequency": f,
+            "largest amplitude": float(size[moves_only].max(initial=0.0)),
+            "phase at largest": float(np.angle(response[largest])),
+        }
+        return Accepted(self.taken, 1.0, scalars)
 
 
 def _amplitudes(

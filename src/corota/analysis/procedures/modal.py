@@ -3,13 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.equations import Evaluation
+from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.newton import ElementFailure
 from corota.analysis.procedures.linear_fields import LinearFields
+from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
 
 if TYPE_CHECKING:
@@ -48,32 +50,70 @@ def modal_step(
     ModelError
         If there are no modes.
     """
-    from corota.analysis.procedures.dynamic import initial_velocity
+    loop = IncrementLoop(system, step, number, state, observers, save)
+    loop.run(ModalStepper(loop, step))
+    state.recover = None
+    leave(system, state, step.period)
 
-    _, lin = last_modes(system, state, step, number)
-    n = max(round(step.period / step.first_increment), 1)
-    dt = step.period / n
-    loads, moves = _courses(system, lin, n, dt)
-    c, s = loads.coefficients, moves.coefficients
-    model = Reduced(system, state, step, number, loads.matrix, moves.matrix)
-    advance = _advance(model, dt)
-    slope_s = np.diff(s, axis=0) / dt
-    rates, bends = rates_of_moves(s, dt)
-    start = initial_velocity(system, state.u) if state.v is None else state.v.copy()
-    constrained = system.conditions.constrained
-    start[constrained] = (moves.matrix @ rates[0])[constrained]
-    p, v = model.project(state.u - lin.u), model.project(start)
-    q = p - model.carried @ s[0]
-    _tell_lost(system, state, number, state.u - lin.u, model.displacement(q, s[0]))
-    fields = LinearFields(system, lin.u)
-    x = np.concatenate([p, v])
-    m = len(p)
-    for i in range(1, n + 1):
+
+class ModalStepper:
+    """Increments of the modal coordinates, exact for inputs that are linear in time.
+
+    Parameters
+    ----------
+    loop : IncrementLoop
+    step : ModalDynamic
+    """
+
+    kind, advice = "", ""
+
+    def __init__(self, loop: IncrementLoop, step: ModalDynamic) -> None:
+        self.system, self.state, self.step = loop.system, loop.state, step
+        system, state, number = loop.system, loop.state, loop.number
+        _, lin = last_modes(system, state, step, number)
+        self.lin = lin
+        self.n = n = max(round(step.period / step.first_increment), 1)
+        self.dt = dt = step.period / n
+        loads, moves = _courses(system, lin, n, dt)
+        self.c, self.s = loads.coefficients, moves.coefficients
+        self.model = model = Reduced(system, state, step, number, loads.matrix, moves.matrix)
+        self.propagator = _advance(model, dt)
+        self.slope_s = np.diff(self.s, axis=0) / dt
+        self.rates, self.bends = rates_of_moves(self.s, dt)
+        start = initial_velocity(system, state.u) if state.v is None else state.v.copy()
+        constrained = system.conditions.constrained
+        start[constrained] = (moves.matrix @ self.rates[0])[constrained]
+        p, v = model.project(state.u - lin.u), model.project(start)
+        q = p - model.carried @ self.s[0]
+        _tell_lost(system, state, number, state.u - lin.u, model.displacement(q, self.s[0]))
+        self.fields = LinearFields(system, lin.u)
+        self.x = np.concatenate([p, v])
+        self.taken = 0
+
+    @property
+    def finished(self) -> bool:
+        """Whether the step is at its end."""
+        return self.taken >= self.n
+
+    @property
+    def where(self) -> str:
+        """How far the step has come, in words."""
+        return f"step time {self.taken * self.dt:g} of {self.step.period:g}"
+
+    def memory(self) -> dict[str, Any]:
+        """Nothing: modal steps are not resumed."""
+        return {}
+
+    def advance(self) -> Accepted:
+        """Take one increment."""
+        system, state, model, lin = self.system, self.state, self.model, self.lin
+        c, s, dt = self.c, self.s, self.dt
+        self.taken = i = self.taken + 1
         slope_c = (c[i] - c[i - 1]) / dt
-        inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, slope_s[i - 1]])
-        x = advance @ np.concatenate([x, inputs])
-        p, v = x[:m], x[m:]
-        rate, bend = rates[i], bends[i]
+        inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, self.slope_s[i - 1]])
+        self.x = self.propagator @ np.concatenate([self.x, inputs])
+        p, v = np.split(self.x, 2)
+        rate, bend = self.rates[i], self.bends[i]
         q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
         a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
         change = model.displacement(q, s[i])
@@ -83,18 +123,12 @@ def modal_step(
         external = system.conditions.external(i * dt, lin.u)[0]
         state.at = linear_evaluation(model, change, state.v, state.a, external)
         state.step_time = i * dt
-        state.recover = lambda change=change: fields.at(change)
+        state.recover = lambda: self.fields.at(change)
         strain = 0.5 * float(q @ (model.stiffness @ q))
         inertia = lin.mass @ lin.restrict(state.v)
         kinetic = 0.5 * float(lin.restrict(state.v) @ inertia)
-        save(
-            state,
-            i,
-            i / n,
-            {"dt": dt, "kinetic energy": kinetic, "modal strain energy": strain},
-        )
-    state.recover = None
-    leave(system, state, step.period)
+        scalars = {"dt": dt, "kinetic energy": kinetic, "modal strain energy": strain}
+        return Accepted(i, i / self.n, scalars)
 
 
 def leave(system: System, state: State, step_time: float) -> None:

@@ -71,7 +71,7 @@ def collapse(
     )
 
 
-def reason(
+def explained(
     system: System,
     number: int,
     control: Increments,
@@ -116,4 +116,4 @@ def reason(
     )
 
 
-__all__ = ["at_limit", "collapse", "driven", "reason"]
+__all__ = ["at_limit", "collapse", "driven", "explained"]

@@ -17,7 +17,7 @@ import numpy as np
 from corota import mesh as meshes
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
-from corota.analysis.procedures.dynamic import initial_velocity
+from corota.analysis.procedures.motion_start import initial_velocity
 from corota.model.materials import Elastic
 from corota.model.model import Model
 from corota.verification.catalogue import Picture, Problem, Value

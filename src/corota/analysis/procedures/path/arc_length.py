@@ -8,45 +8,36 @@ reached stays.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.increment_loop import Accepted
 from corota.analysis.newton import ElementFailure, Settings
 from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.tracer import End, PathStalled, PathTracer, Plan
 from corota.analysis.terms.contact.path import path_system
-from corota.errors import ConvergenceError, InputError, Interrupted, ModelError, SingularError
+from corota.errors import ConvergenceError, InputError, ModelError, SingularError
 from corota.model.dofs import dof_index
 from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Label
-from corota.results.observer import Iteration
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.increment_loop import IncrementLoop
     from corota.analysis.newton import ResidualNorms
-    from corota.analysis.observers import Observers
     from corota.analysis.procedures.path.stability import Critical
     from corota.analysis.procedures.path.tracer import Increment
-    from corota.analysis.state import State
     from corota.model.paths import Where
-    from corota.model.steps import Static
 
     Floats = NDArray[np.float64]
-    Save = Callable[[State, int, float, dict[str, float]], None]
 
 
 def path_step(
-    system: System,
-    step: Static,
-    number: int,
-    state: State,
-    observers: Observers,
-    save: Save,
+    loop: IncrementLoop,
     path: ArcLength | DisplacementControl,
     *,
     factor: float = 0.0,
@@ -58,6 +49,8 @@ def path_step(
 
     Parameters
     ----------
+    loop : IncrementLoop
+        Of a static step.
     path : ArcLength or DisplacementControl
     factor : float
         Load factor of the committed state.
@@ -80,30 +73,35 @@ def path_step(
     ModelError
         If the step's loads do not grow with a load factor, or none does.
     """
-    system.conditions.check_proportional()
-    run = PathStep(system, step, number, state, observers, save, factor, increment)
-    run.takes_over = takes_over
-    run.rates = rates
-    return run.run(path)
+    loop.system.conditions.check_proportional()
+    stepper = PathStepper(loop, factor, increment)
+    stepper.takes_over = takes_over
+    stepper.rates = rates
+    return stepper.run(path)
 
 
-class PathStep:
-    """One run of :func:`path_step`."""
+class PathStepper:
+    """Increments along a path; its tracer attempts them and chooses their sizes.
 
-    def __init__(
-        self,
-        system: System,
-        step: Static,
-        number: int,
-        state: State,
-        observers: Observers,
-        save: Save,
-        factor: float,
-        increment: int,
-    ) -> None:
-        self.system, self.step, self.number, self.state = system, step, number, state
-        self.observers, self.save = observers, save
-        self.factor, self.increment = factor, increment
+    Parameters
+    ----------
+    loop : IncrementLoop
+        Of a static step.
+    factor : float
+        Load factor of the committed state.
+    increment : int
+        Increments of the step so far.
+    """
+
+    kind = "path"
+    advice = "allow more, or name another end of the path"
+
+    def __init__(self, loop: IncrementLoop, factor: float, increment: int) -> None:
+        self.loop, self.system, self.state = loop, loop.system, loop.state
+        system, state = loop.system, loop.state
+        self.step: Any = loop.step
+        self.factor, self.taken = factor, increment
+        self.found: Increment | None = None
         self.takes_over = False
         #: Where the path began, and how far it has gone, in units of the period [time].
         self.begin, self.arc = state.step_time, 0.0
@@ -116,37 +114,26 @@ class PathStep:
 
     def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
         """Follow the path to its end."""
-        system, step, state = self.system, self.step, self.state
-        period = step.period
+        system, state, period = self.system, self.state, self.step.period
         self.stop_at_limit = bool(getattr(path, "stop_at_limit", False))
-        last: Increment | None = None
         if state.resumes:
-            last = self._resume()
+            self._resume()
         else:
             self.follower = self._tracer(self._start(), self._plan(path))
-        follower = self.follower
+        stopped = f"step {self.loop.number} stopped on its path"
         try:
-            if last is not None:
-                self._check(last)
-            if last is None or not last.last:
-                for found in follower:
-                    self._accept(found)
-                    self._check(found)
+            self.loop.run(self)
         except PathStalled as stalled:
             raise ConvergenceError(
-                f"step {self.number} stopped on its path at load factor {self.factor:.6g} "
-                f"(increment {self.increment}): {stalled}. All converged increments are kept"
+                f"{stopped} at {self.where} (increment {self.taken}): {stalled}. All converged "
+                "increments are kept"
             ) from None
         except SingularError as error:
-            if self.increment:
-                raise ConvergenceError(
-                    f"step {self.number} stopped on its path at load factor "
-                    f"{self.factor:.6g}: {error}"
-                ) from None
+            if self.taken:
+                raise ConvergenceError(f"{stopped} at {self.where}: {error}") from None
             raise
         finally:
-            counters = state.counters
-            counters["iterations"] = counters.get("iterations", 0) + follower.iterations
+            self.loop.count("iterations", self.follower.iterations)
             # The factorisation has changed the tangent's held rows in place.
             system.conditions.end_time = self.factor * period
             try:
@@ -154,10 +141,7 @@ class PathStep:
                 z = self.along.start(state.u)
                 state.at = self.along.plain(self.along.evaluate(z, self.factor * period))
             except ElementFailure as error:
-                raise ConvergenceError(
-                    f"step {self.number} stopped on its path at load factor {self.factor:.6g}: "
-                    f"{error}"
-                ) from None
+                raise ConvergenceError(f"{stopped} at {self.where}: {error}") from None
         return self.limit
 
     def _start(self) -> Point:
@@ -169,7 +153,7 @@ class PathStep:
         heats = system.free.largest(system.conditions.heating) > 0.0
         if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
             raise ModelError(
-                f"step {self.number} follows a path, but nothing in it grows with the load "
+                f"step {self.loop.number} follows a path, but nothing in it grows with the load "
                 "factor: give it a load or a moving support of its own",
                 step.where,
             )
@@ -182,19 +166,59 @@ class PathStep:
             self.along, start, step.period, settings, plan, self._report, self._cut_back
         )
 
-    def _resume(self) -> Increment:
-        """Take the state of a checkpoint; returns the increment that it was taken after."""
+    def _resume(self) -> None:
+        """Take the state of a checkpoint."""
         self.follower = self._tracer(Point(self.state.u, 0.0, None), Plan())
-        loop = self.state.resume("path", along=self.along, tracer=self.follower)
-        self.factor, self.increment = loop["factor"], loop["increment"]
+        loop = self.state.resume(self.kind, along=self.along, tracer=self.follower)
+        self.factor, self.taken = loop["factor"], loop["increment"]
         self.located, self.limit, self.rates = loop["located"], loop["limit"], loop["rates"]
         self.begin, self.arc = loop["begin"], loop["arc"]
-        found: Increment = loop["found"]
-        return found
+        self.found = loop["found"]
+
+    def memory(self) -> dict[str, Any]:
+        """What a checkpoint holds beside the committed state."""
+        return {
+            "along": self.along,
+            "tracer": self.follower,
+            "factor": self.factor,
+            "increment": self.taken,
+            "located": self.located,
+            "limit": self.limit,
+            "rates": self.rates,
+            "begin": self.begin,
+            "arc": self.arc,
+            "found": self.found,
+        }
 
     # -- increments --------------------------------------------------------------------
 
-    def _accept(self, found: Increment) -> None:
+    @property
+    def finished(self) -> bool:
+        """Whether the path is at its end."""
+        return self.found is not None and self.found.last
+
+    @property
+    def where(self) -> str:
+        """How far the path has come, in words."""
+        return f"load factor {self.factor:.6g}"
+
+    def advance(self) -> Accepted:
+        """Take the next increment of the path.
+
+        Raises
+        ------
+        PathStalled
+            If there is none.
+        """
+        if self.found is not None and self.found.closed:
+            raise PathStalled(
+                "the branch is closed: it has come back to the bifurcation point where it began "
+                "without an end of the path on it"
+            )
+        self.found = self.follower.next()
+        return self._accept(self.found)
+
+    def _accept(self, found: Increment) -> Accepted:
         state, system = self.state, self.system
         at, u = self.along.plain(found.point.at), found.point.u[: system.n_dofs]
         assert state.energies is not None
@@ -211,7 +235,7 @@ class PathStep:
             state.step_time = self.begin + share * rest
         state.negative = found.negative
         self.factor = found.point.factor
-        self.increment += 1
+        self.taken += 1
         scalars = {
             "dt": state.step_time - before,
             "iterations": float(found.iterations),
@@ -233,8 +257,8 @@ class PathStep:
             scalars[f"{kind} point"] = 1.0
             critical = CriticalPoint(
                 kind,
-                self.number,
-                self.increment,
+                self.loop.number,
+                self.taken,
                 self.factor,
                 system.by_node(found.critical.mode[: system.n_dofs]),
                 found.critical.projection,
@@ -248,20 +272,7 @@ class PathStep:
             self.located = (found.critical, critical)
         if found.last and self.stop_at_limit:
             self.limit = critical
-        state.loop = {
-            "kind": "path",
-            "along": self.along,
-            "tracer": self.follower,
-            "factor": self.factor,
-            "increment": self.increment,
-            "located": self.located,
-            "limit": self.limit,
-            "rates": self.rates,
-            "begin": self.begin,
-            "arc": self.arc,
-            "found": found,
-        }
-        self.save(state, self.increment, self.factor, scalars)
+        return Accepted(self.taken, self.factor, scalars)
 
     def _tell_branches(self, critical: Critical, point: CriticalPoint) -> None:
         """Give a bifurcation point its branches."""
@@ -273,24 +284,6 @@ class PathStep:
                 f"{point.factor:.6g}: branch=1 to {len(point.branches)} takes each of them"
             )
 
-    def _check(self, found: Increment) -> None:
-        """End for reasons that are not of the path."""
-        if found.closed and not found.last:
-            raise PathStalled(
-                "the branch is closed: it has come back to the bifurcation point where it began "
-                "without an end of the path on it"
-            )
-        if self.observers.stop_requested:
-            raise Interrupted(
-                f"stopped at step {self.number}, load factor {self.factor:.6g}; everything up "
-                "to there is kept"
-            )
-        if not found.last and self.increment >= self.step.max_increments:
-            raise ConvergenceError(
-                f"step {self.number} used its {self.step.max_increments} increments at load "
-                f"factor {self.factor:.6g}; allow more, or name another end of the path"
-            )
-
     def _report(
         self,
         attempt: int,
@@ -300,28 +293,13 @@ class PathStep:
         factor: float,
         size: float,
     ) -> None:
-        system = self.system
-        self.observers.iteration(
-            Iteration(
-                self.number,
-                self.increment + 1,
-                attempt,
-                iteration,
-                norms.force,
-                norms.moment,
-                correction,
-                int(system.node_of_dof[norms.worst]),
-                int(system.component[norms.worst]),
-                "",
-                size,
-                factor,
-            )
+        self.loop.iteration(
+            self.taken + 1, attempt, iteration, norms, correction, size=size, factor=factor
         )
 
     def _cut_back(self, attempt: int, reason: str, size: float) -> None:
-        counters = self.state.counters
-        counters["cut-backs"] = counters.get("cut-backs", 0) + 1
-        self.observers.cut_back(self.number, self.increment + 1, attempt, reason, size)
+        self.loop.count("cut-backs")
+        self.loop.cut_back(self.taken + 1, attempt, reason, size)
 
     # -- plan --------------------------------------------------------------------------
 

@@ -145,6 +145,10 @@ class PathTracer:
             if found.last:
                 return
 
+    def next(self) -> Increment:
+        """The next increment; the one before was not the last."""
+        return next(iter(self))
+
     def _set_off(self) -> None:
         """Size and sense of the first increment along the tangent."""
         self.first_metric = self.metric

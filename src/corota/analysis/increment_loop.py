@@ -1,0 +1,308 @@
+"""The one loop over the increments of a step.
+
+A procedure brings a stepper, which takes one increment at a time. The loop does what all have in
+common: the budget of increments, output, checkpoints, and the stop that an observer asks for.
+Steppers that solve by Newton's method share their attempts and cut-backs, too.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+from corota.errors import ConvergenceError, Interrupted
+from corota.results.observer import Iteration
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.increments import Increments
+    from corota.analysis.newton import Outcome, ResidualNorms
+    from corota.analysis.observers import Observers
+    from corota.analysis.state import State
+    from corota.analysis.terms.contact.newton import ContactIncrement
+    from corota.model.steps import Step
+
+    Save = Callable[[State, int, float, dict[str, float]], None]
+    Report = Callable[[int, ResidualNorms, float, str], None]
+
+#: What helps where a step has used all its increments.
+MORE_OR_LONGER = "allow more (INC=) or longer ones"
+
+
+@dataclass
+class Accepted:
+    """An increment that was taken and is shown.
+
+    Parameters
+    ----------
+    number : int
+        Of the increment in its step, from 1.
+    factor : float
+        Load factor, or share of the period.
+    scalars : dict of str to float
+        What its frame says of it.
+    """
+
+    number: int
+    factor: float
+    scalars: dict[str, float]
+
+
+class Stepper(Protocol):
+    """What is particular to a procedure.
+
+    Attributes
+    ----------
+    kind : str
+        Name of the procedure's state in checkpoints; empty where it cannot be resumed.
+    advice : str
+        What helps where the step has used all its increments; empty where it has no such bound.
+    """
+
+    kind: str
+    advice: str
+
+    @property
+    def finished(self) -> bool:
+        """Whether the step is at its end."""
+        ...
+
+    @property
+    def taken(self) -> int:
+        """Increments so far."""
+        ...
+
+    @property
+    def where(self) -> str:
+        """How far the step has come, in words."""
+        ...
+
+    def advance(self) -> Accepted | None:
+        """Take increments up to the next one that is shown, or None where the step has ended.
+
+        Raises
+        ------
+        ConvergenceError
+            With the reason, when no smaller increment helps.
+        """
+        ...
+
+    def memory(self) -> dict[str, Any]:
+        """What the stepper goes on from, beside the committed state, by name."""
+        ...
+
+
+class IncrementLoop:
+    """The increments of one step.
+
+    Parameters
+    ----------
+    system : System
+    step : Step
+    number : int
+        Of the step, from 1.
+    state : State
+    observers : Observers
+    save : callable
+        Told state, increment, load factor and scalars of every increment that is shown.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        step: Step,
+        number: int,
+        state: State,
+        observers: Observers,
+        save: Save,
+    ) -> None:
+        self.system, self.step, self.number, self.state = system, step, number, state
+        self.observers, self.save = observers, save
+
+    def run(self, stepper: Stepper) -> None:
+        """Take increments to the end of the step.
+
+        Raises
+        ------
+        ConvergenceError
+            If the step needs more increments than it may take, or one cannot be taken.
+        Interrupted
+            If an observer asks to stop.
+        """
+        most = self.step.max_increments if stepper.advice else math.inf
+        while not stepper.finished:
+            if stepper.taken >= most:
+                raise ConvergenceError(
+                    f"step {self.number} used its {most} increments at {stepper.where}; "
+                    f"{stepper.advice}"
+                )
+            shown = stepper.advance()
+            if shown is None:
+                return
+            self.state.loop = {"kind": stepper.kind, **stepper.memory()} if stepper.kind else None
+            self.save(self.state, shown.number, shown.factor, shown.scalars)
+            if self.observers.stop_requested:
+                raise Interrupted(
+                    f"stopped at step {self.number}, {stepper.where}; everything up to there is "
+                    "kept"
+                )
+
+    def count(self, what: str, more: int = 1) -> None:
+        """Add to a counter of the analysis."""
+        self.state.counters[what] = self.state.counters.get(what, 0) + more
+
+    def cut_back(self, increment: int, attempt: int, reason: str, size: float) -> None:
+        """Tell observers of an attempt that failed, and of the size of the next."""
+        self.observers.cut_back(self.number, increment, attempt, reason, size)
+
+    def iteration(
+        self,
+        increment: int,
+        attempt: int,
+        iteration: int,
+        norms: ResidualNorms,
+        correction: float,
+        note: str = "",
+        size: float = 0.0,
+        factor: float = 0.0,
+    ) -> None:
+        """Tell observers of an iteration."""
+        self.observers.iteration(
+            Iteration(
+                self.number,
+                increment,
+                attempt,
+                iteration,
+                norms.force,
+                norms.moment,
+                correction,
+                int(self.system.node_of_dof[norms.worst]),
+                int(self.system.component[norms.worst]),
+                note,
+                size,
+                factor,
+            )
+        )
+
+
+@dataclass
+class Attempt:
+    """An increment as Newton's method left it.
+
+    Parameters
+    ----------
+    target : float
+        Step time at its end [time].
+    outcome : Outcome
+    contact : ContactIncrement or None
+        None where nothing was solved.
+    reason : str
+        Why it is not taken; empty where it is.
+    """
+
+    target: float
+    outcome: Outcome[Evaluation]
+    contact: ContactIncrement | None
+    reason: str = ""
+
+
+class NewtonStepper(ABC):
+    """Increments that Newton's method solves, cut where that fails.
+
+    Parameters
+    ----------
+    loop : IncrementLoop
+    control : Increments
+        Size of the increments.
+    """
+
+    kind = ""
+    advice = MORE_OR_LONGER
+
+    def __init__(self, loop: IncrementLoop, control: Increments) -> None:
+        self.loop, self.control = loop, control
+
+    @property
+    def finished(self) -> bool:
+        """Whether the step is at its end."""
+        return self.control.finished
+
+    @property
+    def taken(self) -> int:
+        """Increments so far."""
+        return self.control.number
+
+    @property
+    def where(self) -> str:
+        """How far the step has come, in words."""
+        return f"step time {self.control.time:g} of {self.control.step.period:g}"
+
+    def target(self) -> float:
+        """Step time that the next attempt aims at [time]."""
+        return self.control.target()
+
+    @abstractmethod
+    def solve(self, target: float) -> Attempt:
+        """Attempt an increment that ends at a step time."""
+
+    def rescue(self, failed: Attempt, end: str) -> Attempt | None:
+        """Another way to the next increment, or None; `end` says why none is shorter, or nothing.
+
+        Where it comes to the end of the step it leaves the stepper `finished`.
+        """
+        return None
+
+    @abstractmethod
+    def refusal(self, failed: Attempt, end: str) -> str:
+        """What to say where no increment is left to try."""
+
+    @abstractmethod
+    def accept(self, attempt: Attempt) -> Accepted:
+        """Commit an increment."""
+
+    @abstractmethod
+    def memory(self) -> dict[str, Any]:
+        """See :class:`Stepper`."""
+
+    @property
+    def report(self) -> Report | None:
+        """Tells observers, if there are any, of an iteration of the attempt that is being made."""
+        if not self.loop.observers.each:
+            return None
+        control = self.control
+
+        def report(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
+            self.loop.iteration(
+                control.number + 1, control.attempt, iteration, norms, correction, note
+            )
+
+        return report
+
+    def advance(self) -> Accepted | None:
+        """Take one increment, after as many attempts as it needs."""
+        loop, control = self.loop, self.control
+        while True:
+            attempt = self.solve(self.target())
+            loop.count("iterations", attempt.outcome.iterations)
+            if not attempt.reason:
+                return self.accept(attempt)
+            loop.count("cut-backs")
+            loop.state.failed = attempt.outcome
+            end = control.cut(attempt.target)
+            rescued = self.rescue(attempt, end)
+            if rescued is not None:
+                loop.count("iterations", rescued.outcome.iterations)
+                return self.accept(rescued)
+            if self.finished:
+                return None
+            if end:
+                raise ConvergenceError(self.refusal(attempt, end))
+            loop.cut_back(control.number + 1, control.attempt - 1, attempt.reason, control.size)
+
+
+__all__ = ["Accepted", "Attempt", "IncrementLoop", "NewtonStepper", "Stepper"]

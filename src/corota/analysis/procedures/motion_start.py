@@ -1,0 +1,166 @@
+"""How a motion starts: densities, velocities, accelerations."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.procedures.motion import Damping, Inertia, MotionState
+from corota.analysis.terms.damping import mass_damping
+from corota.errors import ModelError
+from corota.model import elements
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.state import State
+    from corota.analysis.terms.viscous import ViscousElements
+    from corota.model.steps import Dynamic
+
+    Floats = NDArray[np.float64]
+
+#: Share of the increment whose square weighs the stiffness in the first accelerations.
+TRACE = 1e-3
+#: Initial velocities may break constraints by this share of the largest.
+UNEQUAL = 1e-9
+
+
+def check_density(system: System) -> None:
+    """Refuse materials without mass."""
+    for block in system.blocks:
+        material = block.section.material
+        if material.rho <= 0.0 and not elements.find(block.section.element).spring:
+            raise ModelError(
+                f"material {material.name or material.law!r} has no density, which motion needs; "
+                "add one (*DENSITY, rho=)",
+                material.where or block.section.where,
+            )
+
+
+def start_motion(
+    system: System, step: Dynamic, state: State, inertia: Inertia, viscous: ViscousElements
+) -> MotionState:
+    """Velocities and accelerations at the start of a step."""
+    zero = np.zeros(system.n_dofs)
+    if state.v is None:
+        state.v = initial_velocity(system, state.u)
+    support_a = _start_supports(system, step, state)
+    at = system.evaluate(state.u, 0.0)
+    u, v = state.u, state.v
+    last = state.carried
+    goes_on = last is not None and last[0] is u and last[1] is v
+    goes_on = goes_on and step.scheme == "energy_momentum"
+    # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
+    # they keep their own velocities, which are those of its mid-point relations.
+    system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
+    force = inertia.force(u, v, zero)
+    rayleigh = damping_at(system, step, u, viscous)
+    # Bodies may rest on each other from a step before.
+    contact = system.contact_term
+    resting = contact.evaluate(u, contact.committed, 0.0, at.values).force
+    damping = inertia.damping(at, u, v, 0.0, rayleigh)
+    internal, external = at.internal, at.external
+    # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
+    # The consistent mass of drilling elements has none for a uniform drilling rotation, which
+    # follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness
+    # decides it.
+    mass = inertia.tangent(u)
+    if system.is_rotation.any() or inertia.massless.any():
+        trace = step.period if not step.fixed_increments else step.first_increment
+        mass += (TRACE * trace) ** 2 * at.values
+    at.values[:] = mass
+    at.internal, at.load_stiffness = internal + force + damping - resting, None
+    link = at.link
+    at.link = link.linear()
+    # Dependent dofs have their centripetal accelerations besides.
+    a = zero + system.predict(at, support_a)[0]
+    # What nodes without mass need for their balance is no acceleration; drilling rotations near
+    # them follow it.
+    if inertia.massless.any():
+        a[(inertia.massless | system.is_rotation) & ~system.conditions.constrained] = 0.0
+    state.a = a
+    if not goes_on:
+        system.core.start_motion(system.in_space(u), system.in_space(v))
+    return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+
+
+def resting(system: System) -> MotionState:
+    """No motion at all."""
+    return MotionState(*np.zeros((7, system.n_dofs)))
+
+
+def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
+    """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
+
+    Both are looked at over the first increment.
+    """
+    assert state.v is not None
+    constrained = system.conditions.constrained
+    whole = not step.fixed_increments and step.first_increment >= step.period
+    window = step.period / 100.0 if whole else step.first_increment
+    v, a = system.conditions.support_rates(0.0, window)
+    state.v[constrained] = v[constrained]
+    for name, time in system.conditions.support_kinks():
+        state.notes.append(
+            f"the amplitude {name!r} of a support changes its velocity at once at step time "
+            f"{time:.4g}: acceleration and reaction are a pulse there, as high as the increment "
+            "is short; round it off if that is not meant"
+        )
+    return a
+
+
+def initial_velocity(system: System, u: Floats | None = None) -> Floats:
+    """The model's initial velocities by dof; a spin is that of the displaced body."""
+    out = np.zeros((len(system.per_node), 3))
+    points = system.model.mesh.points
+    u = np.zeros(system.n_dofs) if u is None else u
+    if system.nlgeom:
+        points = points + system.by_node(u)[:, :2]
+    for item in system.model.velocities:
+        if isinstance(item.nodes, str):
+            everywhere = np.arange(len(points))
+            nodes = system.model.mesh.nodes_of(item.nodes) if item.nodes else everywhere
+        else:
+            nodes = np.asarray(item.nodes, np.int64)
+        if item.dof is not None:
+            out[nodes, item.dof] = item.value[0]
+            continue
+        vx, vy, spin, x0, y0 = (*item.value, 0.0, 0.0, 0.0)[:5]
+        out[nodes, 0] = vx - spin * (points[nodes, 1] - y0)
+        out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
+        out[nodes, 2] = spin
+    v = system.from_nodes(out)
+    _follow_constraints(system, u, v)
+    return v
+
+
+def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
+    """Give dependent dofs the velocity that follows from the others, in place.
+
+    Raises
+    ------
+    ModelError
+        If another one was given.
+    """
+    given = v.copy()
+    system.constraints.complete_rates(u, v)
+    off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
+    if off.any():
+        dof = int(np.flatnonzero(off)[0])
+        raise ModelError(
+            f"the initial velocity of {system.describe(dof)}, {given[dof]:g}, breaks the "
+            f"constraint that determines it, which gives {v[dof]:g}: give the velocity to the "
+            "nodes it depends on too (a reference node has a rotation, dof 6 in decks)",
+            next((item.where for item in system.model.velocities if item.where), None),
+        )
+
+
+def damping_at(system: System, step: Dynamic, u: Floats, elements: ViscousElements) -> Damping:
+    """Rayleigh damping at the start of an increment."""
+    return Damping(step.rayleigh[0], mass_damping(system, u, step.mass), elements)
+
+
+__all__ = ["check_density", "damping_at", "initial_velocity", "resting", "start_motion"]
