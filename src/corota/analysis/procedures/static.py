@@ -153,7 +153,8 @@ class StaticStepper(NewtonStepper):
         if (end or early) and (relaxed := self.relaxed(early)) is not None:
             return relaxed
         softer = outcome.negative > max(self.state.negative, 0)
-        if end or (softer and control.attempt > STALLED):
+        fixed = self.step.fixed_increments and self.step.at_limit == "stop"
+        if not fixed and (end or (softer and control.attempt > STALLED)):
             self.path_took_over = self.go_along_path()
         return None
 
