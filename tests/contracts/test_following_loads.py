@@ -14,10 +14,12 @@ import corota as ct
 from corota.analysis.distributed_forces import LoadSum
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
+from corota.model.constraints import LocalAxes
+from corota.model.loads import NodalForce
 from corota.model.steps import Buckle, Static
 from support.models import DRILLING, ELEMENTS, cell
 
-LOADS = ("traction", "total", "pressure", "gravity", "centrifugal")
+LOADS = ("traction", "total", "pressure", "follow", "shear", "turning", "gravity", "centrifugal")
 MASSES = ("consistent", "constant", "lumped")
 
 
@@ -33,6 +35,12 @@ def loaded(element: str, kind: str) -> ct.Model:
             model.force("end", x=2.0, y=-1.0)
         case "pressure":
             model.pressure(mesh.boundary_edges(), 1.5)
+        case "follow":
+            model.traction(mesh.boundary_edges(), x=2.0, y=-1.0, follow=True)
+        case "shear":
+            model.shear(mesh.boundary_edges(), -1.5)
+        case "turning":
+            model.loads.append(NodalForce([1, 3], 1, np.array([2.0, -1.0]), follower=True))
         case "gravity":
             model.gravity(x=2.0, y=-3.0)
         case _:
@@ -74,6 +82,8 @@ def moved(system: System) -> np.ndarray:
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_load_stiffness_is_the_derivative_of_the_load(element: str, kind: str) -> None:
     """Against central differences of the force at a large displacement."""
+    if kind == "turning" and element not in DRILLING:
+        pytest.skip("no rotation to turn with")
     for mass in MASSES if kind in ("gravity", "centrifugal") else MASSES[:1]:
         system = ready(loaded(element, kind), mass)
         u = moved(system)
@@ -87,8 +97,9 @@ def test_load_stiffness_is_the_derivative_of_the_load(element: str, kind: str) -
             expected[:, column] = -change / (2.0 * h)
         size = max(np.abs(expected).max(), 1.0)
         assert np.abs(found - expected).max() <= 1e-8 * size
-        # Each has a potential, the pressure since the boundary is closed.
-        assert np.abs(found - found.T).max() <= 1e-12 * size
+        # Each has a potential, the pressure since the boundary is closed; what turns has none.
+        if kind not in ("follow", "shear", "turning"):
+            assert np.abs(found - found.T).max() <= 1e-12 * size
 
 
 @pytest.mark.parametrize("kind", ["gravity", "centrifugal"])
@@ -126,16 +137,21 @@ def test_what_is_worked_out_once_holds_at_every_displacement(element: str, kind:
 @pytest.mark.parametrize("element", DRILLING)
 def test_moments_turn_with_the_body(element: str, kind: str) -> None:
     """The load on a body turned as a rigid one is that of the turned load on the body itself."""
-    system = ready(loaded(element, kind))
+    model = loaded(element, kind)
+    if kind == "turning":
+        model.axes.append(LocalAxes(np.array([3]), 0.4))
+    system = ready(model)
     x, angle = system.model.mesh.points, 1.1
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, -s], [s, c]])
     u = system.from_nodes(np.column_stack([x @ turn.T - x, np.full(len(x), angle)]))
     force = system.by_node(system.conditions.external(1.0, u)[0])
     other = ct.Model(system.model.mesh)
-    other.sections = system.model.sections
+    other.sections, other.axes = system.model.sections, system.model.axes
     for load in system.model.loads:
-        if load.kind in ("traction", "gravity"):
+        if isinstance(load, NodalForce):
+            pass  # turns by itself
+        elif load.kind in ("traction", "gravity"):
             load.value = tuple(turn.T @ load.value)
         elif load.kind == "centrifugal":
             load.value = (load.value[0], *(turn.T @ load.value[1:]))
@@ -214,3 +230,66 @@ def test_a_ring_under_following_pressure_buckles_symmetrically(element: str) -> 
     found = ct.solve(model, Buckle(modes=2)).modes[0].factors
     exact = 3.0 * modulus * t**3 / 12.0 / radius**3
     assert found == pytest.approx([exact, exact], rel=0.01)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_a_following_traction_across_is_a_pressure(element: str) -> None:
+    """And its resultant on an edge is along the current chord and the normal to it."""
+    model = loaded(element, "")
+    model.loads.clear()
+    model.traction("right", x=-1.5, follow=True)
+    other = loaded(element, "")
+    other.loads.clear()
+    other.pressure("right", 1.5)
+    one, two = ready(model), ready(other)
+    u = moved(one)
+    force, expected = (s.conditions.external(1.0, u)[0] for s in (one, two))
+    assert np.abs(force - expected).max() <= 1e-12 * np.abs(expected).max()
+    shear = loaded(element, "")
+    shear.loads.clear()
+    shear.shear("right", 2.0)
+    system = ready(shear)
+    force = system.by_node(system.conditions.external(1.0, u)[0])[:, :2].sum(axis=0)
+    here = system.model.mesh.points + system.by_node(u)[:, :2]
+    ends = system.model.mesh.nodes_of("right")
+    low, high = ends[np.argsort(system.model.mesh.points[ends, 1])[[0, -1]]]
+    assert force == pytest.approx(0.7 * 2.0 * (here[high] - here[low]), rel=1e-10)
+
+
+def test_a_beam_under_a_force_that_turns_with_its_tip() -> None:
+    """A cantilever by finite rotation: Argyris and Symeonidis' follower column, by shooting."""
+    from scipy.integrate import solve_ivp
+
+    length, stiffness, force = 1.0, 1.0, 4.0
+    # theta'' = -(P / EI) sin(theta - theta_tip + pi/2): force across the tip.
+    n = 40
+    points = np.column_stack([np.linspace(0.0, length, n + 1), np.zeros(n + 1)])
+    lines = np.column_stack([np.arange(n), np.arange(1, n + 1)])
+    mesh = ct.Mesh(points, [ct.Cells("line2", lines, np.arange(1, n + 1))])
+    model = ct.Model(mesh)
+    model.beam(np.arange(n), material=ct.Elastic(1e4), area=1.0, inertia=stiffness / 1e4)
+    model.fix([0], rotation=True)
+    model.loads.append(NodalForce([n], 1, force, follower=True))
+    frame = ct.solve(model, Static(increments=20), threads=1).frames[-1]
+
+    def tip(angle: float) -> tuple[float, np.ndarray]:
+        def slope(s: float, y: np.ndarray) -> list[float]:
+            # Moment from the tip back: internal force is that at the tip, constant along.
+            fx, fy = -force * np.sin(angle), force * np.cos(angle)
+            return [
+                y[1],
+                -(fy * np.cos(y[0]) - fx * np.sin(y[0])) / stiffness,
+                np.cos(y[0]),
+                np.sin(y[0]),
+            ]
+
+        out = solve_ivp(slope, (length, 0.0), [angle, 0.0, 0.0, 0.0], rtol=1e-10, atol=1e-12)
+        return float(out.y[0, -1]), out.y[:, -1]
+
+    angles = (0.5, 3.0)
+    from scipy.optimize import brentq
+
+    angle = brentq(lambda a: tip(a)[0], *angles)
+    end = -tip(angle)[1][2:]
+    assert frame.UR[n] == pytest.approx(angle, rel=2e-3)
+    assert frame.U[n] + points[n] == pytest.approx(end, abs=3e-3)

@@ -79,22 +79,44 @@ def test_shear_along_the_edges_of_a_surface(tmp_path: Path) -> None:
         "*CLOAD\n3, 2, -5.", "*DSLOAD\ntop, TRSHR, 3., 1., 0.5"
     )
     model = read(tmp_path, text)
-    assert [load.value for load in model.steps[0].loads] == [(3.0, 0.0)]
+    assert [(x.kind, x.value) for x in model.steps[0].loads] == [("shear", (-3.0,))]
     frame = ct.solve(model).frames[-1]
     # 3 of traction over the area 2 x 2.
     assert frame.RF.sum(axis=0)[:2] == pytest.approx([-12.0, 0.0], abs=1e-9)
-    for nlgeom in ("*STEP, NLGEOM", "*STEP"):
-        vector = text.replace("TRSHR", "TRVEC").replace("*STEP", nlgeom, 1)
-        if nlgeom == "*STEP":
-            assert len(read(tmp_path, vector).steps[0].loads) == 1
-        else:
-            assert any("FOLLOWER=NO" in str(d) for d in faults(tmp_path, vector))
+    for follower, kind in (("", "following traction"), (", FOLLOWER=NO", "traction")):
+        vector = text.replace("*DSLOAD\ntop, TRSHR", f"*DSLOAD{follower}\ntop, TRVEC")
+        assert read(tmp_path, vector).steps[0].loads[0].kind == kind
+
+
+@pytest.mark.filterwarnings("ignore:local strain")
+def test_a_traction_that_follows_stays_with_the_edge(tmp_path: Path) -> None:
+    """A block turned by 90 degrees: the reaction turns with it, or not."""
+    text = DECK.replace("*STEP, NLGEOM", "*SURFACE, NAME=top\neall, S3\n*STEP, NLGEOM")
+    model = read(tmp_path, text)
+    x = model.mesh.points
+    turn = "".join(
+        f"{n}, 1, 1, {-p[1] - p[0]!r}\n{n}, 2, 2, {p[0] - p[1]!r}\n"
+        for n, p in zip(model.mesh.node_labels.tolist(), x.tolist(), strict=True)
+    )
+    for card, expected in (
+        ("TRVEC, 3., 1., 0.", [0.0, -12.0]),
+        ("TRVEC, 3., 1., 0.\n** dead", [-12.0, 0.0]),
+        ("TRSHR, 3., 1., 0.", [0.0, -12.0]),
+    ):
+        follower = ", FOLLOWER=NO" if "dead" in card else ""
+        moved = text.replace(
+            "*CLOAD\n3, 2, -5.", f"*BOUNDARY\n{turn}*DSLOAD{follower}\ntop, {card}"
+        )
+        frame = ct.solve(read(tmp_path, moved)).frames[-1]
+        assert frame.RF.sum(axis=0)[:2] == pytest.approx(expected, abs=1e-7), card
 
 
 def test_forces_that_would_follow(tmp_path: Path) -> None:
     text = DECK.replace("*CLOAD", "*CLOAD, FOLLOWER")
-    assert any("FOLLOWER is not supported" in d.message for d in faults(tmp_path, text))
+    assert any("has no rotation" in d.message for d in faults(tmp_path, text))
     assert read(tmp_path, text.replace(", NLGEOM", "")).steps[0].loads[0].value == -5.0
+    turning = read(tmp_path, text, element_map={"CPS4": "Q4D"}).steps[0].loads[0]
+    assert turning.follower
 
 
 def test_application_and_parameters_of_dynamics(tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
-"""Distributed loads over the steps: pressures, tractions and body forces.
+"""Distributed loads over the steps: pressures, tractions and body forces; forces that turn.
 
 A load is known by what it acts on. On an edge of an element that is the edge and the kind
-(pressure or traction), whatever the name of the set. Of a body it is the set, the kind, and the
+(pressure, traction or shear), whatever the name of the set; of a nodal force that turns with its
+node, the node and the direction. Of a body it is the set, the kind, and the
 direction of gravity or the axis of rotation: gravity in another direction is another load. A
 load that is given again in a later step replaces the one before; loads of one step add up.
 
@@ -18,10 +19,11 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
+from corota.analysis.following_forces import FollowingTraction, TurningForce
 from corota.errors import InputError, ModelError
 from corota.mesh import EDGES
 from corota.model import elements
-from corota.model.loads import BodyForce, EdgeLoad
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -31,8 +33,11 @@ if TYPE_CHECKING:
     from corota.analysis.distributed_forces import Distribution
     from corota.analysis.equations import System
     from corota.errors import Location
+    from corota.model.loads import LoadKind
 
     Ints = NDArray[np.int64]
+    Floats = NDArray[np.float64]
+    Item = EdgeLoad | BodyForce | NodalForce
 
 #: Directions and axes are the same within this (CalculiX's own tolerance).
 SAME = 1e-10
@@ -55,21 +60,21 @@ class DistributedLoad:
     force : Distribution
         Its force per unit scale, given when the load is built.
     faces : ndarray, shape (n, 2), or None
-        Cell and side of loaded edges.
+        Cell and side of loaded edges; node and direction of forces that turn.
     traction : tuple of float
-        Of a dead traction: force per area and unit scale.
-    item : EdgeLoad or BodyForce
+        Of tractions and shear: force per area and unit scale; of forces that turn, their values.
+    item : EdgeLoad, BodyForce or NodalForce
         What the load was made of; the first of several.
     """
 
     begin: float
     end: float
     amplitude: int
-    item: EdgeLoad | BodyForce
+    item: Item
     removed: bool = False
     force: Distribution = field(init=False)
     faces: Ints | None = None
-    traction: tuple[float, float] = (0.0, 0.0)
+    traction: tuple[float, ...] = (0.0, 0.0)
 
 
 class DistributedLoads:
@@ -101,26 +106,24 @@ class DistributedLoads:
                 load.end, load.amplitude = load.begin, 0
         self.loads = [load for load in self.loads if load.begin != 0.0 or load.end != 0.0]
 
-    def remove(self) -> None:
-        """Take all loads away."""
+    def remove(self, kind: LoadKind = "distributed") -> None:
+        """Take all loads of a kind away: distributed ones, or forces that turn."""
         for load in self.loads:
-            load.end, load.amplitude, load.removed = 0.0, 0, True
+            if kind_of(load.item) == kind:
+                load.end, load.amplitude, load.removed = 0.0, 0, True
 
-    def set(
-        self,
-        items: Sequence[EdgeLoad | BodyForce],
-        amplitude: Callable[[str, Location | None], int],
-    ) -> None:
+    def set(self, items: Sequence[Item], amplitude: Callable[[str, Location | None], int]) -> None:
         """Add the loads of a step in place of those that act on the same."""
         fresh = self._bodies([i for i in items if isinstance(i, BodyForce)], amplitude)
         fresh += self._on_edges([i for i in items if isinstance(i, EdgeLoad)], amplitude)
+        fresh += self._turning([i for i in items if isinstance(i, NodalForce)], amplitude)
         for load in fresh:
-            self._replace(load, fresh)
-        self.loads += fresh
+            self._replace(load)
+        self.loads += [load for load in fresh if not _is_dead(load.item)]
 
     # -- replacing ----------------------------------------------------------------------
 
-    def _replace(self, new: DistributedLoad, fresh: list[DistributedLoad]) -> None:
+    def _replace(self, new: DistributedLoad) -> None:
         """Let older loads on the same fade while the new one grows: a ramp between the two."""
         kept: list[DistributedLoad] = []
         for old in self.loads:
@@ -131,7 +134,8 @@ class DistributedLoads:
                 else:
                     kept.append(old)
                 continue
-            hit = np.isin(_codes(old.faces), _codes(new.faces)) & (old.item.kind == new.item.kind)
+            alike = _family(old.item) == _family(new.item)
+            hit = np.isin(_codes(old.faces), _codes(new.faces)) & alike
             if not hit.any():
                 kept.append(old)
             elif hit.all():
@@ -142,9 +146,13 @@ class DistributedLoads:
         self.loads = kept
 
     def _part(self, load: DistributedLoad, chosen: NDArray[np.bool_]) -> DistributedLoad:
-        """The same load on some of its edges."""
+        """The same load on some of its edges or nodes."""
         assert load.faces is not None
-        return self._edge_load(replace(load, faces=load.faces[chosen]))
+        faces = load.faces[chosen]
+        if isinstance(load.item, NodalForce):
+            values = tuple(np.asarray(load.traction)[chosen].tolist())
+            return self._at_nodes(replace(load, faces=faces, traction=values))
+        return self._edge_load(replace(load, faces=faces))
 
     # -- building -----------------------------------------------------------------------
 
@@ -170,7 +178,7 @@ class DistributedLoads:
                 load.end = item.value[0]
             else:
                 share = 1.0 / self._area(faces) if item.total else 1.0
-                load.traction = (share * item.value[0], share * item.value[1])
+                load.traction = tuple(share * v for v in item.value)
             key = (item.kind, load.end, load.amplitude, load.traction)
             found.setdefault(key, (load, []))[1].append(faces)
         return [
@@ -178,15 +186,62 @@ class DistributedLoads:
             for load, faces in found.values()
         ]
 
+    def _turning(
+        self, items: Sequence[NodalForce], amplitude: Callable[[str, Location | None], int]
+    ) -> list[DistributedLoad]:
+        """Forces that turn; dead ones are there to replace those of earlier steps."""
+        found = []
+        for item in items:
+            nodes = self.system.model.mesh.node_indices(item.nodes)
+            load = DistributedLoad(0.0, 1.0, amplitude(item.amplitude, item.where), item)
+            load.faces = np.stack([nodes, np.full(len(nodes), item.dof)], axis=1)
+            load.traction = tuple(np.broadcast_to(item.value, len(nodes)).tolist())
+            found.append(load if _is_dead(item) else self._at_nodes(load))
+        return found
+
+    def _at_nodes(self, load: DistributedLoad) -> DistributedLoad:
+        """Give forces that turn what their nodes need."""
+        assert load.faces is not None
+        assert isinstance(load.item, NodalForce)
+        nodes, system = load.faces[:, 0], self.system
+        bare = system.per_node[nodes] < 3
+        if bare.any():
+            label = system.model.mesh.node_labels[nodes[bare][0]]
+            raise ModelError(
+                f"a force that turns with its node: node {label} has no rotation; load the edges "
+                "by a pressure or a traction that follows them",
+                load.item.where,
+            )
+        load.force = TurningForce(system, nodes, load.item.dof, np.asarray(load.traction))
+        return load
+
     def _edge_load(self, load: DistributedLoad) -> DistributedLoad:
         """Give a load on edges what its faces need in the core."""
         assert load.faces is not None
+        assert isinstance(load.item, EdgeLoad)
+        if load.item.kind in ("following traction", "shear"):
+            load.force = self._following(load)
+            return load
         core, drilling = self._core(load.faces)
         if load.item.kind == "pressure":
             load.force = Pressure(self.system, core)
         else:
-            load.force = Traction(self.system, core, drilling, load.traction)
+            x, y = load.traction
+            load.force = Traction(self.system, core, drilling, (x, y))
         return load
+
+    def _following(self, load: DistributedLoad) -> FollowingTraction:
+        """A traction that turns with its edges, those of drilling elements apart."""
+        assert load.faces is not None
+        nodes, thickness, alpha = self._edges(load.faces)
+        x = self.system.model.mesh.points
+        along = x[nodes[:, 1]] - x[nodes[:, 0]]
+        angle = np.round(np.arctan2(along[:, 1], along[:, 0]), 12)
+        bulges = []
+        for value in np.unique(angle[alpha > 0.0]).tolist():
+            mask = (angle == value) & (alpha > 0.0)
+            bulges.append((mask, self._core(load.faces[mask])[0]))
+        return FollowingTraction(self.system, nodes, thickness, load.traction, bulges)
 
     def _faces(self, item: EdgeLoad) -> Ints:
         """Cell and side of every loaded edge, shape (n, 2)."""
@@ -217,8 +272,8 @@ class DistributedLoads:
         local = EDGES[elements.find(block.section.element).cell][side]
         return [int(block.nodes[row, a]) for a in local], b
 
-    def _core(self, faces: Ints) -> tuple[_core.EdgeLoads, bool]:
-        """The core's edges, and whether rotations bulge some of them."""
+    def _edges(self, faces: Ints) -> tuple[Ints, Floats, Floats]:
+        """Nodes (the third is the first on straight edges), thickness and bulge of edges."""
         nodes, thickness, alpha = [], [], []
         for cell, side in faces.tolist():
             ends, b = self._ends(cell, side)
@@ -226,13 +281,15 @@ class DistributedLoads:
             nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
             thickness.append(section.thickness)
             alpha.append(elements.find(section.element).alpha_b)
-        edges = _core.EdgeLoads(
-            self.system.model.mesh.points,
-            np.asarray(nodes, np.uint32).reshape(-1, 3),
-            np.asarray(thickness),
-            np.asarray(alpha),
-        )
-        return edges, any(a > 0.0 for a in alpha)
+        table = np.asarray(nodes, np.int64).reshape(-1, 3)
+        return table, np.asarray(thickness, np.float64), np.asarray(alpha, np.float64)
+
+    def _core(self, faces: Ints) -> tuple[_core.EdgeLoads, bool]:
+        """The core's edges, and whether rotations bulge some of them."""
+        nodes, thickness, alpha = self._edges(faces)
+        points = self.system.model.mesh.points
+        edges = _core.EdgeLoads(points, nodes.astype(np.uint32), thickness, alpha)
+        return edges, bool((alpha > 0.0).any())
 
     def _area(self, faces: Ints) -> float:
         """Area of edges times thickness; curved ones by Gauss's rule of three points."""
@@ -264,7 +321,17 @@ def _fading(old: DistributedLoad, new: DistributedLoad) -> list[DistributedLoad]
     return [left]
 
 
-def _same_body(old: EdgeLoad | BodyForce, new: EdgeLoad | BodyForce) -> bool:
+def _family(item: Item) -> str:
+    """Loads on the same edge or node replace each other within a family."""
+    return item.kind.split()[-1] if isinstance(item, EdgeLoad) else "force"
+
+
+def _is_dead(item: Item) -> bool:
+    """Whether a nodal force keeps its direction: it acts elsewhere."""
+    return isinstance(item, NodalForce) and not item.follower
+
+
+def _same_body(old: Item, new: Item) -> bool:
     """Whether two body forces are one load, of which the later value counts."""
     if not (isinstance(old, BodyForce) and isinstance(new, BodyForce)) or old.kind != new.kind:
         return False

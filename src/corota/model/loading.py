@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from corota.errors import InputError, number
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, selected
@@ -138,9 +138,23 @@ class Loading:
         x: float = 0.0,
         y: float = 0.0,
         amplitude: str = "",
+        follow: bool = False,
     ) -> None:
-        """Apply a dead traction [force/length^2] on edges."""
-        self.loads.append(EdgeLoad(self._edges(edges), "traction", (x, y), amplitude))
+        """Apply a traction [force/length^2] on edges: dead, or turning with them.
+
+        One that follows keeps its components along and across the edge in geometrically nonlinear
+        steps, and acts on its current length.
+        """
+        kind: Literal["following traction", "traction"]
+        kind = "following traction" if follow else "traction"
+        self.loads.append(EdgeLoad(self._edges(edges), kind, (x, y), amplitude))
+
+    def shear(self, edges: str | ArrayLike, t: float, amplitude: str = "") -> None:
+        """Apply a shear traction [force/length^2] along edges, with the element on the left.
+
+        It follows the edges in geometrically nonlinear steps.
+        """
+        self.loads.append(EdgeLoad(self._edges(edges), "shear", (t,), amplitude))
 
     def pressure(self, edges: str | ArrayLike, p: float, amplitude: str = "") -> None:
         """Apply a pressure [force/length^2] on edges, positive into the element."""

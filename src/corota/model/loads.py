@@ -198,7 +198,7 @@ class Fixed(Brief):
 
 @dataclass
 class NodalForce(Brief):
-    """A dead force [force] or drilling moment [force*length] at each node of a set.
+    """A force [force] or drilling moment [force*length] at each node of a set.
 
     Parameters
     ----------
@@ -210,6 +210,9 @@ class NodalForce(Brief):
         At each node, or one for each of the nodes.
     amplitude : str
         Name in ``Model.amplitudes``; empty: ramp in static steps.
+    follower : bool
+        Whether a force turns with the rotation of its node in geometrically nonlinear steps; it
+        is dead otherwise.
     """
 
     nodes: str | Ints
@@ -217,12 +220,14 @@ class NodalForce(Brief):
     value: float | NDArray[np.float64]
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+    follower: bool = False
 
     def __post_init__(self) -> None:
         self.nodes = selected(self.nodes, "node", self.where)
         self.dof = dof_index(self.dof, self.where)
         self.value = finite(self.value, "a force", self.where)
         self.amplitude = _amplitude(self.amplitude, self.where)
+        self.follower = self.follower and self.dof < 2
 
 
 @dataclass
@@ -316,6 +321,10 @@ class Force(Brief):
         return found
 
 
+#: Kinds of loads on edges.
+EDGE_LOADS = ("pressure", "traction", "following traction", "shear")
+
+
 @dataclass
 class EdgeLoad(Brief):
     """A distributed load on element edges.
@@ -324,18 +333,20 @@ class EdgeLoad(Brief):
     ----------
     edges : str or array_like of int, shape (n, 2)
         Edge set, or pairs of global cell index and local edge (from 0).
-    kind : {"pressure", "traction"}
+    kind : {"pressure", "traction", "following traction", "shear"}
         ``pressure``: normal, positive into the element, follows the deforming edge in
         geometrically nonlinear steps (the thickness stays the undeformed one); ``traction``:
-        dead, fixed in space.
+        dead, fixed in space; ``following traction``: the same on the undeformed edge, turns with
+        it and acts on its current length, as a pressure does; ``shear``: along the edge, with the
+        element on the left, and follows it.
     value : tuple of float
-        ``(p,)`` or ``(tx, ty)`` [force/length^2]; times thickness and reference length.
+        ``(p,)``, ``(tx, ty)`` or ``(t,)`` [force/length^2]; times thickness and length.
     total : bool
         Whether a traction's value is a total force [force], spread over the edges' area.
     """
 
     edges: str | Ints
-    kind: Literal["pressure", "traction"]
+    kind: Literal["pressure", "traction", "following traction", "shear"]
     value: tuple[float, ...]
     amplitude: str = ""
     total: bool = False
@@ -343,7 +354,7 @@ class EdgeLoad(Brief):
 
     def __post_init__(self) -> None:
         self.edges = selected(self.edges, "edge", self.where)
-        choose(self.kind, ("pressure", "traction"), "load on edges", self.where)
+        choose(self.kind, EDGE_LOADS, "load on edges", self.where)
         what = "a pressure" if self.kind == "pressure" else "a traction"
         self.value = tuple(number(v, what, self.where) for v in self.value)
         self.amplitude = _amplitude(self.amplitude, self.where)

@@ -275,6 +275,8 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
         inward = np.array([-along[1], along[0]]) / length
         if load.kind == "pressure":
             direction = inward * np.sign(load.value[0])
+        elif load.kind == "shear":
+            direction = along / length * np.sign(load.value[0])
         else:
             direction = np.array(load.value[:2])
             direction = direction / (float(np.linalg.norm(direction)) or 1.0)

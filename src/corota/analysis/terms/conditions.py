@@ -25,7 +25,6 @@ from corota.model.dofs import DOFS
 from corota.model.integrated import IntegratedAmplitude
 from corota.model.loads import (
     BodyForce,
-    EdgeLoad,
     NodalForce,
     Temperature,
     applied,
@@ -193,6 +192,7 @@ class Conditions:
         if step.renews("force"):
             self.force.begin, self.timed = self._reached.copy(), {}
             self.force.remove()
+            self.distributed.remove("force")
         if step.renews("distributed"):
             self.distributed.remove()
         if step.renews("temperature"):
@@ -526,12 +526,13 @@ class Conditions:
         forces = [item for item in loads if isinstance(item, NodalForce)]
         self._replace_forces(forces)
         for item in forces:
-            self._add_force(item)
+            if not item.follower:
+                self._add_force(item)
         for heated in loads:
             if isinstance(heated, Temperature):
                 self._heat(heated)
         self.distributed.set(
-            [item for item in loads if isinstance(item, EdgeLoad | BodyForce)], self._amplitude
+            [item for item in loads if not isinstance(item, Temperature)], self._amplitude
         )
 
     def _heat(self, item: Temperature) -> None:

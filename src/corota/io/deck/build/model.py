@@ -479,7 +479,7 @@ class ModelBuilder:
         return [] if load is None else [load]
 
     def _shear(self, draft: Draft) -> Iterator[Load]:
-        """Tractions along the edges of a surface, towards a direction, by their tangent."""
+        """Shear along the edges of a surface, towards a direction."""
         name, amplitude = self._edge_set(draft), self._amplitude(draft)
         if name is None or amplitude is None:
             return
@@ -494,12 +494,10 @@ class ModelBuilder:
                 draft.card, draft.row, 3, "the direction of the shear is normal to an edge"
             )
             return
-        # Edges of one tangent go into one load.
-        vectors = np.asarray(np.round(along * np.sign(share)[:, None], 12))
-        for vector in np.unique(vectors, axis=0):
-            mine = edges[(vectors == vector).all(axis=1)]
-            x, y = (size * vector).tolist()
-            yield EdgeLoad(mine, "traction", (x, y), amplitude, where=draft.row.where)
+        for sign in (-1.0, 1.0):
+            mine = edges[np.sign(share) == sign]
+            if len(mine):
+                yield EdgeLoad(mine, "shear", (sign * size,), amplitude, where=draft.row.where)
 
     def _load(self, draft: Draft) -> Load | None:
         amplitude = self._amplitude(draft)
@@ -511,25 +509,46 @@ class ModelBuilder:
             if draft.index == 2 and not self._rotating(nodes).all():
                 self._no_rotation(draft)
                 return None
-            return NodalForce(nodes, draft.index, draft.value[0], amplitude, where)
+            force = NodalForce(nodes, draft.index, draft.value[0], amplitude, where)
+            force.follower = draft.card.has("FOLLOWER") and self._turns(draft, nodes)
+            return force
         if draft.kind == "temperature":
             nodes = self._nodes(draft)
             if nodes is None or amplitude is None:
                 return None
             return build_temperature(draft, nodes, amplitude)
-        if draft.kind in ("surface pressure", "surface traction"):
+        if draft.kind.startswith("surface "):
             edges = self._edge_set(draft)
             if edges is None or amplitude is None:
                 return None
-            kind = draft.kind.split()[1]
+            kind = draft.kind.removeprefix("surface ")
             return EdgeLoad(
                 edges,
-                cast("Literal['pressure', 'traction']", kind),
+                cast("Literal['pressure', 'traction', 'following traction']", kind),
                 draft.value,
                 amplitude,
                 where=where,
             )
         return self._cell_load(draft, amplitude)
+
+    def _turns(self, draft: Draft, nodes: str | Ints) -> bool:
+        """Whether a force can turn with its nodes; told where it cannot and should."""
+        if draft.index == 2:
+            return False
+        if self._rotating(nodes).all():
+            return True
+        if any(step.nlgeom for step in self.deck.steps):
+            self.deck.error(
+                draft.card,
+                draft.card.at("FOLLOWER"),
+                f"FOLLOWER: {draft.target} has no rotation to turn with",
+                hint="load the edges: *DSLOAD with P, or TRVEC, which follow them",
+            )
+        else:
+            self.deck.note(
+                f"{draft.card.where}: without NLGEOM a force keeps its direction, FOLLOWER or not"
+            )
+        return False
 
     def _cell_load(self, draft: Draft, amplitude: str | None) -> Load | None:
         where, root = draft.row.where, self.meshes.views[0]

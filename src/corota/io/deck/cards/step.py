@@ -395,16 +395,6 @@ def cload(deck: Deck, card: Card) -> None:
     now = loads_of(deck, card, "force")
     if now is None:
         return
-    if card.has("FOLLOWER"):
-        if now.nlgeom:
-            deck.error(
-                card,
-                card.at("FOLLOWER"),
-                "FOLLOWER is not supported in steps with NLGEOM",
-                hint="nodal forces keep their direction; pressures follow their edge",
-            )
-            return
-        deck.note(f"{card.where}: without NLGEOM a force keeps its direction, FOLLOWER or not")
     for row in card.rows():
         deck.extra_fields(card, row, 3)
         dof = _dof(deck, card, row, 1)
@@ -503,11 +493,15 @@ def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
 
 
 def dsload(deck: Deck, card: Card) -> None:
-    """``*DSLOAD``: surface, ``P``, pressure; or ``TRVEC``, size, direction."""
+    """``*DSLOAD``: surface, ``P``, pressure; or ``TRVEC`` or ``TRSHR``, size, direction."""
     now = loads_of(deck, card, "distributed")
     if now is None:
         return
-    follower = deck.choice(card, "FOLLOWER", ("YES", "NO"), "YES") == "YES"
+    follower = deck.choice(card, "FOLLOWER", ("YES", "NO", ""), "YES") != "NO"
+    kinds = {
+        "TRSHR": "surface shear",
+        "TRVEC": "surface following traction" if follower else "surface traction",
+    }
     for row in card.rows():
         label = key(row.get(1))
         value = deck.real(card, row, 2, "the size of the load")
@@ -529,14 +523,9 @@ def dsload(deck: Deck, card: Card) -> None:
         x = deck.real(card, row, 3, "the direction x", 0.0)
         y = deck.real(card, row, 4, "the direction y", 0.0)
         size = math.hypot(x or 0.0, y or 0.0)
-        if now.nlgeom and (follower or label == "TRSHR"):
-            deck.row_error(
-                card,
-                row,
-                1,
-                "a traction that follows the surface is not part of this version",
-                "write *DSLOAD, FOLLOWER=NO",
-            )
+        if label == "TRSHR" and not follower:
+            text = "a shear traction follows the surface: FOLLOWER=NO belongs to TRVEC"
+            deck.error(card, card.at("FOLLOWER"), text)
         elif x is None or y is None:
             continue
         elif size == 0.0:
@@ -545,7 +534,7 @@ def dsload(deck: Deck, card: Card) -> None:
             vector = (value * x / size, value * y / size)
             now.loads.append(
                 Draft(
-                    "surface shear" if label == "TRSHR" else "surface traction",
+                    kinds[label],
                     card,
                     row,
                     row.get(0),

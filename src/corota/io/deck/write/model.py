@@ -253,7 +253,7 @@ class _Writer:
     def _load(self, load: AppliedLoad) -> Iterator[str]:
         option = f", AMPLITUDE={_plain(load.amplitude)}" if load.amplitude else ""
         if isinstance(load, NodalForce):
-            yield f"*CLOAD{option}\n"
+            yield f"*CLOAD{', FOLLOWER' if load.follower else ''}{option}\n"
             if np.ndim(load.value):  # a value for each node
                 labels = self.mesh.node_labels[self.mesh.node_indices(load.nodes)].tolist()
                 rows = list(zip(map(str, labels), np.asarray(load.value).tolist(), strict=True))
@@ -266,17 +266,36 @@ class _Writer:
             if load.kind == "pressure":
                 yield f"*DSLOAD{option}\n{name}, P, {_number(load.value[0])}\n"
                 return
+            if load.kind == "shear":
+                yield from self._shear(load, name, option)
+                return
             x, y = load.value
             size = math.hypot(x, y)
             if size == 0.0:
                 return
             force = size / self._area(load.edges) if load.total else size
-            yield f"*DSLOAD, FOLLOWER=NO{option}\n"
+            dead = "" if load.kind == "following traction" else ", FOLLOWER=NO"
+            yield f"*DSLOAD{dead}{option}\n"
             yield f"{name}, TRVEC, {_number(force)}, {_number(x / size)}, {_number(y / size)}\n"
         elif isinstance(load, Temperature):
             yield f"*TEMPERATURE{option}\n" + temperatures(self, load.nodes, load.value)
         elif isinstance(load, BodyForce):
             yield f"*DLOAD{option}\n" + self._body(load)
+
+    def _shear(self, load: EdgeLoad, name: str, option: str) -> Iterator[str]:
+        """A shear along edges: they must have a direction in common, which the card names."""
+        edges = self.mesh.edge_pairs(load.edges)
+        ends = np.array([nodes[:2] for nodes in self.mesh.edge_nodes(edges)])
+        along = self.mesh.points[ends[:, 1]] - self.mesh.points[ends[:, 0]]
+        mean = (along / np.linalg.norm(along, axis=1, keepdims=True)).sum(axis=0)
+        if (along @ mean <= 1e-6 * np.linalg.norm(along, axis=1) * len(along)).any():
+            raise InputError(
+                f"the edges of {name} have no direction in common: give the shear of each side "
+                "apart to write it to a deck"
+            )
+        x, y = (mean / np.linalg.norm(mean)).tolist()
+        yield f"*DSLOAD{option}\n{name}, TRSHR, "
+        yield f"{_number(load.value[0])}, {_number(x)}, {_number(y)}\n"
 
     def _body(self, load: BodyForce) -> str:
         where = self.cell_set(load.cells)

@@ -1,0 +1,184 @@
+"""Tractions that turn with their edges, and nodal forces that turn with their nodes."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.distributed_forces import Pressure
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota import _core
+    from corota.analysis.distributed_forces import LoadSum
+    from corota.analysis.equations import System
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Gauss points and weights of an edge.
+_POINTS = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
+_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 9.0
+#: A quarter of a turn to the left.
+_LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])
+
+
+class FollowingTraction:
+    """A traction whose components along and across the edge stay as they are on the reference.
+
+    It acts on the current length. With t and n the current tangent and the normal to its left,
+    the force is the integral of s_t t + s_n n, and t times the length is linear in the positions
+    of the nodes: so is the force, and its derivative is constant. On drilling elements the
+    component across acts on the bulge of their sides, as a pressure does; the component along
+    acts on the chord.
+
+    Parameters
+    ----------
+    system : System
+    nodes : ndarray, shape (n, 3)
+        Of each edge, the third repeated from the first where it is straight.
+    thickness : ndarray, shape (n,)
+    value : tuple of float
+        A vector on the reference [force/length^2], or one number: a shear along the edges, with
+        the element on the left.
+    bulges : list of (NDArray[np.bool_], _core.EdgeLoads)
+        Edges of drilling elements of one direction, by a mask of the edges.
+    """
+
+    follows = True
+
+    def __init__(
+        self,
+        system: System,
+        nodes: Ints,
+        thickness: Floats,
+        value: tuple[float, ...],
+        bulges: list[tuple[NDArray[np.bool_], _core.EdgeLoads]],
+    ) -> None:
+        self.system = system
+        x = system.model.mesh.points[nodes]
+        shape, slope = _shapes(nodes[:, 2] == nodes[:, 0])
+        d = np.einsum("egb,ebi->egi", slope, x)
+        if len(value) == 1:
+            along = np.full(d.shape[:2], value[0])
+            across = np.zeros_like(along)
+        else:
+            unit = d / np.linalg.norm(d, axis=2, keepdims=True)
+            along, across = unit @ np.array(value), (unit @ _LEFT.T) @ np.array(value)
+        self.bulged: list[tuple[float, Pressure]] = []
+        for mask, edges in bulges:
+            size = float(across[mask][0, 0])
+            if size != 0.0:
+                self.bulged.append((size, Pressure(system, edges)))
+            across[mask] = 0.0
+        weight = thickness[:, None] * _WEIGHTS
+        #: Force at node a per position of node b, shape (n, 3, 3, 2, 2).
+        self.matrix = np.einsum(
+            "eg,ega,egb,egij->eabij",
+            weight,
+            shape,
+            slope,
+            along[..., None, None] * np.eye(2) + across[..., None, None] * _LEFT,
+        )
+        self.nodes, self.reference = nodes, x
+        start = system.start[nodes]
+        straight = nodes[:, 2] == nodes[:, 0]
+        real = np.ones(nodes.shape, bool)
+        real[straight, 2] = False
+        pair = real[:, :, None, None, None] & real[:, None, :, None, None]
+        rows = start[:, :, None, None, None] + np.arange(2)[:, None]
+        columns = start[:, None, :, None, None] + np.arange(2)
+        filled = np.broadcast_to(pair, self.matrix.shape) & (self.matrix != 0.0)
+        self._rows = np.broadcast_to(rows, self.matrix.shape)[filled]
+        self._columns = np.broadcast_to(columns, self.matrix.shape)[filled]
+        self._values = self.matrix[filled]
+        self._unit: Floats | None = None
+
+    def set_mass(self, kind: str) -> None:
+        """See :class:`Distribution`."""
+
+    def unit(self) -> Floats:
+        """See :class:`Distribution`."""
+        if self._unit is None:
+            self._unit = self._at(self.reference)
+            for size, pressure in self.bulged:
+                self._unit += size * pressure.unit()
+        return self._unit
+
+    def add(self, scale: float, u: Floats, to: LoadSum) -> None:
+        """See :class:`Distribution`."""
+        moved = self.system.by_node(to.middle(u))[:, :2]
+        to.force += scale * self._at(self.reference + moved[self.nodes])
+        to.entries.append((self._rows, self._columns, scale * self._values))
+        for size, pressure in self.bulged:
+            pressure.add(scale * size, u, to)
+
+    def _at(self, x: Floats) -> Floats:
+        """Force of unit scale at positions of the edges' nodes, along the axes of the nodes."""
+        force = np.zeros((len(self.system.model.mesh.points), 3))
+        np.add.at(force[:, :2], self.nodes, np.einsum("eabij,ebj->eai", self.matrix, x))
+        return self.system.from_nodes(force)
+
+
+def _shapes(straight: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Shape functions and slopes of edges at the Gauss points, shapes (n, 3, 3)."""
+    r, one = _POINTS, np.ones(3)
+    lines = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0 * r], axis=1)
+    curves = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
+    slope_lines = np.stack([-0.5 * one, 0.5 * one, 0.0 * one], axis=1)
+    slope_curves = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1)
+    chosen = straight[:, None, None]
+    return np.where(chosen, lines, curves), np.where(chosen, slope_lines, slope_curves)
+
+
+class TurningForce:
+    """Forces at nodes that turn with the rotation of their node.
+
+    Parameters
+    ----------
+    system : System
+    nodes : ndarray of int, shape (n,)
+        Each once, and with a rotation.
+    dof : int
+        Direction on the reference: 0 or 1.
+    value : ndarray, shape (n,)
+    """
+
+    follows = True
+
+    def __init__(self, system: System, nodes: Ints, dof: int, value: Floats) -> None:
+        self.system, self.nodes = system, nodes
+        # Along the axes of the nodes, as all nodal forces are given.
+        given = np.zeros(system.n_dofs)
+        np.add.at(given, system.dofs(nodes, dof), value)
+        self.force = system.by_node(given)[nodes, :2]
+
+    def set_mass(self, kind: str) -> None:
+        """See :class:`Distribution`."""
+
+    def unit(self) -> Floats:
+        """See :class:`Distribution`."""
+        return self._nodal(self.force)
+
+    def add(self, scale: float, u: Floats, to: LoadSum) -> None:
+        """See :class:`Distribution`."""
+        angle = self.system.by_node(to.middle(u))[self.nodes, 2]
+        cos, sin = np.cos(angle), np.sin(angle)
+        x, y = scale * self.force.T
+        turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+        to.force += self._nodal(turned)
+        start = self.system.start[self.nodes]
+        rows = np.concatenate([start, start + 1])
+        columns = np.concatenate([start + 2, start + 2])
+        to.entries.append((rows, columns, np.concatenate([-turned[:, 1], turned[:, 0]])))
+
+    def _nodal(self, force: Floats) -> Floats:
+        out = np.zeros((len(self.system.model.mesh.points), 3))
+        np.add.at(out[:, :2], self.nodes, force)
+        return self.system.from_nodes(out)
+
+
+__all__ = ["FollowingTraction", "TurningForce"]
