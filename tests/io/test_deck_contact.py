@@ -211,7 +211,8 @@ FAULTS = [
         "One, High",
         "no outer element edge",
     ),
-    ("*CONTACT\n", "*CONTACT", "not supported"),
+    ("*CONTACT\n", "*CONTACT", "no *CONTACT INCLUSIONS"),
+    ("*CONTACT EXCLUSIONS\n", "*CONTACT", "not supported"),
     (INTERACTION + "*FRICTION, ROUGH\n", "ROUGH", "ROUGH"),
 ]
 

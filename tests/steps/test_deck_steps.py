@@ -115,8 +115,8 @@ def test_forces_that_would_follow(tmp_path: Path) -> None:
     text = DECK.replace("*CLOAD", "*CLOAD, FOLLOWER")
     assert any("has no rotation" in d.message for d in faults(tmp_path, text))
     assert read(tmp_path, text.replace(", NLGEOM", "")).steps[0].loads[0].value == -5.0
-    turning = read(tmp_path, text, element_map={"CPS4": "Q4D"}).steps[0].loads[0]
-    assert turning.follower
+    load = read(tmp_path, text, element_map={"CPS4": "Q4D"}).steps[0].loads[0]
+    assert load.follower
 
 
 def test_application_and_parameters_of_dynamics(tmp_path: Path) -> None:

@@ -285,6 +285,8 @@ class ContactPair(Brief):
         the touching state without strain, or pushed out over the first step.
     adjust : float
         With ``start="adjust"``: gaps up to this at the start [length] are taken as touching too.
+    adjust_nodes : str or array_like of int, optional
+        With ``start="adjust"``: these slave nodes only, whatever their gap.
     smooth : bool
         Take the edges of a master that is no rigid curve as a curve without kinks; corners sharper
         than 50 degrees stay.
@@ -308,6 +310,7 @@ class ContactPair(Brief):
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
     adjust: float = field(default=0.0, kw_only=True)
+    adjust_nodes: str | Ints | None = field(default=None, kw_only=True)
     smooth: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:

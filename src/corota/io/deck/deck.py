@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from corota.io.deck.amplitudes import Curve
     from corota.io.deck.cards.attachments import AttachedDraft
-    from corota.io.deck.cards.contact import InteractionDraft, PairDraft
+    from corota.io.deck.cards.contact import GeneralDraft, InteractionDraft, PairDraft
     from corota.io.deck.cards.lines import LineDraft
     from corota.io.deck.cards.tie import TieDraft
     from corota.mesh.data import Floats, Ints
@@ -292,6 +292,7 @@ class Deck:
     rotation_nodes: dict[str, str] = field(default_factory=dict)
     pairs: list[PairDraft] = field(default_factory=list)
     interactions: dict[str, InteractionDraft] = field(default_factory=dict)
+    general: GeneralDraft | None = None
     carriers: dict[str, tuple[Card, Draft]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)

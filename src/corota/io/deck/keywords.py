@@ -187,6 +187,11 @@ KEYWORDS: dict[str, Keyword] = {
         "MECHANICALCONSTRAINT GEOMETRICCORRECTION MINIMUMDISTANCE",
         place="model",
     ),
+    "CONTACT": Keyword(contact.general, "", "OP", place="model"),
+    "CONTACTINCLUSIONS": Keyword(contact.inclusions, "ALLEXTERIOR", place="model"),
+    "CONTACTPROPERTYASSIGNMENT": Keyword(contact.property_assignment, place="model"),
+    "CONTACTFORMULATION": Keyword(contact.formulation, "TYPE", place="model"),
+    "SURFACEPROPERTYASSIGNMENT": Keyword(contact.formulation, "PROPERTY", place="model"),
     "SURFACEINTERACTION": Keyword(
         contact.surface_interaction,
         "NAME",
@@ -311,10 +316,7 @@ _LINE = "only planar solids, trusses, beams and springs are part of this version
 UNSUPPORTED: dict[str, str] = {
     **dict.fromkeys(
         (
-            "CONTACT",
-            "CONTACTINCLUSIONS",
             "CONTACTEXCLUSIONS",
-            "CONTACTPROPERTYASSIGNMENT",
             "CONTACTINITIALIZATIONDATA",
             "CONTACTINITIALIZATIONASSIGNMENT",
             "GAP",

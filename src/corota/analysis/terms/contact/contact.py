@@ -200,6 +200,10 @@ class ContactTerm:
             pair.overlap = np.minimum(gap, 0.0)
             pair.base = pair.core.offset
             pair.area = np.where(seen, area, pair.full)
+            adjusted = item.start == "adjust"
+            moved = np.full(len(gap), adjusted)
+            if adjusted and item.adjust_nodes is not None:
+                moved = np.isin(pair.nodes, mesh.node_indices(item.adjust_nodes))
             deepest = int(np.argmin(gap))
             longest = float(pair.slave.length.max())
             if gap[deepest] < -1e-9 * longest:
@@ -208,15 +212,18 @@ class ContactTerm:
                     "would spread it over the step, or take it as no strain)",
                     "adjust": "counts as touching, without strain",
                     "ramp": "is pushed out over the first step",
-                }[item.start]
+                }["keep" if adjusted and not moved[deepest] else item.start]
                 label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
                 self.notes.append(
                     f"contact pair {pair.name!r}: the surfaces overlap by up to "
                     f"{-gap[deepest]:.4g} at node {label} at the start; this {how}"
                 )
-            if item.start == "adjust":
-                near = np.where(seen & (gap <= item.adjust), np.maximum(gap, 0.0), 0.0)
-                pair.core.offset = pair.core.offset + pair.overlap + near
+            if adjusted:
+                within = seen & (gap <= item.adjust)
+                if item.adjust_nodes is not None:
+                    within = seen & moved
+                near = np.where(within, np.maximum(gap, 0.0), 0.0)
+                pair.core.offset = pair.core.offset + np.where(moved, pair.overlap, 0.0) + near
 
     def _start_tie(self, pair: Pair, x: Floats) -> None:
         pair.core.search(x)

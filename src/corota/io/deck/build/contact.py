@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck import numerals
+from corota.io.deck.build.general_contact import add_general
 from corota.io.deck.build.mesh import placed, views_in
 from corota.io.deck.build.ties import single_node
 from corota.io.deck.cards.contact import interaction_of
@@ -21,9 +22,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
     from corota.io.deck.cards.contact import InteractionDraft, PairDraft
-    from corota.io.deck.deck import Deck, Draft, Surface
+    from corota.io.deck.deck import Deck, Draft, Surface, SurfaceRow
     from corota.io.deck.lexer import Card
     from corota.mesh.data import Floats, Ints, Mesh
     from corota.model.model import Model
@@ -36,6 +38,7 @@ def build_contacts(
 ) -> None:
     """Add the deck's contact pairs and ties to the model; reference nodes get a rotation."""
     builder = _Builder(deck, model, sets, find, rotating)
+    add_general(deck, model, sets)
     for pair in deck.pairs:
         try:
             builder.add(pair)
@@ -108,9 +111,26 @@ class _Builder:
                 name=name,
                 where=pair.row.where,
                 adjust=pair.adjust,
+                adjust_nodes=self._adjusted(pair),
                 smooth=smooth,
             )
         )
+
+    def _adjusted(self, pair: PairDraft) -> str | Ints | None:
+        """Nodes of ``ADJUST=set``."""
+        if not pair.adjust_set:
+            return None
+        view = views_in(self.sets.views, self.deck, pair.card.scope)[0]
+        name = self.sets.mesh_name(self.model.mesh.node_sets, view, pair.adjust_set)
+        if not name:
+            self.deck.error(
+                pair.card,
+                pair.card.at("ADJUST"),
+                f"no node set named {numerals.shown(pair.adjust_set)}",
+                hint=nearest(pair.adjust_set, self.model.mesh.node_sets)
+                or "or give the distance up to which gaps are closed without strain",
+            )
+        return name or None
 
     def _law(self, draft: InteractionDraft) -> PressureLaw | None:
         if draft.law in ("HARD", "TIED") or not draft.pressure:
@@ -142,6 +162,9 @@ class _Builder:
         view, surface = found
         if key(surface.card.value("TYPE")) == "SEGMENTS":
             return self._curve(full, surface)
+        sides = [] if surface.nodes else self.sets.rigid_sides(view, surface)
+        if sides:
+            return self._rigid_sides(full, view, surface, sides)
         full = view.prefix + surface.name
         if surface.nodes:
             edges = _edges_of_nodes(self.model.mesh, self.model.mesh.node_sets[full])
@@ -190,6 +213,63 @@ class _Builder:
         curve.name = view.prefix + surface.name
         return curve
 
+    def _rigid_sides(
+        self, name: str, view: View, surface: Surface, sides: list[tuple[SurfaceRow, Ints]]
+    ) -> RigidCurve | None:
+        """Sides of a rigid body (R2D2) as a curve, carried by its reference node."""
+        if name in self.curves:
+            return self.curves[name]
+        ways, lines = [], []
+        for row, own in sides:
+            if row.face not in ("SPOS", "SNEG"):
+                self.deck.error(
+                    surface.card,
+                    row.where,
+                    "sides of a rigid body need SPOS (the surface is on the left of the way from "
+                    "the first to the second node) or SNEG",
+                    text=row.text,
+                )
+                return None
+            lines += own.tolist()
+            ends = np.array([self.sets.line_nodes[i][:2] for i in own])
+            ways.append(ends if row.face == "SPOS" else ends[:, ::-1])
+        chain = _chain(np.concatenate(ways))
+        if chain is None:
+            self.deck.error(
+                surface.card,
+                surface.card.where,
+                f"the sides of {surface.name} do not follow each other in one line",
+                hint="give each line of sides a surface of its own, all in one direction",
+            )
+            return None
+        reference = self._body_of(set(lines))
+        if reference is None:
+            self.deck.error(
+                surface.card,
+                surface.card.where,
+                f"the sides of {surface.name} belong to no *RIGID BODY, ELSET=",
+            )
+            return None
+        points = self.model.mesh.points[chain]
+        rows = np.zeros((len(chain) - 1, 7))
+        rows[:, :2], rows[:, 2:4] = points[:-1], points[1:]
+        self.rotating[reference] = True
+        self.curves[name] = curve = RigidCurve(rows, reference)
+        curve.name = view.prefix + surface.name
+        return curve
+
+    def _body_of(self, lines: set[int]) -> int | None:
+        """Reference node of the rigid body that holds these lines."""
+        for tie in self.deck.ties:
+            if tie.kind != "kinematic" or not tie.elset:
+                continue
+            for view in views_in(self.sets.views, self.deck, tie.card.scope):
+                full = self.sets.full_name(self.sets.elsets, view, tie.elset)
+                found = self.sets.element_set(full) if full else None
+                if found is not None and lines <= set(found.lines.tolist()):
+                    return single_node(self.deck, self.find, tie.terms[0], self.model)
+        return None
+
     def unused(self) -> None:
         """Tell of rigid bodies of profiles that do not exist, and of what nothing uses."""
         for name, (card, _) in self.carriers.items():
@@ -218,6 +298,20 @@ def _made(rows: Floats, fillet: float, reference: int | None) -> RigidCurve:
     closed = bool(np.array_equal(points[0], points[-1]))
     points = points[:-1] if closed else points
     return RigidCurve.polyline(points, closed=closed, fillet=fillet, reference=reference)
+
+
+def _chain(ways: Ints) -> list[int] | None:
+    """Nodes of directed sides in their order; ``None`` where they are not one line."""
+    after = dict(ways.tolist())
+    starts = set(after) - set(after.values())
+    if len(after) != len(ways) or len(set(after.values())) != len(ways) or len(starts) > 1:
+        return None
+    chain = [starts.pop() if starts else int(ways[0, 0])]
+    for _ in ways:
+        if chain[-1] not in after:
+            return None
+        chain.append(after[chain[-1]])
+    return chain
 
 
 def _edges_of_nodes(mesh: Mesh, nodes: Ints) -> Ints:

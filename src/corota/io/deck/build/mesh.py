@@ -115,6 +115,7 @@ class MeshBuilder:
         self.turned = np.zeros(0, bool)
         self.side: Ints = np.zeros(0, np.int64)
         self.line_nodes: list[Ints] = []
+        self.line_types: list[str] = []
         self.twin: Ints = np.zeros(0, np.int64)
         self._halves: list[tuple[View, Ints, Ints]] = []
 
@@ -252,6 +253,7 @@ class MeshBuilder:
                         line_labels.append(int(block.labels[at]))
                         line_rows.append(len(self.line_nodes))
                         self.line_nodes.append(nodes[at])
+                        self.line_types.append(block.type)
                     continue
                 kind = ELEMENTS[block.type].kind
                 if kind in ("quad4", "quad8"):

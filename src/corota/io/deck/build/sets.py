@@ -50,6 +50,7 @@ class Sets:
     def __init__(self, builder: MeshBuilder, mesh: Mesh) -> None:
         self.deck, self.mesh, self.views = builder.deck, mesh, builder.views
         self.turned, self.line_nodes = builder.turned, builder.line_nodes
+        self.line_types = builder.line_types
         self.side = builder.side
         self.twin = builder.twin
         self.nsets: dict[str, tuple[View, NamedSet]] = {}
@@ -290,13 +291,27 @@ class Sets:
             if found is None:
                 continue
             if len(found.lines):
-                parts.append(self._edges_of_lines(found.lines))
+                rigid = np.array([self.line_types[i] == "R2D2" for i in found.lines])
+                parts.append(self._edges_of_lines(found.lines[~rigid]))
+                if rigid.all() and not len(found.cells):
+                    continue  # sides of a rigid body: contact takes them as a curve
             edges = self._row_edges(surface, row, found.cells)
             if edges is not None:
                 parts.append(edges)
         edges = np.concatenate(parts)
         _, first = np.unique(edges, axis=0, return_index=True)
         return edges[np.sort(first)]
+
+    def rigid_sides(self, view: View, surface: Surface) -> list[tuple[SurfaceRow, Ints]]:
+        """Rows of a surface that name sides of rigid bodies (R2D2), with their lines."""
+        found = []
+        for row in surface.rows:
+            elements = self.elements(view, row.target, row.where, surface.card, row.text)
+            if elements is not None and len(elements.lines) and not len(elements.cells):
+                lines = [i for i in elements.lines.tolist() if self.line_types[i] == "R2D2"]
+                if len(lines) == len(elements.lines):
+                    found.append((row, elements.lines))
+        return found
 
     def _row_edges(self, surface: Surface, row: SurfaceRow, cells: Ints) -> Ints | None:
         if not row.face:

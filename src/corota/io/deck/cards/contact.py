@@ -60,6 +60,7 @@ class PairDraft:
     method: str = "mortar"
     start: str = "keep"
     adjust: float = 0.0
+    adjust_set: str = ""
     clearance: float | None = None
     stabilise: bool = False
     smooth: bool = False
@@ -68,6 +69,17 @@ class PairDraft:
     def joins(self, slave: str, master: str) -> bool:
         """Whether these are its surfaces."""
         return (key(self.slave), key(self.master)) == (key(slave), key(master))
+
+
+@dataclass(slots=True)
+class GeneralDraft:
+    """General contact: whether all outer edges take part, or the pairs of its lines."""
+
+    card: Card
+    every: bool = False
+    pairs: list[tuple[Card, Row]] = field(default_factory=list)
+    interaction: str = ""
+    where: Location | None = None
 
 
 def profile(deck: Deck, card: Card, found: Surface) -> None:
@@ -149,26 +161,86 @@ def contact_pair(deck: Deck, card: Card) -> None:
     if card.has("SMALLSLIDING"):
         deck.note(f"{card.where}: SMALL SLIDING: sliding is always finite here")
     smooth = deck.parameter_number(card, "SMOOTH", 0.0, 0.0) > 0.0
-    start, adjust = "keep", 0.0
+    start, adjust, nodes = "keep", 0.0, ""
     if card.has("ADJUST"):
+        start = "adjust"
         try:
-            start, adjust = "adjust", numerals.real(card.value("ADJUST"))
+            adjust = numerals.real(card.value("ADJUST"))
         except ValueError:
-            deck.error(
-                card,
-                card.at("ADJUST"),
-                f"ADJUST={card.value('ADJUST')}: a node set cannot be adjusted",
-                hint="give the distance up to which gaps are closed without strain",
-            )
-            return
+            nodes = deck.required(card, "ADJUST")
         if adjust < 0.0:
             deck.error(card, card.at("ADJUST"), "ADJUST must be >= 0")
             return
     for row in _pair_rows(deck, card):
         pair = PairDraft(card, row, row.get(0), row.get(1) or row.get(0))
         pair.interaction, pair.method = interaction, method
-        pair.start, pair.adjust, pair.smooth = start, adjust, smooth
+        pair.start, pair.adjust, pair.adjust_set, pair.smooth = start, adjust, nodes, smooth
         deck.pairs.append(pair)
+
+
+def general(deck: Deck, card: Card) -> None:
+    """``*CONTACT``: opens general contact; its pairs are those of the cards below it."""
+    deck.no_rows(card)
+    if deck.general is not None:
+        deck.error(card, card.where, f"general contact is given in {deck.general.card.where}")
+        return
+    deck.general = GeneralDraft(card)
+
+
+def inclusions(deck: Deck, card: Card) -> None:
+    """``*CONTACT INCLUSIONS[, ALL EXTERIOR]``: what touches; a blank stands for all surfaces."""
+    into = _general(deck, card)
+    if into is None:
+        return
+    rows = list(card.rows())
+    if card.has("ALLEXTERIOR"):
+        deck.no_rows(card)
+        into.every = True
+    elif not rows:
+        deck.error(card, card.where, "ALL EXTERIOR, or a line with two surfaces, is missing")
+    for row in rows:
+        deck.extra_fields(card, row, 2)
+        if not row.get(0) and not row.get(1):
+            into.every = True
+        elif not row.get(0):
+            deck.row_error(
+                card,
+                row,
+                0,
+                "a surface against all others cannot be told from the rest",
+                "name both surfaces of each pair",
+            )
+        else:
+            into.pairs.append((card, row))
+
+
+def property_assignment(deck: Deck, card: Card) -> None:
+    """``*CONTACT PROPERTY ASSIGNMENT``: two blanks for all surfaces, interaction."""
+    into = _general(deck, card)
+    for row in card.rows():
+        deck.extra_fields(card, row, 3)
+        if row.get(0) or row.get(1):
+            deck.row_error(
+                card,
+                row,
+                0,
+                "one interaction holds for all of general contact",
+                "give *CONTACT PAIR with an INTERACTION of its own for single pairs",
+            )
+        elif into is not None and row.get(2):
+            into.interaction, into.where = row.get(2), row.at(2)
+
+
+def formulation(deck: Deck, card: Card) -> None:
+    """``*CONTACT FORMULATION``, ``*SURFACE PROPERTY ASSIGNMENT``: control of general contact."""
+    if _general(deck, card) is not None:
+        deck.note(f"{card.where}: {card.spelled} has no effect: contact is mortar, finite sliding")
+
+
+def _general(deck: Deck, card: Card) -> GeneralDraft | None:
+    if deck.general is None:
+        deck.error(card, card.where, "the card belongs under *CONTACT, and none stands before it")
+    return deck.general
 
 
 def tie(deck: Deck, card: Card) -> None:
@@ -345,7 +417,7 @@ def interaction_of(deck: Deck, pair: PairDraft) -> InteractionDraft | None:
         names = [i.name for i in deck.interactions.values()]
         deck.error(
             pair.card,
-            pair.card.at("INTERACTION"),
+            pair.card.at("INTERACTION") if pair.card.has("INTERACTION") else pair.row.where,
             f"no *SURFACE INTERACTION named {numerals.shown(pair.interaction)}",
             hint=nearest(pair.interaction, names),
         )

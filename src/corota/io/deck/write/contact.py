@@ -61,6 +61,13 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             known.append(master)
             yield _profile(model, pair.master, master)
         adjust = f", ADJUST={float(pair.adjust)!r}" if pair.start == "adjust" else ""
+        if adjust and pair.adjust_nodes is not None:
+            if not isinstance(pair.adjust_nodes, str):
+                raise UnsupportedError(
+                    f"contact pair {pair.name!r}: give the adjusted nodes a name in "
+                    "mesh.node_sets to write them to a deck"
+                )
+            adjust = f", ADJUST={_word(pair.adjust_nodes)}"
         yield f"*CONTACT PAIR, INTERACTION=INTERACTION{number}, TYPE={_TYPES[pair.method]}"
         smooth = ", SMOOTH=0.5" if pair.smooth else ""
         yield f"{adjust}{smooth}\n{slave}, {master}\n"
