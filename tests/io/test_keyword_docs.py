@@ -14,7 +14,7 @@ from corota.io.deck.keywords import IGNORED, KEYWORDS, UNSUPPORTED
 from corota.io.deck.lexer import key
 
 PAGE = (Path(__file__).parents[2] / "docs" / "keywords.md").read_text(encoding="utf-8")
-NAMED = {key(name) for name in re.findall(r"`\*([A-Z][A-Z ]*)", PAGE)}
+NAMED = {key(name) for name in re.findall(r"`\*([A-Z][A-Z -]*)", PAGE)}
 CODE = {word for text in re.findall(r"`([^`]*)`", PAGE) for word in re.split(r"[ ,]+", text)}
 
 

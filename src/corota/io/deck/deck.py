@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from corota.io.deck.cards.attachments import AttachedDraft
     from corota.io.deck.cards.contact import GeneralDraft, InteractionDraft, PairDraft
     from corota.io.deck.cards.lines import LineDraft
+    from corota.io.deck.cards.pretension import PretensionDraft
     from corota.io.deck.cards.tie import TieDraft
     from corota.mesh.data import Floats, Ints
     from corota.model.loads import Amplitude, LoadKind
@@ -293,6 +294,7 @@ class Deck:
     pairs: list[PairDraft] = field(default_factory=list)
     interactions: dict[str, InteractionDraft] = field(default_factory=dict)
     general: GeneralDraft | None = None
+    pretensions: list[PretensionDraft] = field(default_factory=list)
     carriers: dict[str, tuple[Card, Draft]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)

@@ -17,6 +17,7 @@ from corota.io.deck.cards import mesh as mesh
 from corota.io.deck.cards import output as output
 from corota.io.deck.cards import path as path
 from corota.io.deck.cards import plastic as plastic
+from corota.io.deck.cards import pretension as pretension
 from corota.io.deck.cards import step as step
 from corota.io.deck.cards import thermal as thermal
 from corota.io.deck.cards import tie as tie
@@ -179,6 +180,9 @@ KEYWORDS: dict[str, Keyword] = {
     "COUPLING": Keyword(tie.coupling, "REFNODE SURFACE", "CONSTRAINTNAME", place="model"),
     "KINEMATIC": Keyword(tie.kinematic, place="model"),
     "DISTRIBUTING": Keyword(tie.distributing, ignored="COUPLING", place="model"),
+    "PRE-TENSIONSECTION": Keyword(
+        pretension.pretension, "SURFACE ELEMENT NODE", "NAME", place="model"
+    ),
     "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
     "CONTACTPAIR": Keyword(
         contact.contact_pair,
@@ -407,7 +411,6 @@ UNSUPPORTED: dict[str, str] = {
     "CHANGEMATERIAL": "materials cannot change between steps",
     "DISTRIBUTION": "values given by element are not part of this version",
     "NORMAL": "planar elements have no normals of their own",
-    "PRE-TENSIONSECTION": "prescribe the force or the displacement of the bolt's end instead",
     "CONNECTORSECTION": "use *MPC, *EQUATION or *COUPLING",
     "COHESIVESECTION": "cohesive elements are not part of this version; join the parts by *TIE",
     "COHESIVEBEHAVIOR": "surfaces that stick and part are not part of this version; use *TIE",

@@ -15,6 +15,7 @@ from corota.io.deck.build.base_motion import base_motion
 from corota.io.deck.build.contact import build_contacts
 from corota.io.deck.build.materials import build_material, settle_temperature, share_damping
 from corota.io.deck.build.mesh import MeshBuilder, View, view_of, views_in
+from corota.io.deck.build.pretension import PretensionBuilder
 from corota.io.deck.build.sets import Elements, Sets
 from corota.io.deck.build.ties import build_tie
 from corota.io.deck.cards.attachments import build_attachments
@@ -62,6 +63,9 @@ class ModelBuilder:
     def build(self) -> Model:
         """Everything."""
         self.sets.fill()
+        pretension = PretensionBuilder(self.deck, self.model, self.sets)
+        pretension.cut()
+        self.rotating = np.zeros(self.mesh.n_nodes, bool)
         share_damping(self.deck)
         until = sum(step.times[1] for step in self.deck.steps)
         for name, curve in self.deck.curves.items():
@@ -79,7 +83,8 @@ class ModelBuilder:
         self.at = self.meshes.views[0]
         build_contacts(deck, model, self.sets, self._nodes, self.rotating)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
-        model.supports = self._supports(deck.supports)
+        pretension.join(self._nodes, self.rotating)
+        model.supports += self._supports(deck.supports)
         build_attachments(deck, model, self._nodes)
         for item in deck.velocities:
             nodes = self._nodes(item)

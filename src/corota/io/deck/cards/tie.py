@@ -90,10 +90,11 @@ def _reference(deck: Deck, card: Card, name: str) -> Draft | None:
     text = deck.required(card, name)
     if not text:
         return None
-    return Draft("node", card, _parameter_row(card, name), text, (0.0,))
+    return Draft("node", card, parameter_row(card, name), text, (0.0,))
 
 
-def _parameter_row(card: Card, name: str) -> Row:
+def parameter_row(card: Card, name: str) -> Row:
+    """Row of one field that stands for the value of a parameter."""
     from corota.io.deck.lexer import Row
 
     return Row(card.at(name), card.text, [card.value(name)], [card.at(name).column])
@@ -123,7 +124,7 @@ def rigid_body(deck: Deck, card: Card) -> None:
         if parameter == "ELSET":
             tie.elset = name
         else:
-            tie.target = Draft("set", card, _parameter_row(card, parameter), name, (0.0,))
+            tie.target = Draft("set", card, parameter_row(card, parameter), name, (0.0,))
         if parameter == "PINNSET":
             tie.dofs = (0, 1)
         deck.ties.append(tie)
@@ -245,7 +246,7 @@ def transform(deck: Deck, card: Card) -> None:
         return
     ax, ay, az, bx, by, bz = (float(v or 0.0) for v in numbers)
     tie = TieDraft("axes", card, card.where, ready=True)
-    tie.target = Draft("set", card, _parameter_row(card, "NSET"), name, (0.0,))
+    tie.target = Draft("set", card, parameter_row(card, "NSET"), name, (0.0,))
     if type_ == "C":
         if math.hypot(bx - ax, by - ay) > 1e-9 * abs(bz - az) or bz <= az:
             deck.row_error(
