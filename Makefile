@@ -16,6 +16,8 @@ WITH_PYTHON := --features python,pyo3/extension-module
 
 export VIRTUAL_ENV := $(abspath $(VENV))
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# Commands that tests start would compile the whole package each time.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-rust test-python test-view lint clippy format bench docs wheel try-wheel \
