@@ -36,7 +36,7 @@ def flexure(thickness: float, length: float, E: float) -> tuple[ct.Model, ct.Sta
     model.mesh.node_sets["tip"] = model.mesh.node_indices("right")
     model.section(element="Q4I", material=ct.Elastic(E=E, nu=0.3))
     model.fix("hub")
-    model.fix("tip", y=0.1 * length)
+    model.fix("tip", x=None, y=0.1 * length)
     return model, ct.Static(increments=10)
 
 

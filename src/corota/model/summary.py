@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 from corota.model.constraints import Coupling
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from corota.model.loads import Fixed
     from corota.model.model import Model
 
 
@@ -38,7 +41,7 @@ def model_lines(model: Model) -> list[str]:
             f"  {where or 'all'}: {section.element}, plane {section.plane}, {material}, "
             f"thickness {section.thickness:g}"
         )
-    lines += material_lines(model) + joint_lines(model)
+    lines += material_lines(model) + joint_lines(model) + support_lines(model, model.supports)
     for number, step in enumerate(model.steps, 1):
         geometry = "nonlinear" if step.nlgeom else "linear"
         lines.append(
@@ -46,6 +49,7 @@ def model_lines(model: Model) -> list[str]:
             f"{len(step.supports) + len(model.supports)} supports, "
             f"{len(step.loads) + len(model.loads)} loads"
         )
+        lines += support_lines(model, step.supports)
     if not model.steps and (model.supports or model.loads):
         lines.append(f"{len(model.supports)} supports, {len(model.loads)} loads, no step yet")
     return lines
@@ -100,6 +104,22 @@ def joint_lines(model: Model) -> list[str]:
             counts[name] = counts.get(name, 0) + 1
     lines += [f"constraints: {count} {name}" for name, count in counts.items()]
     return lines
+
+
+def support_lines(model: Model, supports: Iterable[Fixed]) -> list[str]:
+    """Directions that each support holds or moves, up to ten places."""
+    found: dict[str, list[str]] = {}
+    for support in supports:
+        where = support.nodes
+        if not isinstance(where, str):
+            nodes = model.mesh.node_indices(where)
+            label = f"node {model.mesh.node_labels[nodes[0]]}" if len(nodes) else "no node"
+            where = label if len(nodes) == 1 else f"{len(nodes)} nodes from {label}"
+        amplitude = f" by {support.amplitude}" if support.amplitude else ""
+        direction = ("x", "y", "rotation")[support.dof]
+        found.setdefault(where, []).append(f"{direction} {support.value:g}{amplitude}")
+    lines = [f"  support {where}: {', '.join(what)}" for where, what in list(found.items())[:10]]
+    return lines + ([f"  and {len(found) - 10} more supports"] if len(found) > 10 else [])
 
 
 def _named(where: object) -> str:
