@@ -64,7 +64,7 @@ def clip() -> Model:
             lambda t: (20.0 * t, float(np.interp(20.0 * t, xs, ys))),
             lambda t: (0.0, 2.0 * t),
         ],
-        nx=100,
+        nx=80,
         ny=4,
     )
     mesh.edge_sets["hook"] = np.vstack([mesh.edge_sets["top"], mesh.edge_sets["right"]])
@@ -73,7 +73,8 @@ def clip() -> Model:
     model.section(element="Q4I", material=polymer, thickness=4.0)
     corners = [(20.5, 2.2), (20.5, 5.0), (23.0, 5.0), (23.0, 2.2)]
     catch = RigidCurve.polyline(corners, closed=True, fillet=1.0)
-    model.contact("hook", catch, friction=0.2, name="catch")
+    # The fillet is as small as a few edges of the hook: see "Rounds of the size of an element".
+    model.contact("hook", catch, method="node_to_segment", friction=0.2, name="catch")
     push = Static(first_increment=0.05)
     push.fix("left", x=10.0)
     model.steps = [push]
