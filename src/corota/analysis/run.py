@@ -153,6 +153,7 @@ class Analysis:
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
         self.steps, notes = keep_nlgeom([steps] if isinstance(steps, Step) else steps)
+        self.results.steps = self.steps
         for note in notes:
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)

@@ -165,6 +165,18 @@ def make_parser() -> Parser:
     )
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
 
+    report = command("report", "Write a page for a browser from the files of a job.")
+    report.add_argument("job", help="stem of the job's files, or any of them")
+    report.add_argument("-o", "--output", metavar="FILE", help="page (.html); else JOB.html")
+    report.add_argument("--title", default="", help="heading; else the name of the job")
+    report.add_argument(
+        "--limit",
+        type=float,
+        default=9.5,
+        metavar="MB",
+        help="size of the page; what does not fit is thinned, with a note (9.5)",
+    )
+
     info = command("info", "Describe a deck, a mesh or a result file.")
     info.add_argument("file")
     _reading(info)

@@ -256,7 +256,9 @@ class JobFiles(BaseObserver):
                 from corota.io.vtk.vtkhdf import VtkhdfWriter
 
                 state = self._state_of(ending)
-                self._big.append(VtkhdfWriter(path, self.model, self._points, self.run, state))
+                self._big.append(
+                    VtkhdfWriter(path, self.model, self._points, self.run, state, self.steps)
+                )
 
     def _state_of(self, ending: str) -> dict[str, Any] | None:
         """Where a checkpoint left a result file; None for a new one."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from corota.errors import FileError, InputError
 from corota.io.contacts import contacts_of_results
+from corota.io.description import description_of_results
 from corota.io.vtk.vtkhdf import VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
@@ -141,6 +142,16 @@ class FileFrames(Sequence[Frame]):
             _whole(len(values) == self._count, f"{name} of {len(values)} frames")
             return values
 
+    def point_names(self) -> list[str]:
+        """Names of the arrays at the nodes."""
+        return list(self._file["VTKHDF/PointData"])
+
+    def head(self, number: int) -> dict[str, float]:
+        """Scalars of a frame, its step, increment and time among them; without its arrays."""
+        with _damage(self._file.filename):
+            group = self._file["corota/frames"]
+            return {name: float(group[name][number]) for name in group}
+
     def at_points(self, name: str, number: int) -> Floats:
         """An array of ``PointData`` in a frame."""
         with _damage(self._file.filename):
@@ -230,6 +241,15 @@ class FileResults(Results):
     ----------
     file : h5py.File
         Closed by :meth:`close` or at the end of a ``with`` block.
+
+    Attributes
+    ----------
+    description : dict
+        What :func:`corota.model.description.describe` said of the model; empty in old files.
+    attributes : dict of str to str
+        ``version`` of the program, ``job`` and ``run``.
+    path : str
+        Name of the file.
     """
 
     def __init__(self, file: Any) -> None:
@@ -239,6 +259,10 @@ class FileResults(Results):
         model.unit_system = Units.of(*filter(None, str(own.attrs.get("units", "")).split(", ")))
         info = json.loads(own.attrs["info"]) if "info" in own.attrs else {}
         super().__init__(model, info=info)
+        self.description = description_of_results(own)
+        names = ("version", "job", "run")
+        self.attributes = {n: str(own.attrs[n]) for n in names if n in own.attrs}
+        self.path = str(file.filename)
         self._file = file
         self._section = file["VTKHDF/CellData/section"][:]
         self.frames = FileFrames(file)  # type: ignore[assignment]
@@ -276,6 +300,10 @@ class FileResults(Results):
         source, column = self._source(name)
         values = self.frames.at_points(source, index % len(self.frames))
         return values if column < 0 else values[:, column]
+
+    def scalar_names(self) -> list[str]:
+        """Names of the scalars of the frames."""
+        return list(self._file["corota/frames"])
 
     def history(self, name: str, at: Any = None, combine: Any = "auto") -> Any:
         """One number for each frame; scalars are read without the frames."""

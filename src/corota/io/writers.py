@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def _vtkhdf(results: Results, path: Path) -> None:
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
-    writer = VtkhdfWriter(path, results.model)
+    writer = VtkhdfWriter(path, results.model, steps=results.steps)
     for frame in results.frames:
         writer.add(frame)
     writer.close(results.info)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.paths import CriticalPoint, Modes
+    from corota.model.steps import Step
     from corota.results.history import History
     from corota.results.probe import Line, Place
     from corota.results.variables import Averaging
@@ -143,6 +144,8 @@ class Results(Brief):
     last_iterate : Frame or None
         Where the last attempt ended, if the analysis did not converge: no equilibrium, to look
         at. Its ``RF`` holds what is out of balance.
+    steps : list of Step
+        Those that were run.
     """
 
     model: Model
@@ -153,6 +156,7 @@ class Results(Brief):
     critical_points: list[CriticalPoint] = field(default_factory=list)
     modes: list[Modes] = field(default_factory=list)
     last_iterate: Frame | None = None
+    steps: list[Step] = field(default_factory=list)
 
     def add(self, frame: Frame) -> None:
         """Take a frame; with ``keep="last"`` it replaces the one before."""
@@ -406,6 +410,25 @@ class Results(Brief):
         from corota.io.writers import write
 
         return write(self, path)
+
+    def report(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write a page to look at the results in a browser; see :func:`corota.report.write_report`.
+
+        Parameters
+        ----------
+        path : path-like
+            ``.html``; one file that needs no network.
+        **options
+            Those of :func:`corota.report.write_report`.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        from corota.report import write_report
+
+        return write_report(self, path, **options)
 
     def at(
         self,

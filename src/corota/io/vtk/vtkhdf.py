@@ -14,16 +14,19 @@ import numpy as np
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
 from corota.io.contacts import store_contacts
+from corota.io.description import store_description
 from corota.io.finite import check_frame
 from corota.results import variables as vf
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from corota.mesh import Mesh
     from corota.model.model import Model
+    from corota.model.steps import Step
     from corota.results.results import Frame, PointFields
 
     Floats = NDArray[np.float64]
@@ -151,6 +154,8 @@ class VtkhdfWriter:
         Name of the run, an attribute of the group ``corota``.
     resume : dict, optional
         Go on with the file that is there from such a :attr:`state`; what is behind is dropped.
+    steps : sequence of Step, optional
+        Those that are run, for the description of the model; the model's own by default.
     """
 
     def __init__(
@@ -160,9 +165,11 @@ class VtkhdfWriter:
         points: bool = True,
         run: str = "",
         resume: dict[str, Any] | None = None,
+        steps: Sequence[Step] = (),
     ) -> None:
         import h5py
 
+        self._steps = steps
         self.path, self.model, self.points, self.run = path, model, points, run
         self._twin = AtomicFile(path, keep=resume is not None)
         self._averaging = vf.Averaging(model.mesh)
@@ -282,6 +289,7 @@ class VtkhdfWriter:
             for name, members in getattr(mesh, f"{kind}_sets").items():
                 group[name.replace("/", "|")] = members
         store_contacts(own.create_group("contacts"), self.model)
+        store_description(own, self.model, self._steps)
         own.create_group("frames")
         own.create_group("points")
         group = root["CellData"]

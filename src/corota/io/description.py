@@ -1,0 +1,38 @@
+"""The description of the model in a result file: for reports, which see no deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.model.description import describe
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from corota.model.model import Model
+    from corota.model.steps import Step
+
+#: Name of the data set in the group of the program.
+NAME = "model"
+
+
+def store_description(group: Any, model: Model, steps: Sequence[Step]) -> None:
+    """Write :func:`corota.model.description.describe` as JSON into an HDF5 group."""
+    text = json.dumps(describe(model, steps), separators=(",", ":"))
+    data = np.frombuffer(text.encode(), np.uint8)
+    group.create_dataset(NAME, data=data, compression="gzip")
+
+
+def description_of_results(group: Any) -> dict[str, Any]:
+    """The description in a result file; empty in those of versions without."""
+    if NAME not in group:
+        return {}
+    found: dict[str, Any] = json.loads(bytes(group[NAME][:]))
+    return found
+
+
+__all__ = ["description_of_results", "store_description"]

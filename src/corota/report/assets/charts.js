@@ -1,0 +1,243 @@
+// The curves beside the player; a click moves the player, and the player moves their marks.
+
+import { Chart } from "./axes.js";
+import { el, fill } from "./dom.js";
+import { nearestFrame } from "./history.js";
+
+const ENERGY = /^(ALL[A-Z]+|ETOTAL)$/;
+const OLD_ENERGY = /(energy|dissipation|work)$/;
+const CONTACT = /: (force|friction) [xy]$/;
+
+const constant = (values) => values.every((v) => v === values[0] || Number.isNaN(v));
+const power = (v) => (Number.isInteger(v) ? `1e${v}`.replace("-", "−") : "");
+
+export class Charts {
+  constructor(place, scene, history, player) {
+    Object.assign(this, { place, scene, history, player });
+    this.charts = [];
+    this.pick = (row) => this.#show(history.column("step")[row], history.column("increment")[row]);
+    this.#path();
+    this.#course("Energies", this.#energies(), { y: "energy", y2: "balance error [%]" });
+    this.#course("Contact forces", this.#contact(), { y: "force" });
+    this.#convergence();
+    this.#course("Increments", this.#increments(), { y: "iterations", y2: "time increment" });
+    this.#probe();
+    scene.addEventListener("frame", () => this.mark());
+    scene.addEventListener("frames", () => this.mark());
+    this.mark();
+  }
+
+  #show(step, increment) {
+    const { scene, player } = this;
+    if (scene.kind !== "increment") scene.showKind("increment");
+    if (player && player.view !== "results") player.showView("results");
+    player?.pause();
+    const index = nearestFrame(scene.shown, step, increment);
+    if (index >= 0) scene.show(index);
+  }
+
+  #chart(options) {
+    const chart = new Chart(this.place, { step: (way) => this.player?.step(way), ...options });
+    this.charts.push(chart);
+    return chart;
+  }
+
+  /** Rows and marks of the current frame in all charts. */
+  mark() {
+    const { frame } = this.scene;
+    const row = frame?.kind === "increment" ? this.history.rowOf(frame.step, frame.increment) : null;
+    for (const chart of this.charts) chart.mark(chart.iterationRows ? chart.iterationRows(frame) : row);
+    if (this.probeChart) this.probeChart.mark(this.scene.index);
+  }
+
+  rebuild() {
+    for (const chart of this.charts) if (chart.plot) chart.build();
+    if (this.probeChart?.plot) this.probeChart.build();
+  }
+
+  /** New rows of a run at work. */
+  update() {
+    for (const again of this.again ?? []) again();
+    this.mark();
+  }
+
+  #live(action) {
+    (this.again ??= []).push(action);
+    action();
+  }
+
+  get #rows() {
+    return Array.from({ length: this.history.count }, (_, i) => i);
+  }
+
+  // Load against displacement, or any two columns.
+  #path() {
+    const { history } = this;
+    if (!history.count) return;
+    const names = history.names.filter((name) => !constant(history.column(name)));
+    const asked = names.filter((name) => /^U[12] /.test(name));
+    const x = asked.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
+    const forces = names.filter((name) => /^RF[12] (?!all)/.test(name));
+    const y = this.#driver(names, forces);
+    const chart = this.#chart({ title: "Load–displacement", pick: this.pick, height: 260 });
+    const selects = [["vertical", y], ["horizontal", x]].map(([label, value]) => {
+      const select = el("select", { "aria-label": `Quantity on the ${label} axis` });
+      fill(select, names.map((name) => [name, name]), value);
+      return select;
+    });
+    chart.head.append(el("span", { class: "choose" }, selects[0], " over ", selects[1]));
+    this.#live(() => {
+      const [vertical, horizontal] = selects.map((select) => select.value);
+      chart.show([{ label: vertical, x: history.column(horizontal), y: history.column(vertical), rows: this.#rows }], {
+        x: horizontal,
+        y: vertical,
+      });
+    });
+    for (const select of selects) select.addEventListener("change", () => this.again[0]());
+  }
+
+  /** What drives: the load factor where loads act, else the largest reaction of a support that moves. */
+  #driver(names, forces) {
+    const { description } = this.scene.model ?? {};
+    const loaded = description?.loads?.some((load) => load.kind !== "temperature");
+    if ((loaded || !forces.length) && names.includes("load factor")) return "load factor";
+    const moving = description?.supports?.filter((s) => s.value !== 0).map((s) => `RF${s.dof + 1} ${s.where}`) ?? [];
+    const most = (name) => Math.max(...this.history.column(name).map(Math.abs).filter(Number.isFinite));
+    const candidates = forces.filter((name) => moving.includes(name));
+    const sorted = (candidates.length ? candidates : forces).sort((a, b) => most(b) - most(a));
+    return sorted[0] ?? (names.includes("load factor") ? "load factor" : "time");
+  }
+
+  /** A chart of columns over time. */
+  #course(title, names, labels) {
+    const { history } = this;
+    if (!names.length || history.count < 2) return;
+    const chart = this.#chart({ title, pick: this.pick });
+    this.#live(() => {
+      const time = history.column("time");
+      chart.show(
+        names.map(({ name, label, second, factor = 1, dash }) => ({
+          label: label ?? name,
+          x: time,
+          y: history.column(name).map((v) => factor * v),
+          second,
+          dash,
+          rows: this.#rows,
+        })),
+        { x: "time", ...labels },
+      );
+    });
+  }
+
+  #energies() {
+    const { history } = this;
+    const has = (name) => !history.column(name).every((v) => v === 0 || Number.isNaN(v));
+    let names = history.names.filter((name) => ENERGY.test(name) && has(name));
+    if (!names.length) names = history.names.filter((name) => OLD_ENERGY.test(name) && has(name));
+    const found = names.map((name) => ({ name }));
+    if (found.length && history.column("energy balance error") && has("energy balance error")) {
+      found.push({ name: "energy balance error", label: "balance error [%]", second: true, factor: 100, dash: [5, 4] });
+    }
+    return found;
+  }
+
+  #contact() {
+    const { history } = this;
+    return history.names
+      .filter((name) => CONTACT.test(name) && !history.column(name).every((v) => v === 0 || Number.isNaN(v)))
+      .slice(0, 8)
+      .map((name) => ({ name }));
+  }
+
+  #increments() {
+    const { history } = this;
+    const found = [];
+    for (const [name, second] of [["iterations", false], ["attempts", false], ["dt", true]]) {
+      const values = history.column(name);
+      if (values && !(name === "attempts" && values.every((v) => v <= 1))) found.push({ name, second });
+    }
+    return found;
+  }
+
+  // Residuals of all iterations, each attempt a line of its own; cut-backs as marks.
+  #convergence() {
+    const { history } = this;
+    if (!history.iterationCount && !history.cutBacks.length) return;
+    const chart = this.#chart({
+      title: "Convergence",
+      ticks: power,
+      tell: (v) => (10 ** v).toExponential(1),
+      pick: (row) => this.#show(history.iteration("step")[row], history.iteration("increment")[row]),
+    });
+    this.#live(() => {
+      const [step, increment, attempt] = ["step", "increment", "attempt"].map((name) => history.iteration(name));
+      const [force, moment] = [history.iteration("residual"), history.iteration("moment residual")];
+      const xs = [];
+      const ys = [];
+      const rows = [];
+      for (let i = 0; i < step.length; i++) {
+        const fresh = i > 0 && (step[i] !== step[i - 1] || increment[i] !== increment[i - 1] || attempt[i] !== attempt[i - 1]);
+        if (fresh) {
+          xs.push(xs.at(-1));
+          ys.push(null);
+          rows.push(-1);
+        }
+        const value = Math.max(force[i] || 0, moment[i] || 0);
+        xs.push(history.iterationNumbers[i] + 1);
+        ys.push(value > 0 ? Math.log10(value) : null);
+        rows.push(i);
+      }
+      const marks = history.cutBacks.map(({ after }) => ({ x: after + 0.5, text: history.cutBacks.length <= 12 ? "cut back" : "" }));
+      chart.iterationRows = (frame) => {
+        if (frame?.kind !== "increment") return null;
+        for (let i = step.length - 1; i >= 0; i--) if (step[i] === frame.step && increment[i] === frame.increment) return i;
+        return null;
+      };
+      chart.show([{ label: "residual", x: xs, y: ys, rows, dots: xs.length < 1500 }], {
+        x: "iterations so far",
+        y: "relative residual",
+        marks,
+      });
+    });
+  }
+
+  // The field at the probed node over the frames of the player.
+  #probe() {
+    const { scene } = this;
+    const update = () => {
+      const node = this.player?.probed?.node ?? -1;
+      if (node < 0 || !scene.field || scene.shown.length < 2) {
+        if (this.probeChart) this.probeChart.root.hidden = true;
+        return;
+      }
+      if (!this.probeChart) {
+        this.probeChart = new Chart(this.place, {
+          title: "Probe",
+          step: (way) => this.player.step(way),
+          pick: (index) => {
+            this.player.pause();
+            scene.show(index);
+          },
+        });
+        this.place.prepend(this.probeChart.root);
+      }
+      this.probeChart.root.hidden = false;
+      const label = `${scene.field.name} at node ${scene.model.nodeLabels[node]}`;
+      const frames = scene.shown.filter((frame) => frame.kind !== "iterate");
+      this.probeChart.head.firstChild.textContent = label;
+      this.probeChart.show(
+        [{
+          label,
+          x: frames.map((frame) => (scene.kind === "mode" ? frame.index + 1 : frame.time)),
+          y: frames.map((frame) => scene.values(scene.field, frame)[node]),
+          rows: frames.map((_, i) => i),
+          dots: frames.length < 80,
+        }],
+        { x: scene.kind === "mode" ? "mode" : "time", y: scene.field.name },
+      );
+      this.probeChart.mark(scene.index);
+    };
+    for (const event of ["probe", "frames", "look"]) scene.addEventListener(event, update);
+  }
+}
+

@@ -1,0 +1,89 @@
+// A run at work: the page asks its own server for what is new, and may end the run.
+
+import { openChunk } from "./chunk.js";
+import { byId } from "./dom.js";
+
+/** Milliseconds between two questions, and frames that are kept. */
+const BEAT = 1000;
+const MOST_FRAMES = 200;
+
+export class LiveSource {
+  constructor(path) {
+    this.path = path;
+    this.known = new Set();
+  }
+
+  async #get(name, options) {
+    const answer = await fetch(`${this.path}/${name}`, { cache: "no-store", ...options });
+    return answer.status === 200 ? answer : null;
+  }
+
+  async chunk(name) {
+    const answer = await this.#get(name);
+    return answer ? openChunk(new Uint8Array(await answer.arrayBuffer())) : null;
+  }
+
+  async state() {
+    return (await this.#get("state"))?.json() ?? null;
+  }
+
+  stop() {
+    return this.#get("stop", { method: "POST" });
+  }
+}
+
+/** Ask until the run is over; `take` gets what is new. */
+export async function follow(source, scene, take) {
+  const button = byId("stop");
+  button.hidden = false;
+  button.addEventListener("click", async () => {
+    button.disabled = true;
+    button.textContent = "Ends after this increment";
+    await source.stop();
+  });
+  let seen = -1;
+  for (;;) {
+    let state = null;
+    try {
+      state = await source.state();
+    } catch {
+      take({ gone: true });
+      break;
+    }
+    if (state) {
+      if (state.version !== seen) {
+        seen = state.version;
+        take({ history: await source.chunk("history") });
+      }
+      const fresh = await newFrames(source, scene, state.frames);
+      if (fresh) take({ frames: fresh });
+      if (state.over && !fresh) {
+        take({ over: true });
+        break;
+      }
+    }
+    await new Promise((resolve) => setTimeout(resolve, BEAT));
+  }
+  button.hidden = true;
+}
+
+/** The newest frame, and some between it and the last one that is known. */
+async function newFrames(source, scene, count) {
+  if (!count) return 0;
+  const newest = count - 1;
+  const last = Math.max(-1, ...source.known);
+  const step = Math.max(1, Math.ceil((newest - last) / 8));
+  let found = 0;
+  for (let index = last + step; index <= newest; index = index < newest ? Math.min(index + step, newest) : index + 1) {
+    const frame = await source.chunk(`frame/${index}`);
+    source.known.add(index);
+    if (!frame) continue;
+    scene.add(frame);
+    found += 1;
+  }
+  if (scene.all.length > MOST_FRAMES) {
+    scene.all = scene.all.filter((_, i) => i % 2 === 0 || i === scene.all.length - 1);
+    scene.refresh();
+  }
+  return found;
+}

@@ -1,0 +1,389 @@
+"""What a page holds: chunks of the model, the course of the run, and as many frames as fit."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.modes import as_results
+from corota.io.result_reader import FileResults, read_results
+from corota.mesh import EDGES
+from corota.model import elements
+from corota.model.description import describe, rigid_curves
+from corota.model.summary import model_lines
+from corota.report.chunk import pack
+from corota.report.fields import NodalArrays
+from corota.report.records import ITERATION, Records, records_of_files, records_of_results
+from corota.results import variables as vf
+from corota.results.derived import DERIVED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.report.records import JobPaths
+    from corota.results.results import Frame, Results
+
+    Ints = NDArray[np.int64]
+
+#: Size of a page [megabytes], of 10^6 bytes.
+LIMIT = 9.5
+#: Bytes of base64 for one of data, and what the page itself takes [bytes].
+BASE64, OWN = 4.0 / 3.0, 250_000
+#: Frames at most; more make a page slow to open.
+MOST_FRAMES = 240
+#: Frames below which arrays that matter less are left out instead.
+FEW_FRAMES = 40
+#: Bits behind the point, of pages that hold many frames and of those of huge models.
+BITS, FEWER_BITS = 14, 10
+#: Rows of the course of the run, and iterations, at most.
+MOST_ROWS, MOST_ITERATIONS = 5000, 20000
+
+
+@dataclass
+class Content:
+    """Chunks of a page by their names, in the order in which they are opened.
+
+    Parameters
+    ----------
+    title : str
+    chunks : dict of str to bytes
+        ``model``, ``history``, ``frame-0``, ...
+    notes : list of str
+        What was thinned or left out.
+    """
+
+    title: str
+    chunks: dict[str, bytes] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def size(self) -> int:
+        """Bytes of all chunks."""
+        return sum(len(data) for data in self.chunks.values())
+
+
+def content_of_results(results: Results, *, limit: float = LIMIT, title: str = "") -> Content:
+    """Content of a page about results in memory, or of a file without those beside it."""
+    if isinstance(results, FileResults):
+        from pathlib import Path
+
+        from corota.report.records import find_job
+
+        return _content(results, records_of_files(find_job(Path(results.path))), limit, title)
+    return _content(results, records_of_results(results), limit, title)
+
+
+def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> Content:
+    """Content of a page about the files of a job, whether it ended well or not.
+
+    Parameters
+    ----------
+    job : JobPaths
+    limit : float
+        Size of the page [megabytes].
+    title : str
+        Name of the job by default.
+    """
+    records = records_of_files(job)
+    provenance = _provenance(job)
+    if job.results is None:
+        return _content(None, records, limit, title or job.name, provenance=provenance)
+    with read_results(job.results) as results:
+        if not records.rows:
+            _rows_of_frames(records, results)
+        more: list[tuple[str, FileResults]] = []
+        try:
+            for kind, ending in (("mode", "modes"), ("iterate", "last_iterate")):
+                beside = job.path(f"{ending}.vtkhdf")
+                if beside.is_file():
+                    more.append((kind, read_results(beside)))
+            return _content(results, records, limit, title, more, provenance)
+        finally:
+            for _, other in more:
+                other.close()
+
+
+def _provenance(job: JobPaths) -> dict[str, Any]:
+    path = job.path("provenance.json")
+    try:
+        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found
+
+
+def _rows_of_frames(records: Records, results: FileResults) -> None:
+    """Rows of the scalars in the result file, where there is neither table nor log."""
+    records.names = ["step", "increment", "time", "step time", "load factor"]
+    scalars = results.scalar_names()
+    records.names += [name for name in scalars if name not in records.names]
+    columns = [np.asarray(results.history(name)) for name in records.names]
+    records.rows = np.stack(columns, axis=1).tolist() if len(results.frames) else []
+
+
+def _content(
+    results: Results | None,
+    records: Records,
+    limit: float,
+    title: str,
+    more: Sequence[tuple[str, Results]] = (),
+    provenance: dict[str, Any] | None = None,
+) -> Content:
+    name = title or (results.model.name if results is not None else "")
+    content = Content(name)
+    if results is not None:
+        content.chunks["model"] = model_chunk(results)
+        if not isinstance(results, FileResults):
+            more = [*more, *_more_of_memory(results)]
+    history = history_chunk(records, _facts(results, name, provenance or {}), content.notes)
+    content.chunks["history"] = history
+    room = int((limit * 1e6 - OWN) / BASE64) - content.size
+    frames: list[tuple[str, NodalArrays, list[int]]] = []
+    if results is not None:
+        for kind, of in [("increment", results), *more]:
+            wanted = list(range(len(of.frames)))[1 if kind == "iterate" else 0 :]
+            frames.append((kind, NodalArrays(of), wanted))
+    chunks = _frames(frames, room, content.notes, name)
+    if content.notes:  # once more, with what was left out
+        content.chunks["history"] = history_chunk(
+            records, _facts(results, name, provenance or {}), content.notes, again=True
+        )
+    for number, data in enumerate(chunks):
+        content.chunks[f"frame-{number}"] = data
+    return content
+
+
+def _more_of_memory(results: Results) -> list[tuple[str, Results]]:
+    from corota.results.results import Results as Plain
+
+    found: list[tuple[str, Results]] = []
+    if results.modes:
+        found.append(("mode", as_results(results)))
+    if results.last_iterate is not None and results.frames:
+        found.append(("iterate", Plain(results.model, [results.frames[-1], results.last_iterate])))
+    return found
+
+
+def _facts(results: Results | None, name: str, provenance: dict[str, Any]) -> dict[str, Any]:
+    """Name, versions, counts and phase times."""
+    facts: dict[str, Any] = {"job": name, "provenance": provenance}
+    if results is not None:
+        facts["info"] = results.info
+        facts["critical points"] = [str(point) for point in results.critical_points]
+        if isinstance(results, FileResults):
+            facts["file"] = results.attributes
+    return facts
+
+
+# The model.
+def model_chunk(results: Results) -> bytes:
+    """Mesh, sets, sections, supports, loads, contact surfaces: what no frame changes."""
+    model, mesh = results.model, results.mesh
+    arrays: dict[str, NDArray[Any]] = {
+        "points": mesh.points.astype(np.float32),
+        "node labels": mesh.node_labels,
+        "section of cells": results.sections(),
+    }
+    blocks = []
+    for number, cells in enumerate(mesh.cells):
+        blocks.append({"kind": cells.kind, "edges": EDGES[cells.kind]})
+        arrays[f"nodes {number}"] = cells.nodes
+        arrays[f"labels {number}"] = cells.labels
+    sets: dict[str, list[str]] = {"node": [], "cell": [], "edge": []}
+    for kind in ("node", "cell"):
+        for name, members in getattr(mesh, f"{kind}_sets").items():
+            arrays[f"{kind} set {len(sets[kind])}"] = np.asarray(members)
+            sets[kind].append(name)
+    for name, pairs in mesh.edge_sets.items():
+        arrays[f"edge set {len(sets['edge'])}"] = _ends(results, pairs)
+        sets["edge"].append(name)
+    surfaces: list[dict[str, Any]] = []
+    for pair in model.contacts:
+        for side in ("slave", "master"):
+            where = getattr(pair, side)
+            if isinstance(where, str | np.ndarray):
+                arrays[f"{side} {len(surfaces)}"] = _ends(results, mesh.edge_pairs(where))
+        surfaces.append({"name": pair.name})
+    described = getattr(results, "description", None)
+    if described is None:
+        described = describe(model, results.steps)
+    header = {
+        "name": model.name,
+        "lines": model_lines(model),
+        "blocks": blocks,
+        "sets": sets,
+        "pairs": surfaces,
+        "rigid": rigid_curves(model),
+        "description": described,
+        "meaning": {**vf.MEANING, **{n: d.meaning for n, d in DERIVED.items()}},
+        "averaging": vf.AVERAGING,
+        "line elements": list(elements.line_names()),
+    }
+    return pack(header, arrays)
+
+
+def _ends(results: Results, pairs: Any) -> Ints:
+    """Nodes of edges: first, last, and the middle or -1; shape (n, 3)."""
+    nodes = [n if len(n) == 3 else [*n, -1] for n in results.mesh.edge_nodes(pairs)]
+    return np.array(nodes, dtype=np.int64).reshape(-1, 3)
+
+
+# The course of the run.
+def history_chunk(
+    records: Records, facts: dict[str, Any], notes: list[str], again: bool = False
+) -> bytes:
+    """Rows, iterations, cut-backs, notes and the end of the run.
+
+    Parameters
+    ----------
+    records : Records
+    facts : dict
+        Name, versions and counts, for the tables.
+    notes : list of str
+        Of what the page leaves out; gets those of what is thinned here.
+    again : bool
+        Whether the notes have them already.
+    """
+    table = records.table()
+    kept = thinned(len(table), MOST_ROWS)
+    if len(kept) < len(table) and not again:
+        notes.append(f"The curves show {len(kept):,} of {len(table):,} increments.")
+    iterations = np.array(records.iterations, dtype=np.float64).reshape(-1, len(ITERATION))
+    chosen = thinned(len(iterations), MOST_ITERATIONS)
+    if len(chosen) < len(iterations) and not again:
+        notes.append(f"The residuals are of {len(chosen):,} of {len(iterations):,} iterations.")
+    header = {
+        "facts": facts,
+        "names": records.names,
+        "iteration names": ITERATION,
+        "cut backs": records.cut_backs,
+        "steps": records.steps,
+        "notes": records.notes,
+        "left out": notes,
+        "start": records.start,
+        "end": records.end,
+    }
+    arrays = {
+        "rows": table[kept],
+        "iterations": iterations[chosen],
+        "iteration numbers": chosen,
+    }
+    return pack(header, arrays)
+
+
+def thinned(count: int, most: int) -> Ints:
+    """Indices of `most` of `count` rows, evenly, the first and the last among them."""
+    if count <= most:
+        return np.arange(count)
+    return np.unique(np.linspace(0, count - 1, most).round().astype(np.int64))
+
+
+# The frames.
+def frame_chunk(kind: str, arrays: NodalArrays, index: int, names: list[str], bits: int) -> bytes:
+    """Arrays of a frame with its step, increment, time and what else it is called by."""
+    frame = arrays.results.frames
+    head = _head(kind, frame, index)
+    return pack(head, arrays.read(index, names, bits))
+
+
+def _head(kind: str, frames: Sequence[Frame], index: int) -> dict[str, Any]:
+    scalars = getattr(frames, "head", None)
+    if scalars is not None:
+        found: dict[str, float] = scalars(index)
+    else:
+        frame = frames[index]
+        found = {
+            **frame.scalars,
+            "step": frame.step,
+            "increment": frame.increment,
+            "time": frame.time,
+            "load factor": frame.factor,
+        }
+    head: dict[str, Any] = {
+        n: found.get(n, 0.0) for n in ("step", "increment", "time", "load factor")
+    }
+    head["kind"], head["index"] = kind, index
+    if kind == "mode":
+        named = next((n for n in ("frequency", "buckling factor") if n in found), "")
+        head["label"] = f"mode {index + 1}" + (f", {named} {found[named]:.6g}" if named else "")
+    elif kind == "iterate":
+        head["label"] = "last attempt, not in equilibrium"
+    return head
+
+
+def _frames(
+    sets: Sequence[tuple[str, NodalArrays, list[int]]], room: int, notes: list[str], name: str
+) -> list[bytes]:
+    """Chunks of as many frames as the room holds, [bytes]."""
+    total = sum(len(wanted) for _, _, wanted in sets)
+    if not total:
+        return []
+    kind, arrays, wanted = sets[0]
+    others = [(k, a, i) for k, a, w in sets[1:] for i in w]
+    rest = [frame_chunk(k, a, i, ["U"], BITS) for k, a, i in others]
+    room -= sum(map(len, rest))
+    names, bits, count = _plan(arrays, wanted, room)
+    while True:
+        chosen = [wanted[i] for i in _pick(arrays, wanted, count)]
+        chunks = [frame_chunk(kind, arrays, i, names, bits) for i in chosen]
+        size = sum(map(len, chunks))
+        if size <= room:
+            break
+        if count <= 2:
+            raise InputError(
+                f"a page of {name} needs {(size - room) * BASE64 / 1e6:.1f} megabytes more than "
+                "the limit; raise it"
+            )
+        count = max(2, min(count - 1, int(0.95 * count * room / size)))
+    if len(chosen) < len(wanted):
+        notes.append(
+            f"The player shows {len(chosen)} of {len(wanted):,} frames; curves and tables have all "
+            "increments."
+        )
+    if len(names) < len(arrays.names):
+        gone = [n for n in arrays.names if n not in names]
+        notes.append(f"Left out for the size of the page: {', '.join(gone)}.")
+    if bits < BITS:
+        notes.append("Values at nodes are rounded to three digits for the size of the page.")
+    return [*chunks, *rest]
+
+
+def _plan(arrays: NodalArrays, wanted: list[int], room: int) -> tuple[list[str], int, int]:
+    """Names, bits and number of frames that the room is likely to hold."""
+    few = min(len(wanted), FEW_FRAMES)
+    sample = [wanted[len(wanted) // 2], wanted[-1]]
+    for bits in (BITS, FEWER_BITS):
+        sizes = {}
+        for name in arrays.names:
+            packed = [len(pack({}, arrays.read(i, [name], bits))) for i in sample]
+            sizes[name] = max(packed)
+        names = list(arrays.names)
+        while len(names) > 2 and few * sum(sizes[n] for n in names) > room:
+            names.pop()
+        size = sum(sizes[n] for n in names) + 200
+        if size * min(few, 4) <= room:
+            break
+    return names, bits, max(min(len(wanted), MOST_FRAMES, int(room // size)), min(len(wanted), 2))
+
+
+def _pick(arrays: NodalArrays, wanted: list[int], count: int) -> list[int]:
+    """Places of frames: first and last, the ends of steps where they fit, the rest evenly."""
+    n = len(wanted)
+    if n <= count:
+        return list(range(n))
+    heads = [_head("increment", arrays.results.frames, i)["step"] for i in wanted]
+    ends = [i for i in range(n - 1) if heads[i] != heads[i + 1]]
+    if len(ends) > count // 3:
+        ends = []
+    places = set(thinned(n, max(count - len(ends), 2)).tolist()) | set(ends)
+    return sorted(places)
+
+
+__all__ = ["LIMIT", "Content", "content_of_job", "content_of_results", "thinned"]
