@@ -107,9 +107,9 @@ def test_hardening_curves() -> None:
 def test_small_limit_thins_and_says_so(job: Path) -> None:
     whole = content_of_job(find_job(job))
     assert not whole.notes
-    room = sum(len(d) for n, d in whole.chunks.items() if n.startswith("frame-"))
-    base = whole.size - room
-    limit = (250_000 + (base + 0.6 * room) * 4.0 / 3.0) / 1e6
+    budget = sum(len(d) for n, d in whole.chunks.items() if n.startswith("frame-"))
+    base = whole.size - budget
+    limit = (250_000 + (base + 0.6 * budget) * 4.0 / 3.0) / 1e6
     thin = content_of_job(find_job(job), limit=limit)
     assert 250_000 + thin.size * 4 / 3 <= limit * 1e6 + 1000
     assert thin.notes

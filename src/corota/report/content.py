@@ -144,13 +144,13 @@ def _content(
             more = [*more, *_more_of_memory(results)]
     history = history_chunk(records, _facts(results, name, provenance or {}), content.notes)
     content.chunks["history"] = history
-    room = int((limit * 1e6 - OWN) / BASE64) - content.size
+    budget = int((limit * 1e6 - OWN) / BASE64) - content.size
     frames: list[tuple[str, NodalArrays, list[int]]] = []
     if results is not None:
         for kind, of in [("increment", results), *more]:
             wanted = list(range(len(of.frames)))[1 if kind == "iterate" else 0 :]
             frames.append((kind, NodalArrays(of), wanted))
-    chunks = _frames(frames, room, content.notes, name)
+    chunks = _frames(frames, budget, content.notes, name)
     if content.notes:  # once more, with what was left out
         content.chunks["history"] = history_chunk(
             records, _facts(results, name, provenance or {}), content.notes, again=True
@@ -319,29 +319,29 @@ def _head(kind: str, frames: Sequence[Frame], index: int) -> dict[str, Any]:
 
 
 def _frames(
-    sets: Sequence[tuple[str, NodalArrays, list[int]]], room: int, notes: list[str], name: str
+    sets: Sequence[tuple[str, NodalArrays, list[int]]], budget: int, notes: list[str], name: str
 ) -> list[bytes]:
-    """Chunks of as many frames as the room holds, [bytes]."""
+    """Chunks of as many frames as the budget holds, [bytes]."""
     total = sum(len(wanted) for _, _, wanted in sets)
     if not total:
         return []
     kind, arrays, wanted = sets[0]
     others = [(k, a, i) for k, a, w in sets[1:] for i in w]
     rest = [frame_chunk(k, a, i, ["U"], BITS) for k, a, i in others]
-    room -= sum(map(len, rest))
-    names, bits, count = _plan(arrays, wanted, room)
+    budget -= sum(map(len, rest))
+    names, bits, count = _plan(arrays, wanted, budget)
     while True:
         chosen = [wanted[i] for i in _pick(arrays, wanted, count)]
         chunks = [frame_chunk(kind, arrays, i, names, bits) for i in chosen]
         size = sum(map(len, chunks))
-        if size <= room:
+        if size <= budget:
             break
         if count <= 2:
             raise InputError(
-                f"a page of {name} needs {(size - room) * BASE64 / 1e6:.1f} megabytes more than "
+                f"a page of {name} needs {(size - budget) * BASE64 / 1e6:.1f} megabytes more than "
                 "the limit; raise it"
             )
-        count = max(2, min(count - 1, int(0.95 * count * room / size)))
+        count = max(2, min(count - 1, int(0.95 * count * budget / size)))
     if len(chosen) < len(wanted):
         notes.append(
             f"The player shows {len(chosen)} of {len(wanted):,} frames; curves and tables have all "
@@ -355,8 +355,8 @@ def _frames(
     return [*chunks, *rest]
 
 
-def _plan(arrays: NodalArrays, wanted: list[int], room: int) -> tuple[list[str], int, int]:
-    """Names, bits and number of frames that the room is likely to hold."""
+def _plan(arrays: NodalArrays, wanted: list[int], budget: int) -> tuple[list[str], int, int]:
+    """Names, bits and number of frames that the budget is likely to hold."""
     few = min(len(wanted), FEW_FRAMES)
     sample = [wanted[len(wanted) // 2], wanted[-1]]
     for bits in (BITS, FEWER_BITS):
@@ -365,12 +365,12 @@ def _plan(arrays: NodalArrays, wanted: list[int], room: int) -> tuple[list[str],
             packed = [len(pack({}, arrays.read(i, [name], bits))) for i in sample]
             sizes[name] = max(packed)
         names = list(arrays.names)
-        while len(names) > 2 and few * sum(sizes[n] for n in names) > room:
+        while len(names) > 2 and few * sum(sizes[n] for n in names) > budget:
             names.pop()
         size = sum(sizes[n] for n in names) + 200
-        if size * min(few, 4) <= room:
+        if size * min(few, 4) <= budget:
             break
-    return names, bits, max(min(len(wanted), MOST_FRAMES, int(room // size)), min(len(wanted), 2))
+    return names, bits, max(min(len(wanted), MOST_FRAMES, int(budget // size)), min(len(wanted), 2))
 
 
 def _pick(arrays: NodalArrays, wanted: list[int], count: int) -> list[int]:
