@@ -26,6 +26,9 @@ HELPERS = {
     "contact_case_models",
     "free_body_decks",
     "mechanisms",
+    "kill_worker",
+    "restart_cases",
+    "same_bits",
 }
 #: What takes so long that it runs only when it is named.
 LONG = {
@@ -33,6 +36,8 @@ LONG = {
     "energy_balance",
     "faults",
     "fuzz_readers",
+    "kill",
+    "checkpoint_cost",
     "contact_torture",
     "free_bodies",
 }

@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.restart_cases import DECKS, MODELS
+from benchmarks.same_bits import Takes, folder_differences, frame_differences
 from corota.analysis.run import solve
 from corota.errors import FileError
 from corota.io.checkpoint import load, newest
 from corota.io.folder_lock import FolderLock
-from support.same_bits import Takes, folder_differences, frame_differences
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
@@ -311,3 +312,38 @@ def test_restart_read_says_what_does_it(tmp_path):
     (tmp_path / "job.inp").write_text("*RESTART, READ, STEP=1\n" + DECK.format(period=0.01))
     with pytest.raises(ct.DeckError, match="corota resume"):
         ct.read(tmp_path / "job.inp")
+
+
+def test_a_model_with_functions_is_asked_for(tmp_path):
+    """A law in Python is not stored: without the model the error says so, with it all is there."""
+    build = MODELS["law in Python"]
+    for name, every in (("whole", 0), ("kept", 3)):
+        files = ct.JobFiles(tmp_path / name, "job", checkpoint_every=every)
+        ct.solve(build(), observers=[files], threads=1)
+    with pytest.raises(FileError, match="model="):
+        ct.resume(tmp_path / "kept/job", threads=1)
+    ct.resume(tmp_path / "kept/job", model=build(), threads=1)
+    assert folder_differences(tmp_path / "whole", tmp_path / "kept") == []
+
+
+def test_a_run_that_stops_again_leaves_its_last_iterate_again(tmp_path):
+    deck = tmp_path / "job.inp"
+    deck.write_text(DECKS["a run that stops"]())
+    for name in ("whole", "part"):
+        files = ct.JobFiles(tmp_path / name, "job", checkpoint_every=1)
+        with pytest.raises(ct.ConvergenceError):
+            ct.solve(ct.read(deck), observers=[files], threads=1)
+    with pytest.raises(ct.ConvergenceError):
+        ct.resume(tmp_path / "part/job", threads=1)
+    assert folder_differences(tmp_path / "whole", tmp_path / "part") == []
+
+
+def test_a_checkpoint_may_be_used_twice():
+    """Going on leaves a checkpoint in memory as it is: the history of friction is a copy."""
+    takes = Takes()
+    solve(MODELS["bump, friction"](), observers=[takes], threads=1)
+    first, again = (
+        solve(MODELS["bump, friction"](), threads=1, start=takes.found[4]) for _ in range(2)
+    )
+    for a, b in zip(first.frames, again.frames, strict=True):
+        assert not frame_differences(a, b)

@@ -176,7 +176,7 @@ class Analysis:
         #: checkpoint that the run goes on from.
         self.begun: list[Begun] = []
         self.as_built: dict[str, str] = {}
-        self.start = start
+        self.start = self.resumed = start
 
     def run(self) -> Results:
         """Run all steps; observers hear the end whatever happens."""
@@ -335,9 +335,10 @@ class Analysis:
         system, failed = self.system, state.failed
         if failed is None or failed.at is None or not np.isfinite(failed.u).all():
             return
-        if not self.results.frames:
+        last = self.results.frames[-1] if self.results.frames else self.resumed
+        if last is None:
             return
-        moved, last = system.by_node(failed.u), self.results.frames[-1]
+        moved = system.by_node(failed.u)
         self.results.last_iterate = Frame(
             last.step,
             last.increment + 1,

@@ -135,6 +135,8 @@ class Writer:
         if type(value) is tuple:
             return {"tuple": [self.write(v, f"{place}/{i}") for i, v in enumerate(value)]}
         if _is_code(value):
+            if self._by_value:
+                raise Unstorable(f"{place}: a function has no place in a checkpoint")
             return {"code": True}
         self._seen[id(value)] = number = len(self._alive)
         self._alive.append(value)
@@ -273,7 +275,7 @@ class Reader:
 
     def _leaf(self, tree: dict[str, Any], fresh: Any) -> Any:
         if "array" in tree:
-            value = self._arrays[tree["array"]]
+            value = self._arrays[tree["array"]].copy()  # the analysis changes it in place
             return value.T if tree.get("columns") else value
         if "built" in tree:
             if isinstance(fresh, np.ndarray) and digest(fresh) == tree["built"]:

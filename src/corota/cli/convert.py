@@ -3,16 +3,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.reading import is_result, read_input
+from corota.errors import InputError
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
 
 
 def run(args: Any, terminal: Terminal) -> int:
-    """Convert a file."""
+    """Convert a file.
+
+    Raises
+    ------
+    InputError
+        If the target is the source, or a file that the source includes.
+    """
+    target = os.path.realpath(args.target)
+    if target == os.path.realpath(args.source):
+        raise InputError(f"{args.target} is the source: name another file")
     if is_result(args.source):
         from corota.io.result_reader import read_results
 
@@ -21,7 +32,10 @@ def run(args: Any, terminal: Terminal) -> int:
     else:
         from corota.io.writers import write_mesh
 
-        path = write_mesh(read_input(args.source, args).mesh, args.target)
+        model = read_input(args.source, args)
+        if target in model.sources:
+            raise InputError(f"{args.target} is included by {args.source}: name another file")
+        path = write_mesh(model.mesh, args.target)
     terminal.line(f"{args.source} -> {path}")
     terminal.record({"event": "convert", "source": args.source, "target": str(path)})
     return 0

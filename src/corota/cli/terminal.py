@@ -5,10 +5,15 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import sys
 from typing import Any, TextIO
 
 COLORS = {"red": "31", "green": "32", "yellow": "33", "blue": "34", "dim": "2", "bold": "1"}
+#: Control characters and marks of direction, except ends of lines, tabs and :data:`COLORS`.
+_REST = r"[\x00-\x08\x0b-\x1a\x1c-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]"
+_COMMANDS = re.compile(rf"\033(?!\[(?:0|{'|'.join(COLORS.values())})m)|{_REST}")
+_COMMANDS_AND_COLORS = re.compile(rf"\033|{_REST}")
 
 
 class Terminal:
@@ -49,7 +54,7 @@ class Terminal:
     def line(self, text: str = "") -> None:
         """Print a line of text unless quiet or JSON was asked for."""
         if not self.quiet and not self.json:
-            self._write(self._clear() + text + "\n")
+            self._write(self._clear() + _plain(text, self.colored) + "\n")
 
     def record(self, record: dict[str, Any]) -> None:
         """Print a record as one line of JSON, if that was asked for."""
@@ -61,7 +66,7 @@ class Terminal:
     def status(self, text: str) -> None:
         """Replace the line that shows the progress."""
         if self.live:
-            self._write("\r\033[2K" + text)
+            self._write("\r\033[2K" + _plain(text, self.colored))
             self._open = True
 
     def _clear(self) -> str:
@@ -82,7 +87,7 @@ class Terminal:
         if self._open:
             self._write(self._clear())
         with contextlib.suppress(OSError, ValueError, AttributeError):
-            sys.stderr.write(f"corota: {kind}: {_printable(text, sys.stderr)}\n")
+            sys.stderr.write(f"corota: {kind}: {_printable(_plain(text, False), sys.stderr)}\n")
             sys.stderr.flush()
 
     def _write(self, text: str) -> None:
@@ -113,6 +118,15 @@ class Terminal:
             self.error(f"standard output: cannot write: {self._failed.strerror}")
             return 6
         return code
+
+
+def _plain(text: str, colored: bool) -> str:
+    """Text without what would command the terminal, but for colors where they are wanted.
+
+    Names and lines of a deck are repeated in messages; they may hold anything.
+    """
+    commands = _COMMANDS if colored else _COMMANDS_AND_COLORS
+    return commands.sub(lambda found: repr(found[0])[1:-1], text)
 
 
 def _printable(text: str, stream: TextIO) -> str:

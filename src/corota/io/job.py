@@ -46,6 +46,11 @@ if TYPE_CHECKING:
 BEAT = 0.25
 #: Work waiting for the writer, above which the analysis waits for it.
 MOST_WAITING = 64 << 20
+#: Endings of all files of a job.
+ENDINGS = (
+    *("dat", "sta", "cvg", "jsonl", "csv", "vtkhdf", "pvd", "npz", "vtu"),
+    *("last_iterate.vtkhdf", "modes.vtkhdf", "provenance.json", *CHECKPOINTS),
+)
 #: Seconds between checkpoints, unless other intervals are asked for.
 CHECKPOINT_SECONDS = 60.0
 
@@ -157,7 +162,7 @@ class JobFiles(BaseObserver):
         """
         check_requests(steps)
         self.model, self.steps = model, steps
-        name = self.name or model.name
+        name = self._checked_name(model)
         self._histories = Histories(model, steps, self._extra)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -173,6 +178,30 @@ class JobFiles(BaseObserver):
         except BaseException:
             self._held.release()
             raise
+
+    def _checked_name(self, model: Model) -> str:
+        """Stem of the files: one that stays in the folder and replaces no input.
+
+        Raises
+        ------
+        InputError
+            If it does not.
+        """
+        name = self.name or model.name
+        if name in ("", ".", "..") or "/" in name or os.sep in name or "\0" in name:
+            raise InputError(
+                f"the name of a job is the stem of its files, without a folder, not {name!r}; "
+                "the folder is given by -o (JobFiles(folder, name))"
+            )
+        inputs = {os.path.realpath(file) for file in model.sources}
+        for ending in ENDINGS:
+            path = self.folder / f"{name}.{ending}"
+            if os.path.realpath(path) in inputs:
+                raise InputError(
+                    f"{path} is an input of this job and would be replaced by its results: take "
+                    "another folder (-o) or name (--name)"
+                )
+        return name
 
     def _start(self, model: Model, steps: list[Step], name: str) -> None:
         """Open the files, anew or where a checkpoint left them."""

@@ -103,6 +103,8 @@ class Model(Loading, LineSections, InitialFields):
         What the reader ignored, repaired or assumed.
     title : str
         Heading of a deck.
+    sources : list of str
+        Files that it was read from, which results never replace.
     time_points : dict of str to ndarray
         Times [time] within a step, by the name that :class:`corota.model.steps.Output` gives.
     unit_system : Units
@@ -128,6 +130,7 @@ class Model(Loading, LineSections, InitialFields):
         self.steps: list[Step] = []
         self.notes: list[str] = []
         self.title = ""
+        self.sources: list[str] = []
         self.time_points: dict[str, NDArray[np.float64]] = {}
         self.unit_system = Units()
 

@@ -147,7 +147,7 @@ class ExplicitStepper:
         Step times that are shown.
     """
 
-    kind, advice = "explicit", ""
+    kind, advice = "explicit", "allow more (INC=)"
 
     def __init__(self, loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step
@@ -161,7 +161,7 @@ class ExplicitStepper:
         self.n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
         self.dt = dt = step.period / self.n
         self.keep = max(self.n // FRAMES, 1)
-        self.wanted = {round(s / dt) for s in stops}
+        self.wanted = {*(round(s / dt) for s in stops), step.max_increments}
         state.counters["stable increment"] = self.stable  # type: ignore[assignment]
         if state.v is None:
             state.v = initial_velocity(system, state.u)

@@ -270,6 +270,9 @@ class StaticStepper(NewtonStepper):
         )
         before, here = control.number, state.u
         kept = [control.time / step.period]
+        resumed = state.resumption
+        if resumed is not None:
+            kept = [resumed.checkpoint.factor] * 2  # the note is among those of the state
 
         def keep(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
             if len(kept) == 1:
@@ -297,9 +300,11 @@ class StaticStepper(NewtonStepper):
                 # The states that the path found are kept: there the step stops.
                 factor = kept[-1]
                 said = str(error).removesuffix(". All converged increments are kept")
-                fails = ""
+                fails, rates = "", self.rates
+                if resumed is not None and state.loop is not None:
+                    rates = state.loop["rates"]
                 if not driven(system, step, state):
-                    fails = collapse(system, number, factor, self.rates, said)
+                    fails = collapse(system, number, factor, rates, said)
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "

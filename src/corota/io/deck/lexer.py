@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Files inside files.
 MAX_DEPTH = 16
+#: Files that a deck includes, each time counted.
+MAX_FILES = 1000
 #: Bytes of a deck with everything that it includes.
 MAX_BYTES = 8 << 30
 #: Bytes of memory that a deck or mesh takes for each of its own (measured on a million nodes).
@@ -192,6 +194,8 @@ class Lexer:
     ----------
     cards : list of Card
     diagnostics : list of Diagnostic
+    files : set of Path
+        All files that were read.
     """
 
     def __init__(
@@ -207,7 +211,8 @@ class Lexer:
         #: What a comment ``** UNITS: N, mm`` says, and where.
         self.units: tuple[str, Location] | None = None
         self._root = path.resolve().parent
-        self._bytes = 0
+        self._bytes = self._opens = 0
+        self.files: set[Path] = {path.resolve()}
         self._parameters = Parameters(parameters)
 
     def read(self) -> list[Card]:
@@ -373,6 +378,11 @@ class Lexer:
         if len(stack) > MAX_DEPTH:
             self._error(where, f"files are included more than {MAX_DEPTH} deep", card)
             return None
+        self._opens += 1
+        if self._opens > MAX_FILES:
+            if self._opens == MAX_FILES + 1:
+                self._error(where, f"more than {MAX_FILES:,} files are included", card)
+            return None
         try:
             target = path.resolve()
             if not self.allow_include and not target.is_relative_to(self._root):
@@ -387,7 +397,9 @@ class Lexer:
                 names = " -> ".join(p.name for p in [*stack[stack.index(target) :], target])
                 self._error(where, f"the file includes itself: {names}", card)
                 return None
-            return self._load(target), target
+            data = self._load(target)
+            self.files.add(target)
+            return data, target
         except (OSError, ValueError, RuntimeError) as error:
             self._error(where, f"{numerals.shown(name)} cannot be read: {_why(error)}", card)
             return None

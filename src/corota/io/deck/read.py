@@ -80,6 +80,7 @@ def read_deck(
     if deck.n_errors or model is None:
         raise DeckError(deck.diagnostics)
     _name_units(model, lexer)
+    model.sources = sorted(str(file) for file in lexer.files)
     for finding in deck.diagnostics:
         warnings.warn(str(finding), stacklevel=2)
     return model

@@ -223,7 +223,7 @@ class PathStepper:
         at, u = self.along.plain(found.point.at), found.point.u[: system.n_dofs]
         assert state.energies is not None
         state.energies.add_quasi_static(u, state.u, at)
-        state.u, state.at = u, at
+        state.u, state.at, state.failed = u, at, None
         before, period = state.step_time, self.step.period
         self.arc += found.size * period
         state.step_time = self.begin + self.arc

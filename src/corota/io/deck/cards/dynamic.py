@@ -22,6 +22,8 @@ APPLICATIONS = {
     "MODERATEDISSIPATION": -1.0 / 3.0,
     "QUASI-STATIC": 0.0,
 }
+#: Increments of an explicit step without INC.
+EXPLICIT_INCREMENTS = 10_000_000
 
 
 def _procedure(deck: Deck, card: Card) -> StepDraft | None:
@@ -63,6 +65,8 @@ def dynamic(deck: Deck, card: Card) -> None:
             )
             return
     explicit = card.has("EXPLICIT")
+    if explicit and not now.card.has("INC"):
+        now.max_increments = EXPLICIT_INCREMENTS
     quasi_static = use == "QUASI-STATIC" and not explicit
     if use != "TRANSIENTFIDELITY" and not explicit:
         what = (
