@@ -11,6 +11,7 @@ from corota.io.deck.read import read_deck
 from corota.io.deck.write.model import write_deck
 from corota.io.gmsh.reader import read_gmsh
 from corota.io.meshio_bridge import read_meshio
+from corota.io.unv import read_unv
 
 if TYPE_CHECKING:
     import os
@@ -31,7 +32,11 @@ MODEL_READERS: dict[str, Callable[..., Model]] = {".inp": read_deck}
 #: Writers of models.
 MODEL_WRITERS: dict[str, Callable[..., Path]] = {".inp": write_deck}
 #: Readers of meshes; for other names meshio is asked.
-MESH_READERS: dict[str, Callable[..., Mesh]] = {".msh": read_gmsh, ".inp": _deck_mesh}
+MESH_READERS: dict[str, Callable[..., Mesh]] = {
+    ".msh": read_gmsh,
+    ".inp": _deck_mesh,
+    ".unv": read_unv,
+}
 
 
 def read(

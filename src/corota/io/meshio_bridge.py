@@ -12,6 +12,7 @@ import numpy as np
 
 from corota.errors import FileError, InputError, UnsupportedError
 from corota.mesh.data import Cells, Mesh
+from corota.mesh.plane import into_plane
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
 
 if TYPE_CHECKING:
@@ -28,6 +29,9 @@ KINDS = {
 #: Line elements and points by meshio's names; they are written, not read.
 LINES = {"line2": "line", "line3": "line3", "point1": "vertex"}
 
+#: Numbers that formats give to cells, and how the sets of them are called.
+TAGS = {"nastran:ref": "PID", "medit:ref": "REF", "su2:tag": "TAG", "gmsh:physical": "Physical"}
+
 
 def read_meshio(path: str | os.PathLike[str]) -> Mesh:
     """Read a mesh by meshio.
@@ -42,7 +46,7 @@ def read_meshio(path: str | os.PathLike[str]) -> Mesh:
     suffix = Path(path).suffix or "a file without an extension"
     if find_spec("meshio") is None:
         raise UnsupportedError(
-            f"{path}: no reader for {suffix}; known: .msh, .inp, and more with meshio "
+            f"{path}: no reader for {suffix}; known: .msh, .unv, .inp, and more with meshio "
             "(pip install meshio)"
         )
     if not Path(path).is_file():
@@ -57,8 +61,20 @@ def read_meshio(path: str | os.PathLike[str]) -> Mesh:
 def from_meshio(found: Any, path: str) -> Mesh:
     """Convert a ``meshio.Mesh``; its point sets and cell sets are kept."""
     points = np.asarray(found.points, dtype=np.float64)
-    if points.shape[1] == 3 and np.abs(points[:, 2]).max(initial=0.0) > 1e-6 * np.ptp(points):
-        raise InputError(f"{path}: the part must lie in the plane z = 0")
+    notes: list[str] = []
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise InputError(f"{path}: the file has no points of the plane or of space")
+    if points.shape[1] == 3:
+        used = np.zeros(len(points), bool)
+        for block in found.cells:
+            if block.type in KINDS:
+                used[np.asarray(block.data, dtype=np.int64).ravel()] = True
+        placed = into_plane(points, used)
+        if placed is None:
+            raise InputError(
+                f"{path}: the part must lie in one plane normal to an axis, such as z = 0"
+            )
+        points, notes = placed
     cells: list[Cells] = []
     starts: list[int] = []
     total = 0
@@ -71,7 +87,7 @@ def from_meshio(found: Any, path: str) -> Mesh:
         if not kind:
             continue
         nodes = np.array(block.data, dtype=np.int64)
-        shape = classify(kind, points[nodes][:, :, :2])
+        shape = classify(kind, points[nodes])
         for code, text in (
             (FLAT, "has no area or a side of no length"),
             (FOLDED, "is folded or inverted"),
@@ -84,11 +100,12 @@ def from_meshio(found: Any, path: str) -> Mesh:
         total += len(nodes)
     if not cells:
         raise InputError(f"{path}: the file has no triangles or quadrilaterals")
-    mesh = Mesh(points[:, :2], cells)
+    mesh = Mesh(points[:, :2], cells, notes=notes)
     _take_labels(found, mesh)
-    for name, nodes in (getattr(found, "point_sets", None) or {}).items():
+    point_sets, cell_sets = _groups(found)
+    for name, nodes in point_sets.items():
         mesh.node_sets[str(name)] = np.asarray(nodes, dtype=np.int64).ravel()
-    for name, parts in (getattr(found, "cell_sets", None) or {}).items():
+    for name, parts in cell_sets.items():
         rows = [
             np.asarray(part, dtype=np.int64) + start
             for part, start in zip(parts, starts, strict=False)
@@ -108,6 +125,36 @@ def from_meshio(found: Any, path: str) -> Mesh:
             else:
                 mesh.notes.append(f"{path}: lines of set {name!r} are no edges of elements")
     return mesh
+
+
+def _groups(found: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Sets of points and of cells, also those that a format gives by a number for each cell."""
+    points = dict(getattr(found, "point_sets", None) or {})
+    cells = dict(getattr(found, "cell_sets", None) or {})
+    data = getattr(found, "cell_data", None) or {}
+    numbers = data.get("cell_tags") or ()
+    for tag, names in (getattr(found, "cell_tags", None) or {}).items():  # MED
+        for name in names if len(numbers) else ():
+            mine = [np.flatnonzero(np.asarray(part) == tag) for part in numbers]
+            cells[name] = _joined(cells.get(name), mine)
+    at = np.asarray((getattr(found, "point_data", None) or {}).get("point_tags", ()))
+    for tag, names in (getattr(found, "point_tags", None) or {}).items():
+        for name in names if len(at) else ():
+            own = np.flatnonzero(at == tag)
+            points[name] = np.union1d(points.get(name, own), own).astype(np.int64)
+    for key, prefix in TAGS.items():
+        parts = data.get(key, ())
+        for tag in np.unique(np.concatenate([np.zeros(0), *map(np.ravel, parts)])).tolist():
+            mine = [np.flatnonzero(np.ravel(part) == tag) for part in parts]
+            cells.setdefault(f"{prefix}{tag:g}", mine)
+    return points, cells
+
+
+def _joined(one: Any, other: list[Any]) -> list[Any]:
+    """Members of a set by block, from two lists of them."""
+    if one is None:
+        return other
+    return [np.union1d(a, b).astype(np.int64) for a, b in zip(one, other, strict=True)]
 
 
 def _take_labels(found: Any, mesh: Mesh) -> None:

@@ -66,6 +66,8 @@ MEMBRANES = {"3": "T3", "4": "Q4", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R
 
 #: Names that meshio writes for any triangle and quadrilateral.
 MESHIO = {"R3D3": "T3", "CAX4P": "Q4"}
+#: Names with a plane that meshio writes for any cell too; its heading says that it did.
+WRITTEN_BY_MESHIO = ("CPE6",)
 ASK = (
     "meshio writes this name for every cell of the shape: say which plane is meant by PLANE=STRESS "
     "or STRAIN on the section"

@@ -32,6 +32,8 @@ NAMES = {
     15: "point1",
     16: "quad8",
 }
+#: Lines, triangles and quadrilaterals of third and higher order.
+HIGHER = (*range(20, 29), *range(36, 53), *range(62, 71))
 _DIMENSION = {"line2": 1, "line3": 1, "point1": 0}
 _LABEL_LIMIT = 2**53
 _PHYSICAL = re.compile(r'\s*(\d{1,15})\s+(\d{1,15})\s+"(.*)"\s*\Z', re.ASCII)
@@ -104,6 +106,18 @@ class Stream:
         values = self._bytes(count, "f8").astype(np.float64)
         _check_finite(self.reader, values, self.start)
         return values
+
+    def numbered(self, count: int, width: int) -> tuple[Ints, Floats]:
+        """Next rows of a whole number and ``width`` real ones."""
+        if self.reader.binary:
+            rows = self.table(count, [("tag", "i4", 1), ("x", "f8", width)])
+            places = rows["x"].astype(np.float64)
+            _check_finite(self.reader, places.ravel(), self.start)
+            return rows["tag"][:, 0].astype(np.int64), places
+        rows = self._take(count * (1 + width)).reshape(-1, 1 + width)
+        if (rows[:, 0] != np.floor(rows[:, 0])).any() or (np.abs(rows[:, 0]) > _LABEL_LIMIT).any():
+            raise self.reader.fault(f"${self.section}: a node number is not whole", self.place())
+        return rows[:, 0].astype(np.int64), rows[:, 1:]
 
     def table(self, rows: int, types: list[tuple[str, str, int]]) -> NDArray[Any]:
         """Next rows of a mixed record (binary files only)."""
@@ -197,6 +211,7 @@ class Reader:
         self.parsed = Parsed()
         self._entities: dict[tuple[int, int], tuple[int, ...]] = {}
         self._seen: set[str] = set()
+        self._section_name = ""
 
     def fault(self, message: str, at: int) -> InputError:
         """Error at a byte."""
@@ -210,7 +225,8 @@ class Reader:
         InputError
             With file and line.
         """
-        at = 0
+        # What stands before the first section is a comment.
+        at = max(self.data.find(b"$MeshFormat"), 0)
         while True:
             start = self.data.find(b"$", at)
             if start < 0:
@@ -231,7 +247,9 @@ class Reader:
             "MeshFormat": self._format,
             "PhysicalNames": self._physical_names,
             "Entities": self._entities_section,
+            "PartitionedEntities": self._partitions,
             "Nodes": self._nodes,
+            "ParametricNodes": self._nodes,
             "Elements": self._elements,
         }
         if name != "MeshFormat" and "MeshFormat" not in self._seen:
@@ -239,7 +257,8 @@ class Reader:
         if name in sections:
             if name in self._seen:
                 raise self.fault(f"section ${name} occurs twice", start)
-            self._seen.add(name)
+            self._seen.add("Nodes" if name == "ParametricNodes" else name)
+            self._section_name = name
             end = sections[name](body)
         else:
             end = self.data.find(b"$End" + name.encode(), body)
@@ -256,7 +275,7 @@ class Reader:
         if len(fields) != 3 or not re.fullmatch(r"\d+(\.\d+)?", fields[0]):
             raise self.fault("expected version, file type and data size", body)
         self.version, self.binary = float(fields[0]), fields[1] == "1"
-        if self.version not in (2.0, 2.1, 2.2, 4.1):
+        if self.version not in (2.0, 2.1, 2.2, 4.0, 4.1):
             raise UnsupportedError(
                 f"MSH version {fields[0]} is not read; export 4.1 or 2.2 (gmsh -format msh41)",
                 Location(self.path, 2),
@@ -299,16 +318,35 @@ class Reader:
         for dimension, count in enumerate(counts):
             for _ in range(int(count)):
                 tag = int(stream.ints(1)[0])
-                stream.reals(3 if dimension == 0 else 6)
-                n_groups = int(stream.ints(1, 8)[0])
-                groups = stream.ints(n_groups)
-                if dimension > 0:
-                    stream.ints(int(stream.ints(1, 8)[0]))
-                self._entities[dimension, tag] = tuple(int(abs(g)) for g in groups)
+                self._entities[dimension, tag] = self._groups(stream, dimension)
+        return stream.finish()
+
+    def _groups(self, stream: Stream, dimension: int) -> tuple[int, ...]:
+        """Physical groups of an entity, behind its box."""
+        stream.reals(3 if dimension == 0 and self.version > 4.0 else 6)
+        groups = stream.ints(int(stream.ints(1, 8)[0]))
+        if dimension > 0:
+            stream.ints(int(stream.ints(1, 8)[0]))
+        return tuple(int(abs(g)) for g in groups)
+
+    def _partitions(self, body: int) -> int:
+        """Parts of entities; they belong to the groups of their parents."""
+        stream = Stream(self, body, "PartitionedEntities")
+        stream.ints(1, 8)
+        stream.ints(2 * int(stream.ints(1, 8)[0]))
+        whole = dict(self._entities)
+        for dimension, count in enumerate(stream.ints(4, 8)):
+            for _ in range(int(count)):
+                tag, of, parent = (int(v) for v in stream.ints(3))
+                stream.ints(int(stream.ints(1, 8)[0]))
+                groups = self._groups(stream, dimension)
+                if not groups and of == dimension:
+                    groups = whole.get((of, parent), ())
+                self._entities[dimension, tag] = groups
         return stream.finish()
 
     def _nodes(self, body: int) -> int:
-        tags, points = (self._nodes_4 if self.version > 4 else self._nodes_2)(body)
+        tags, points = (self._nodes_4 if self.version >= 4 else self._nodes_2)(body)
         self.parsed.tags = np.concatenate([np.zeros(0, np.int64), *tags])
         self.parsed.points = np.concatenate([np.zeros((0, 3)), *points])
         labels = np.sort(self.parsed.tags)
@@ -319,7 +357,26 @@ class Reader:
             raise self.fault(f"$Nodes: the node number {labels[0]} is not positive", body)
         return self._end
 
+    def _nodes_parametric(self, body: int) -> tuple[list[Ints], list[Floats]]:
+        """Nodes of MSH 2 with their coordinates on curves and surfaces, which are not used."""
+        if self.binary:
+            count, body = self._count_line(body)
+        stream = Stream(self, body, self._section_name)
+        if not self.binary:
+            count = int(stream.ints(1)[0])
+        tags, points = [], []
+        for _ in range(count):
+            tags.append(int(stream.ints(1)[0]))
+            points.append(stream.reals(3))
+            dimension = int(stream.ints(2)[0])
+            if dimension in (1, 2):
+                stream.reals(dimension)
+        self._end = stream.finish()
+        return [np.array(tags, np.int64)], [np.array(points).reshape(-1, 3)]
+
     def _nodes_2(self, body: int) -> tuple[list[Ints], list[Floats]]:
+        if self._section_name == "ParametricNodes":
+            return self._nodes_parametric(body)
         if self.binary:
             count, body = self._count_line(body)
             stream = Stream(self, body, "Nodes")
@@ -338,19 +395,25 @@ class Reader:
 
     def _nodes_4(self, body: int) -> tuple[list[Ints], list[Floats]]:
         stream = Stream(self, body, "Nodes")
-        n_blocks = int(stream.ints(4, 8)[0])
+        n_blocks = int(stream.ints(2 if self.version == 4.0 else 4, 8)[0])
         tags, points = [], []
         for _ in range(n_blocks):
-            dimension, _, parametric = (int(v) for v in stream.ints(3))
+            head = [int(v) for v in stream.ints(3)]
+            dimension, parametric = head[1 if self.version == 4.0 else 0], head[2]
             count = int(stream.ints(1, 8)[0])
-            tags.append(stream.ints(count, 8))
             width = 3 + (dimension if parametric else 0)
+            if self.version == 4.0:
+                own, places = stream.numbered(count, width)
+                tags.append(own)
+                points.append(places[:, :3])
+                continue
+            tags.append(stream.ints(count, 8))
             points.append(stream.reals(count * width).reshape(-1, width)[:, :3])
         self._end = stream.finish()
         return tags, points
 
     def _elements(self, body: int) -> int:
-        if self.version > 4:
+        if self.version >= 4:
             self._elements_4(body)
         elif self.binary:
             self._elements_2_binary(body)
@@ -360,13 +423,15 @@ class Reader:
 
     def _elements_4(self, body: int) -> None:
         stream = Stream(self, body, "Elements")
-        n_blocks = int(stream.ints(4, 8)[0])
+        n_blocks = int(stream.ints(2 if self.version == 4.0 else 4, 8)[0])
         for _ in range(n_blocks):
             dimension, entity, type_ = (int(v) for v in stream.ints(3))
+            if self.version == 4.0:
+                dimension, entity = entity, dimension
             count = int(stream.ints(1, 8)[0])
             kind = self._kind(type_, stream)
             size = N_NODES[kind] + 1
-            table = stream.ints(count * size, 8).reshape(-1, size)
+            table = stream.ints(count * size, 4 if self.version == 4.0 else 8).reshape(-1, size)
             groups = self._entities.get((dimension, entity), ())
             self.parsed.blocks.append(Block(kind, groups, table[:, 0], table[:, 1:]))
         self._end = stream.finish()
@@ -419,6 +484,13 @@ class Reader:
             self.parsed.blocks.append(Block(kind, groups, table[:, 0], table[:, 1:]))
 
     def _kind(self, type_: int, stream: Stream) -> str:
+        if type_ in HIGHER:
+            at = stream.start if self.binary else stream.place()
+            raise UnsupportedError(
+                f"$Elements: the elements are of third or higher order (Gmsh's type {type_}); "
+                "mesh with first or second order (gmsh -order 2)",
+                Location(self.path, self.data.count(b"\n", 0, at) + 1),
+            )
         if type_ not in NAMES:
             at = stream.start if self.binary else stream.place()
             raise UnsupportedError(

@@ -1,4 +1,4 @@
-"""Meshes of Gmsh: MSH 2.2 and 4.1, text and binary, physical groups as sets."""
+"""Meshes of Gmsh: MSH 2.2, 4.0 and 4.1, text and binary, physical groups as sets."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -13,12 +13,13 @@ from corota.errors import FileError, InputError
 from corota.io.deck.lexer import READ
 from corota.io.gmsh.parse import NAMES, Parsed, Reader
 from corota.mesh.data import Cells, Mesh
+from corota.mesh.plane import into_plane
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
 
 if TYPE_CHECKING:
     import os
 
-    from corota.mesh.data import Ints
+    from corota.mesh.data import Floats, Ints
 
 #: Default names of physical groups, as Gmsh writes them into decks.
 _UNNAMED = {0: "PhysicalPoint", 1: "PhysicalLine", 2: "PhysicalSurface"}
@@ -47,7 +48,6 @@ def read_gmsh(path: str | os.PathLike[str]) -> Mesh:
 
 
 def _mesh(parsed: Parsed, path: str) -> Mesh:
-    size = float(np.ptp(parsed.points[:, :2], axis=0).max()) if len(parsed.points) else 0.0
     index = _Index(parsed.tags)
     blocks: dict[str, list[tuple[Ints, Ints, Ints]]] = {}
     lines: list[tuple[Ints, Ints]] = []
@@ -71,24 +71,26 @@ def _mesh(parsed: Parsed, path: str) -> Mesh:
             f"{path}: the file has no triangles or quadrilaterals; "
             "mesh the surfaces (gmsh -2), and put them into a physical group"
         )
-    notes: list[str] = []
+    used = np.zeros(len(parsed.tags), bool)
+    for parts in blocks.values():
+        for nodes, _, _ in parts:
+            used[nodes] = True
+    placed = into_plane(parsed.points, used)
+    if placed is None:
+        x, y, z = np.ptp(parsed.points[used], axis=0).tolist()
+        raise InputError(
+            f"{path}: the part lies in no plane normal to an axis: it extends over {x:g}, {y:g}, "
+            f"{z:g}; the plane is z = 0"
+        )
+    points, notes = placed
     cells, groups = [], []
     for kind, parts in blocks.items():
         nodes, tags, numbers = (np.concatenate([p[i] for p in parts]) for i in range(3))
         nodes, first, back = _without_copies(nodes)
-        nodes = _turned(kind, nodes, tags[first], parsed, path, notes)
+        nodes = _turned(kind, nodes, tags[first], points, path, notes)
         cells.append(Cells(kind, nodes, tags[first].astype(np.int64)))
         groups.append((back, numbers))
-    mesh = Mesh(parsed.points[:, :2], cells, parsed.tags, notes=notes)
-    used = np.zeros(mesh.n_nodes, bool)
-    for placed in cells:
-        used[placed.nodes] = True
-    out = np.abs(parsed.points[used, 2]).max(initial=0.0)
-    if out > 1e-6 * size:
-        node = parsed.tags[used][np.abs(parsed.points[used, 2]).argmax()]
-        raise InputError(f"{path}: node {node} has z = {out:g}; the part must lie in z = 0")
-    if out > 0.0:
-        notes.append(f"z coordinates up to {out:g} are taken as 0")
+    mesh = Mesh(points, cells, parsed.tags, notes=notes)
     _cell_sets(mesh, parsed, groups)
     _line_sets(mesh, parsed, lines)
     for nodes, numbers in spots:
@@ -122,9 +124,9 @@ def _without_copies(nodes: Ints) -> tuple[Ints, Ints, Ints]:
 
 
 def _turned(
-    kind: str, nodes: Ints, tags: Ints, parsed: Parsed, path: str, notes: list[str]
+    kind: str, nodes: Ints, tags: Ints, points: Floats, path: str, notes: list[str]
 ) -> Ints:
-    shape = classify(kind, parsed.points[nodes][:, :, :2])
+    shape = classify(kind, points[nodes])
     for code, text in (
         (FLAT, "has no area or a side of no length"),
         (FOLDED, "is folded or inverted"),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -22,7 +23,14 @@ from corota.io.deck.cards.attachments import build_attachments
 from corota.io.deck.cards.lines import build_lines, truss_section
 from corota.io.deck.cards.thermal import build_initial, build_temperature
 from corota.io.deck.deck import nearest
-from corota.io.deck.elements import DRILLING, ELEMENTS, LINE_ELEMENTS, LINES
+from corota.io.deck.elements import (
+    ASK,
+    DRILLING,
+    ELEMENTS,
+    LINE_ELEMENTS,
+    LINES,
+    WRITTEN_BY_MESHIO,
+)
 from corota.io.deck.lexer import key
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
 from corota.model.local_strain import LocalStrain
@@ -233,6 +241,9 @@ class ModelBuilder:
                 deck.error(card, card.at("ELSET"), f"elements of type {name} take {wanted}")
                 continue
             info = ELEMENTS[name]
+            ask = info.ask
+            if name in WRITTEN_BY_MESHIO and any("written by meshio" in t for t in deck.heading):
+                info, ask = replace(info, plane=""), ASK
             if draft.plane and info.plane and draft.plane != info.plane:
                 deck.error(
                     card,
@@ -242,11 +253,11 @@ class ModelBuilder:
                 )
                 return
             mapped = self.deck.element_map.get(name)
-            if info.ask and not draft.plane and not mapped:
+            if ask and not draft.plane and not mapped:
                 deck.error(
                     card,
                     card.where,
-                    f"{name} elements: {info.ask}",
+                    f"{name} elements: {ask}",
                     hint=f"or replace them: --element {name}=CPS{info.kind[-1]}",
                 )
                 return
