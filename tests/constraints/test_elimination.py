@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from corota.analysis.equations import Evaluation, System
+from corota.analysis.equations import System
+from corota.analysis.evaluation import Evaluation
 from support.tied import KINDS, constrained, system_of
 
 TRIALS = [(k, e) for k in KINDS for e in ("Q4I", "Q4D")]

@@ -8,7 +8,8 @@ import pytest
 
 from corota.analysis.newton import Settings
 from corota.analysis.path_system import Point
-from corota.analysis.procedures.path.tracer import PathTracer, Plan
+from corota.analysis.procedures.path.branches import BranchTracer
+from corota.analysis.procedures.path.plan import Plan
 
 
 @pytest.fixture
@@ -19,7 +20,7 @@ def follow():
         start = Point(np.zeros(system.load.size), 0.0, None)
         start.at = system.evaluate(start.u, 0.0)
         found = []
-        for increment in PathTracer(system, start, 1.0, Settings(), Plan(**plan)):
+        for increment in BranchTracer(system, start, 1.0, Settings(), Plan(**plan)):
             found.append(increment)
             assert len(found) < most
         return found

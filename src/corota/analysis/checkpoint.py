@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from corota.analysis.state_tree import Reader, Writer, digest_of
 
 if TYPE_CHECKING:
-    from corota.analysis.run import Analysis
+    from corota.analysis.equations import System
     from corota.analysis.state import State
+    from corota.analysis.terms.moving_mass import MovingMass
     from corota.model.model import Model
     from corota.model.steps import Step
 
@@ -69,6 +70,24 @@ class Begun:
     time: float
     first: bool
     ended: float
+
+
+class Analysis(Protocol):
+    """What checkpoints ask of a run."""
+
+    system: System
+    steps: list[Step]
+    warned: set[str]
+    begun: list[Begun]
+    as_built: dict[str, str]
+
+    def known(self) -> dict[str, Any]:
+        """Objects that stand for themselves in checkpoints."""
+        ...
+
+    def mass(self, number: int) -> MovingMass:
+        """Mass that gravity acts on in a step."""
+        ...
 
 
 @dataclass

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.distributed_forces import Distribution
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
     from corota.errors import Location
     from corota.model.loads import LoadKind
 
@@ -82,10 +82,10 @@ class DistributedLoads:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: NumberedModel) -> None:
         self.system = system
         self.loads: list[DistributedLoad] = []
         #: Mass that body forces act on.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota import _core
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
     from corota.model.loads import BodyForce
 
     Floats = NDArray[np.float64]
@@ -93,11 +93,11 @@ class BodyLoad:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     item : BodyForce
     """
 
-    def __init__(self, system: System, item: BodyForce, mass: str) -> None:
+    def __init__(self, system: NumberedModel, item: BodyForce, mass: str) -> None:
         self.system, self.item, self.mass = system, item, mass
         mesh = system.model.mesh
         inside = np.ones(mesh.n_cells, bool)
@@ -209,7 +209,11 @@ class Traction:
     """A dead traction; on drilling elements its end moments turn with the edges."""
 
     def __init__(
-        self, system: System, edges: _core.EdgeLoads, drilling: bool, value: tuple[float, float]
+        self,
+        system: NumberedModel,
+        edges: _core.EdgeLoads,
+        drilling: bool,
+        value: tuple[float, float],
     ) -> None:
         self.system, self.edges, self.value = system, edges, value
         self.follows = drilling
@@ -248,7 +252,7 @@ class Pressure:
 
     follows = True
 
-    def __init__(self, system: System, edges: _core.EdgeLoads) -> None:
+    def __init__(self, system: NumberedModel, edges: _core.EdgeLoads) -> None:
         self.system, self.edges = system, edges
         self._unit: Floats | None = None
 
@@ -269,7 +273,7 @@ class Pressure:
 
 
 def evaluate(
-    system: System, load: Any, u: Floats | None, value: float | tuple[float, float]
+    system: NumberedModel, load: Any, u: Floats | None, value: float | tuple[float, float]
 ) -> tuple[Floats, Triplets]:
     """Force of loaded edges along the nodes' axes, and its derivative in global axes.
 

@@ -17,7 +17,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.procedures.motion import (
         ConservingMotion,
         Inertia,

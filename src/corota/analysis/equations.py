@@ -7,186 +7,62 @@ elements, loads and supports, and nothing of increments or iterations.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import _core
-from corota.analysis.blocks import blocks_of, check_shapes, core_input
-from corota.analysis.constraints.elimination import extra_dofs
-from corota.analysis.constraints.none import IDENTITY, constraints_of
-from corota.analysis.constraints.setup import carry_curves
+from corota.analysis.evaluation import Evaluation
 from corota.analysis.free_motion import name_motion
-from corota.analysis.linear.matrix import AssembledPattern
-from corota.analysis.linear.system import LinearSystem
 from corota.analysis.linear.unsymmetric import FullMatrix
-from corota.analysis.memory import require_model
 from corota.analysis.newton import ElementFailure, ResidualNorms
+from corota.analysis.numbered_model import NumberedModel
 from corota.analysis.recovery import recover
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.moving_mass import MovingMass
-from corota.analysis.terms.thermal import FreeStrains
-from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
-from corota.errors import ModelError, SingularError
-from corota.model import elements
+from corota.analysis.terms.user_material import NO_NUMBER
+from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.linear.solvers import LinearSolver
-    from corota.analysis.timer import Timer
-    from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
-    Ints = NDArray[np.int64]
 
 #: Tangents whose memory is kept for the next ones.
 SPARE = 2
 #: Values of a tangent that was given back.
 NOWHERE = np.empty(0)
-#: Names of the dofs in messages.
-DOF_NAMES = ("x", "y", "rotation")
 
 
-@dataclass
-class Evaluation:
-    """Residual and tangent at a state.
-
-    Parameters
-    ----------
-    internal, external : ndarray, shape (n_dofs,)
-        Force and moment.
-    scale : ndarray, shape (n_dofs,)
-        Sum of absolute element forces.
-    values : ndarray, shape (nnz,)
-        Tangent of the internal force, upper triangle, columns.
-    load_stiffness : tuple of ndarray or None
-        Triplets (row, column, value) of the derivative of the external force.
-    link : LinearizedConstraints
-        The constraints linearised at the state.
-    added : ndarray, shape (n_dofs,), or None
-        What damping added to the diagonal of the tangent: no stiffness.
-    heft, momentum : float
-        In motion: inertia per displacement [force/length], and the largest of the terms of
-        which the acceleration is a difference [force].
-    """
-
-    internal: Floats
-    external: Floats
-    scale: Floats
-    values: Floats
-    load_stiffness: tuple[Ints, Ints, Floats] | None = None
-    link: LinearizedConstraints = IDENTITY
-    added: Floats | None = None
-    heft: float = 0.0
-    momentum: float = 0.0
-
-    @property
-    def residual(self) -> Floats:
-        """Internal minus external force, shape (n_dofs,)."""
-        return self.internal - self.external
-
-
-class System:
-    """The discrete system of a model.
+class System(NumberedModel):
+    """The discrete system of a model: its equations at any state.
 
     Parameters
     ----------
     model : Model
     solver : LinearSolver
     threads : int
-
-    Attributes
-    ----------
-    n_dofs : int
-    start : ndarray of int, shape (n_nodes + 1,)
-        First dof of each node and the total.
-    is_rotation : ndarray of bool, shape (n_dofs,)
     """
 
     def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
-        self.model = model
-        self.blocks = blocks_of(model)
-        #: Mass that gravity acts on in steps that do not move.
-        self.mass = MovingMass()
-        self.linear = LinearSystem(solver)
-        mesh = model.mesh
-        inputs = [core_input(b) for b in self.blocks]
-        check_shapes(model, self.blocks)
-        require_model(self.blocks, mesh.n_nodes)
-        carried = np.zeros(mesh.n_nodes, np.int64)
-        for b in self.blocks:
-            own = elements.find(b.section.element).dofs_per_node
-            np.maximum.at(carried, b.nodes.ravel(), own)
-        extra = extra_dofs(model, carried > 0)
-        if model.contacts:
-            extra = carry_curves(model, carried, extra)
-        try:
-            self.core = _core.Problem(mesh.points, inputs, extra)
-        except ValueError as error:
-            raise ModelError(str(error)) from None
-        self.core.set_threads(threads)
-        self.user = UserBlocks(self.core, self.blocks)
-        self.free = FreeStrains(self.core, model, self.blocks)
-        self.n_dofs: int = self.core.n_dofs
-        self.start = self.core.dof_start.astype(np.int64)
-        self.per_node = np.diff(self.start)
-        self.node_of_dof = self.core.node_of_dof.astype(np.int64)
-        self.component = np.arange(self.n_dofs) - self.start[self.node_of_dof]
-        self.is_rotation = self.component == 2
-        self.pattern = AssembledPattern(self.core)
-        self.nlgeom = True
-        #: Largest local strain at the last recovery where it is linear, and the material there.
-        self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
-        self.constraints = constraints_of(model, self.start, carried, self.pattern)
-        #: The constraints as they were linearized for the last correction.
-        self.link = self.constraints.link(np.zeros(self.n_dofs))
+        super().__init__(model, solver, threads)
         self.conditions = Conditions(self)
-        self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
-        self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
+        self.contact_term = ContactTerm(self)
         #: Whether the structure without its loads was seen to have no free motion in this step.
         self.free_motion_excluded = False
-        self.scales = Scales(self)
+        self.scales = Scales(self, self.conditions, self.contact_term)
         self._spare: list[Floats] = []
-        self.contact_term = ContactTerm(self)
 
-    # -- numbering ---------------------------------------------------------------------
-
-    def dofs(self, nodes: Ints, dof: int) -> Ints:
-        """Dof numbers of nodes, -1 where a node has no such dof."""
-        nodes = np.asarray(nodes, np.int64)
-        return np.where(self.per_node[nodes] > dof, self.start[nodes] + dof, -1)
-
-    def by_node(self, vector: Floats) -> Floats:
-        """Values by node and global component, shape (n_nodes, 3), 0 where there is no dof."""
-        out: Floats = self.core.by_node(np.ascontiguousarray(self.in_space(vector)))
-        return out
-
-    def in_space(self, vector: Floats) -> Floats:
-        """A vector along the axes of its nodes in global axes, shape (n_dofs,)."""
-        return self.constraints.to_global(vector)
-
-    def at_nodes(self, vector: Floats) -> Floats:
-        """A vector in global axes along the axes of its nodes, shape (n_dofs,)."""
-        return self.constraints.to_axes(vector)
-
-    def from_nodes(self, values: Floats) -> Floats:
-        """Inverse of `by_node`."""
-        out: Floats = values.reshape(-1, 3)[self.node_of_dof, self.component]
-        return self.at_nodes(out)
-
-    def describe(self, dof: int) -> str:
-        """Name a dof by the user's node label."""
-        node = self.node_of_dof[dof]
-        return f"node {self.model.mesh.node_labels[node]} {DOF_NAMES[self.component[dof]]}"
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Dofs that supports prescribe, shape (n_dofs,)."""
+        return self.conditions.constrained
 
     # -- evaluation --------------------------------------------------------------------
 
@@ -262,51 +138,16 @@ class System:
 
     def reaction(self, at: Evaluation) -> Floats:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
-        return at.link.gather(at.residual)
-
-    def product(self, values: Floats, x: Floats) -> Floats:
-        """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
-        return self.at_nodes(self.pattern.multiply(values, self.in_space(x)))
+        return at.reaction
 
     def set_temperatures(self, step_time: float) -> None:
         """Give the elements the thermal strain of a time of the step."""
         if self.free.expands:
             self.free.apply(self.conditions.temperatures(step_time))
 
-    def thermal_rate(self, u: Floats, heating: Floats) -> Floats:
-        """Change of the internal force at `u` while the nodes heat up, shape (n_dofs,).
-
-        A central difference about the temperatures that the elements have; exact for constant
-        coefficients of expansion and a linear law.
-        """
-        now, here = self.free.now, self.in_space(u)
-        forces = []
-        for share in (0.5, -0.5):
-            force, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
-            self.free.apply(now + share * heating)
-            self.core.assemble(here, self.nlgeom, force, scale, np.empty(0))
-            forces.append(force)
-        self.free.apply(now)
-        return self.at_nodes(forces[0] - forces[1])
-
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of held dofs per unit of load factor, shapes (n_dofs,)."""
         return self.conditions.rate(u)
-
-    @property
-    def counted(self) -> NDArray[np.bool_]:
-        """Dofs that measure the length of a path: displacements, not rotations."""
-        counted: NDArray[np.bool_] = ~self.is_rotation
-        return counted
-
-    def timed(self, phase: str) -> Timer:
-        """Add the time of a block to the profile."""
-        return self.linear.timed(phase)
-
-    @property
-    def profile(self) -> dict[str, float]:
-        """Seconds by phase."""
-        return self.linear.profile
 
     def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
         """Size of the residual against its scale; see :class:`corota.analysis.scales.Scales`."""
@@ -434,7 +275,7 @@ class System:
 
     def singular(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
-        return name_motion(self, error)
+        return name_motion(self, error, self.scales.ratio)
 
     def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Any]:
         import scipy.sparse as sp
@@ -492,4 +333,4 @@ def failure(labels: list[int], why: str = "") -> ElementFailure:
     return ElementFailure(f"{known}: element {shown}")
 
 
-__all__ = ["DOF_NAMES", "Evaluation", "System", "blocks_of"]
+__all__ = ["System", "failure"]

@@ -12,7 +12,7 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
     from corota.mesh.data import Mesh
 
     Floats = NDArray[np.float64]
@@ -26,14 +26,16 @@ RATIO = 1e9
 MOST = 400
 
 
-def name_motion(system: System, error: SingularError) -> SingularError:
+def name_motion(system: NumberedModel, error: SingularError, ratio: float) -> SingularError:
     """An error of the linear solver in terms of nodes and parts.
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     error : SingularError
         Its equation and mode are those of the unknowns.
+    ratio : float
+        Of the largest stiffness of a node and the smallest.
     """
     equation, modes = error.equation, error.modes
     if modes is None and error.mode is not None:
@@ -51,7 +53,6 @@ def name_motion(system: System, error: SingularError) -> SingularError:
         f"{system.describe(equation)} is unconstrained; add a support, or remove the "
         "mechanism that contains it"
     )
-    ratio = system.scales.ratio
     if ratio > RATIO:
         text += (
             f". The stiffnesses of nodes differ by a factor of {ratio:.0e}: if something soft "
@@ -61,12 +62,12 @@ def name_motion(system: System, error: SingularError) -> SingularError:
     return SingularError(text, equation, mode, modes)
 
 
-def describe(system: System, modes: Floats) -> str:
+def describe(system: NumberedModel, modes: Floats) -> str:
     """What motions are, part by part; empty if parts deform in them.
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     modes : ndarray, shape (n_modes, n_dofs)
     """
     from corota.mesh.parts import stiff_part_of_cells

@@ -19,7 +19,8 @@ from corota.results.observer import Iteration
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.increments import Increments
     from corota.analysis.newton import Outcome, ResidualNorms
     from corota.analysis.observers import Observers

@@ -14,13 +14,13 @@ from corota.results.results import PointFields
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
     from corota.model.materials import Material
 
     Floats = NDArray[np.float64]
 
 
-def recover(system: System, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
+def recover(system: NumberedModel, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
     """Fields at the quadrature points, and sums over them."""
     fields, energy = [], 0.0
     largest: tuple[float, Material | None] = (0.0, None)

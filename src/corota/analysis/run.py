@@ -23,6 +23,7 @@ from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
+from corota.analysis.terms.contact.output import output as contact_output
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, UnsupportedError
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
@@ -399,7 +400,7 @@ class Analysis:
         if kind == "dynamic" or (kind == "static" and elements is not None):
             assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
-        contact, sums, pairs = system.contact_term.output()
+        contact, sums, pairs = contact_output(system.contact_term)
         scalars = {**scalars, **sums}
         held = None
         if state.reaction is None and state.at is not None and state.at.link is not None:

@@ -19,7 +19,10 @@ from corota.model import elements
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.conditions import Conditions
+    from corota.analysis.terms.contact.contact import ContactTerm
 
     Floats = NDArray[np.float64]
 
@@ -41,7 +44,9 @@ class Scales:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
+    conditions : Conditions
+    contact_term : ContactTerm
 
     Attributes
     ----------
@@ -55,8 +60,10 @@ class Scales:
         Of the current step.
     """
 
-    def __init__(self, system: System) -> None:
-        self.system = system
+    def __init__(
+        self, system: NumberedModel, conditions: Conditions, contact_term: ContactTerm
+    ) -> None:
+        self.system, self.conditions, self.contact_term = system, conditions, contact_term
         self.stiffest, self.ratio, self.moved = 0.0, 1.0, 0.0
         self.tolerance = 1e-9
         #: Of the state judged last: inertia per displacement [force/length], all that acts, the
@@ -107,10 +114,10 @@ class Scales:
         scale, internal, external = at.scale, at.internal, at.external
         if at.link.couples:
             # What constraints pass on from load to load is no scale: the residual alone is judged.
-            internal = system.reaction(at)
+            internal = at.reaction
             scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
         self._sizes, residual, worst, displacement = system.core.sizes(
-            internal, scale, external, u, system.conditions.constrained, not at.link.couples
+            internal, scale, external, u, self.conditions.constrained, not at.link.couples
         )
         self._heft = at.heft
         force = larger(self._sizes[0], self._committed[0])
@@ -146,8 +153,8 @@ class Scales:
         system = self.system
         if not len(at.values):
             return np.inf, np.inf
-        left = np.abs(system.reaction(at))
-        left[system.conditions.constrained] = 0.0
+        left = np.abs(at.reaction)
+        left[self.conditions.constrained] = 0.0
         stiffness = self._diagonal(at.values)
         if at.added is not None:
             stiffness = stiffness - at.added
@@ -181,11 +188,11 @@ class Scales:
         What is held moves at most as its supports and its own deformation do.
         """
         system = self.system
-        if not self._bodies or not (system.nlgeom or system.contact_term.acts):
+        if not self._bodies or not (system.nlgeom or self.contact_term.acts):
             return ""
         begun = np.zeros(system.n_dofs) if self._begun is None else self._begun
         moved = np.where(system.is_rotation, 0.0, np.abs(u[: system.n_dofs] - begun))
-        constrained = moved[system.conditions.constrained].max(initial=0.0)
+        constrained = moved[self.conditions.constrained].max(initial=0.0)
         far = FAR * (system.length + float(constrained))
         worst = int(moved.argmax())
         if moved[worst] <= far:

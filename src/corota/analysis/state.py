@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -13,15 +13,29 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.checkpoint import Resumption
     from corota.analysis.energies import Energies
-    from corota.analysis.equations import Evaluation
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome
     from corota.analysis.terms.linearized import LinearMotion
     from corota.model.paths import CriticalPoint, Modes
     from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
+
+
+class Resumption(Protocol):
+    """A checkpoint that an analysis goes on from."""
+
+    checkpoint: Any
+
+    @property
+    def kind(self) -> str:
+        """Kind of the loop that it was taken in."""
+        ...
+
+    def restore(self, state: State) -> None:
+        """Put everything into the fresh objects of the analysis."""
+        ...
 
 
 @dataclass

@@ -31,7 +31,7 @@ DERIVED: dict[str, frozenset[str]] = {
     "SaddlePointSystem": frozenset({"_resolve", "_link"}),
     "State": frozenset({"resumption", "recover"}),
     "Balance": frozenset({"inertia"}),
-    "PathTracer": frozenset({"report", "cut_back"}),
+    "BranchTracer": frozenset({"report", "cut_back"}),
 }
 #: Attributes of new objects that must be there although they are not stored.
 BLANK: dict[str, dict[str, Any]] = {

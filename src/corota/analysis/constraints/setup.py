@@ -11,6 +11,7 @@ from corota.analysis.constraints.relations import Follow, LinearRelation, Mean, 
 from corota.analysis.constraints.straight_line import OnLine
 from corota.errors import ModelError
 from corota.model.constraints import Coupling, Equation, StraightLine
+from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,10 +65,22 @@ def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]
     return extra
 
 
+def reference_nodes(model: Model) -> Ints:
+    """Nodes that carry rigid curves; they have two displacements and a rotation."""
+    found = {
+        int(pair.master.reference)
+        for pair in model.contacts
+        if isinstance(pair.master, RigidCurve)
+        and isinstance(pair.master.reference, int | np.integer)
+    }
+    for node in found:
+        if not 0 <= node < model.mesh.n_nodes:
+            raise ModelError(f"a rigid curve has the reference node index {node}: there is none")
+    return np.array(sorted(found), np.int64)
+
+
 def carry_curves(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Give reference nodes of rigid curves all three dofs; changes `carried`, returns `extra`."""
-    from corota.analysis.terms.contact.setup import reference_nodes
-
     nodes = reference_nodes(model)
     if len(nodes):
         carried[nodes] = 3

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -26,8 +26,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.constraints.elimination import LinearizedConstraints
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.linear.system import LinearSystem
+    from corota.analysis.timer import Timer
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -69,17 +71,42 @@ class Coupling:
     near: tuple[Ints, Ints]
 
 
+class Reduced(Protocol):
+    """What a saddle point asks of the system without multipliers."""
+
+    n_dofs: int
+    node_of_dof: Ints
+    per_node: Ints
+    constraints: Constraints
+    link: LinearizedConstraints
+    linear: LinearSystem
+    free_motion_excluded: bool
+
+    @property
+    def constrained(self) -> NDArray[np.bool_]:
+        """Dofs that supports prescribe."""
+        ...
+
+    def singular(self, error: SingularError) -> SingularError:
+        """The error in terms of nodes."""
+        ...
+
+    def timed(self, phase: str) -> Timer:
+        """Add the time of a block to the profile."""
+        ...
+
+
 class SaddlePointSystem:
     """Solves the bordered systems of a model.
 
     Parameters
     ----------
-    system : System
+    system : Reduced
     n : int
         Multipliers.
     """
 
-    def __init__(self, system: System, n: int) -> None:
+    def __init__(self, system: Reduced, n: int) -> None:
         self.system, self.n = system, n
         self.free, base = system.constraints.free, system.constraints.pattern
         self.nf = len(self.free)
@@ -171,7 +198,7 @@ class SaddlePointSystem:
             system.free_motion_excluded = True
         system.link = link
         constrained = np.zeros(self.size, bool)
-        constrained[: self.nf] = system.conditions.constrained[self.free]
+        constrained[: self.nf] = system.constrained[self.free]
         with system.timed("border"):
             values = link.reduce(at.values, at.residual)
             upper, rest = self._entries(coupling, self._load(at), link)

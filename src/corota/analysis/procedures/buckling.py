@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.equations import Evaluation
+from corota.analysis.evaluation import Evaluation
 from corota.analysis.linear.lanczos import BLOCK, largest
 from corota.analysis.procedures.buckling_contact import factors_with_contact
 from corota.analysis.terms.conditions import Conditions

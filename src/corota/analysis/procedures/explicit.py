@@ -17,7 +17,8 @@ from corota.errors import ConvergenceError, InputError, ModelError, UnsupportedE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.model.steps import Dynamic
 
     Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.equations import Evaluation
+from corota.analysis.evaluation import Evaluation
 from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.newton import ElementFailure
 from corota.analysis.procedures.linear_fields import LinearFields

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
-from corota.analysis.equations import Evaluation, failure
+from corota.analysis.equations import failure
+from corota.analysis.evaluation import Evaluation
 from corota.analysis.terms.attachments import Attachments
 
 if TYPE_CHECKING:

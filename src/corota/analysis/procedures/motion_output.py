@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.equations import Evaluation
+from corota.analysis.evaluation import Evaluation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

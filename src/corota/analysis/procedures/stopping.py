@@ -10,7 +10,8 @@ import numpy as np
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.increments import Increments
     from corota.analysis.newton import Outcome
     from corota.analysis.state import State

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.distributed import DistributedLoad
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
     from corota.errors import Location
     from corota.model.loads import Fixed, Load
     from corota.model.steps import Step
@@ -65,7 +65,7 @@ class Conditions:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Conditions:
         Their numbers.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: NumberedModel) -> None:
         n = system.n_dofs
         self.system = system
         self.constrained = np.zeros(n, bool)

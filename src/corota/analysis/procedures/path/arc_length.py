@@ -15,8 +15,9 @@ import numpy as np
 from corota.analysis.increment_loop import Accepted
 from corota.analysis.newton import ElementFailure, Settings
 from corota.analysis.path_system import Point
+from corota.analysis.procedures.path.branches import BranchTracer
 from corota.analysis.procedures.path.controls import Row
-from corota.analysis.procedures.path.tracer import End, PathStalled, PathTracer, Plan
+from corota.analysis.procedures.path.plan import End, PathStalled, Plan
 from corota.analysis.terms.contact.path import path_system
 from corota.errors import ConvergenceError, InputError, ModelError, SingularError
 from corota.model.dofs import dof_index
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
 
     from corota.analysis.increment_loop import IncrementLoop
     from corota.analysis.newton import ResidualNorms
+    from corota.analysis.procedures.path.plan import Increment
     from corota.analysis.procedures.path.stability import Critical
-    from corota.analysis.procedures.path.tracer import Increment
     from corota.model.paths import Where
 
     Floats = NDArray[np.float64]
@@ -109,7 +110,7 @@ class PathStepper:
         #: The critical point that was found last, as the path and as results know it.
         self.located: tuple[Critical, CriticalPoint] | None = None
         self.rates = (0.0, 0.0)
-        self.follower: PathTracer
+        self.follower: BranchTracer
         self.limit: CriticalPoint | None = None
 
     def run(self, path: ArcLength | DisplacementControl) -> CriticalPoint | None:
@@ -159,10 +160,10 @@ class PathStepper:
             )
         return Point(start, self.factor, at)
 
-    def _tracer(self, start: Point, plan: Plan) -> PathTracer:
+    def _tracer(self, start: Point, plan: Plan) -> BranchTracer:
         step = self.step
         settings = Settings(step.tolerance, step.max_iterations + self.along.more_iterations)
-        return PathTracer(
+        return BranchTracer(
             self.along, start, step.period, settings, plan, self._report, self._cut_back
         )
 

@@ -23,13 +23,13 @@ from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.corrector import tangent_at
 from corota.analysis.procedures.path.plan import Increment, PathStalled
+from corota.analysis.procedures.path.tracer import LEFT, PathTracer
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.procedures.path.stability import Critical, Station
-    from corota.analysis.procedures.path.tracer import PathTracer
 
     Floats = NDArray[np.float64]
 
@@ -41,8 +41,6 @@ MODE_SHARES = (1.0, 0.3, 0.1, 3.0, 0.03, 0.01, 0.003)
 DIRECTIONS = 8
 #: Cosine of the angle from which two directions are one.
 SAME = 0.98
-#: Part of an amplitude that must be left at the end of the path, or it is another path's.
-LEFT = 0.05
 
 
 @dataclass
@@ -213,16 +211,12 @@ def _take(tracer: PathTracer, branch: Branch) -> Increment:
     )
 
 
-def returned(tracer: PathTracer, before: Point, now: Point, origin: Point) -> bool:
-    """Whether an increment on a branch passes the point at which the branch began."""
-    metric = tracer.metric
-    du, df = now.u - before.u, now.factor - before.factor
-    way = metric.dot(du, df, du, df)
-    ou, of = origin.u - before.u, origin.factor - before.factor
-    share = metric.dot(ou, of, du, df) / way if way else -1.0
-    if not 0.0 <= share <= 1.0:
-        return False
-    return bool(metric.size(ou - share * du, of - share * df) <= LEFT * np.sqrt(way))
+class BranchTracer(PathTracer):
+    """A path that takes another branch at a bifurcation point, where its plan says so."""
+
+    def take_branch(self, critical: Critical) -> Increment:
+        """See :func:`switch`."""
+        return switch(self, critical)
 
 
-__all__ = ["returned", "switch"]
+__all__ = ["BranchTracer", "switch"]

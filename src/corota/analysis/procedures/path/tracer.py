@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from corota.analysis.path_system import Metric, Point, Tangent
-from corota.analysis.procedures.path.branches import returned, switch
 from corota.analysis.procedures.path.controls import Arc, Factor, Plane, Row
 from corota.analysis.procedures.path.corrector import STILL, correct, tangent_at
 from corota.analysis.procedures.path.kinks import direction, shares
@@ -60,6 +59,10 @@ KINK = 3
 MAX_ATTEMPTS = 16
 #: ... and the attempt from which a single displacement replaces the arc.
 OTHER_CONTROL = 6
+
+
+#: Part of an amplitude that must be left at the end of the path, or it is another path's.
+LEFT = 0.05
 
 
 class PathTracer:
@@ -129,7 +132,7 @@ class PathTracer:
             self.count += 1
             crossing, self.crossing = self.crossing, None
             if crossing is not None:
-                found = switch(self, crossing)
+                found = self.take_branch(crossing)
             else:
                 before = self.base
                 found = self._increment()
@@ -144,6 +147,10 @@ class PathTracer:
             yield found
             if found.last:
                 return
+
+    def take_branch(self, critical: Critical) -> Increment:
+        """The first increment on another branch."""
+        raise NotImplementedError
 
     def next(self) -> Increment:
         """The next increment; the one before was not the last."""
@@ -532,6 +539,18 @@ class PathTracer:
             or (self.plan.increments > 0 and count >= self.plan.increments)
             or (self.plan.stop_at_limit and at_limit)
         )
+
+
+def returned(tracer: PathTracer, before: Point, now: Point, origin: Point) -> bool:
+    """Whether an increment on a branch passes the point at which the branch began."""
+    metric = tracer.metric
+    du, df = now.u - before.u, now.factor - before.factor
+    way = metric.dot(du, df, du, df)
+    ou, of = origin.u - before.u, origin.factor - before.factor
+    share = metric.dot(ou, of, du, df) / way if way else -1.0
+    if not 0.0 <= share <= 1.0:
+        return False
+    return bool(metric.size(ou - share * du, of - share * df) <= LEFT * np.sqrt(way))
 
 
 def _arc_cosine(x: float) -> float:

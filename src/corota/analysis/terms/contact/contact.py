@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.advice import corner_note, fillet_note
-from corota.analysis.terms.contact.output import output
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.analysis.terms.contact.side import check_side
 from corota.errors import ModelError, UnsupportedError
@@ -23,8 +22,8 @@ from corota.model.contact import ContactPair, Tie
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
     from corota.analysis.linear.saddle_point import SaddlePointSystem
+    from corota.analysis.numbered_model import NumberedModel
     from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
@@ -65,7 +64,7 @@ class ContactTerm:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
 
     Attributes
     ----------
@@ -76,7 +75,7 @@ class ContactTerm:
         Their values in the committed state.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: NumberedModel) -> None:
         self.system = system
         model = system.model
         items: list[ContactPair | Tie] = [*model.ties, *model.contacts]
@@ -375,20 +374,6 @@ class ContactTerm:
         for pair in self.pairs:
             pair.core.restore()
             pair.frozen = False
-
-    def output(self) -> tuple[Floats | None, dict[str, float], dict[str, Floats]]:
-        """Contact at the nodes of the committed state, and sums of the pairs.
-
-        Returns
-        -------
-        values : ndarray, shape (n_nodes, 5), or None without pairs
-            See :attr:`corota.results.Frame.C`.
-        sums : dict of str to float
-            Force on the slave surface, its moment about the origin, and energies.
-        pairs : dict of str to ndarray, shape (n_nodes, 5)
-            See :attr:`corota.results.Frame.pairs`.
-        """
-        return output(self) if self.pairs else (None, {}, {})
 
     def work_sums(self, work: float) -> dict[str, float]:
         """The work of contact in a motion as a frame shows it; nothing without pairs."""

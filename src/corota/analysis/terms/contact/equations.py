@@ -9,7 +9,7 @@ of contact; that implies a settled set.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -23,6 +23,7 @@ from corota.analysis.terms.contact.impact import impact_error
 from corota.analysis.terms.contact.messages import explained
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.pivoting import pivoted
+from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
 from corota.analysis.terms.contact.tunneling import passed
 from corota.errors import SingularError
 
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -57,55 +59,6 @@ FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
 #: Times the first correction that an increment may move before it counts as a jump, driven by
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
-
-
-@dataclass
-class ContactEvaluation:
-    """Evaluation of a system and its contact.
-
-    Parameters
-    ----------
-    at : Evaluation
-        Of the system; its internal force holds that of contact.
-    touch : Touch
-    """
-
-    at: Evaluation
-    contact_state: ContactState
-
-    @property
-    def residual(self) -> Floats:
-        """That of equilibrium, and zeros for the multipliers."""
-        return np.concatenate([self.at.residual, np.zeros(len(self.contact_state.multipliers))])
-
-    @property
-    def internal(self) -> Floats:
-        return self.at.internal
-
-    @property
-    def external(self) -> Floats:
-        return self.at.external
-
-    @property
-    def scale(self) -> Floats:
-        return self.at.scale
-
-
-@dataclass
-class RightHandSides:
-    """Right-hand sides of one linearisation, a column each.
-
-    Parameters
-    ----------
-    force, held : ndarray, shape (n_dofs, k)
-        Of equilibrium, and prescribed changes at held dofs.
-    own : ndarray, shape (k,)
-        Share of what the contact conditions lack: 1 in a Newton correction, 0 in a rate.
-    """
-
-    force: Floats
-    constrained: Floats
-    own: Floats
 
 
 class ContactEquations:
@@ -637,4 +590,4 @@ class ContactEquations:
         return explained(self, at)
 
 
-__all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "PATIENCE", "ContactEquations", "ContactEvaluation"]
+__all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "PATIENCE", "ContactEquations"]

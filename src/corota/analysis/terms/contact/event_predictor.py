@@ -11,7 +11,7 @@ Source: the pivoting of parametric linear complementarity, R. W. Cottle, J.-S. P
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -22,7 +22,8 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.path import Along, ContactPathEquations
+    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.problem import ContactEvaluation
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
@@ -33,8 +34,42 @@ if TYPE_CHECKING:
 MOST, AT_ONCE = 12, 1e-9
 
 
+class EventSystem(Protocol):
+    """What the predictor asks of a system with contact on a path."""
+
+    n: int
+    contact_term: ContactTerm
+
+    def evaluate(self, z: Floats, step_time: float) -> Any:
+        """Residual, tangent, gaps and slips."""
+        ...
+
+    def restart(self, loose: bool = False, like: Any = None) -> None:
+        """Begin an attempt."""
+        ...
+
+    def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
+        """Change of forces and of held dofs per unit of load factor."""
+        ...
+
+    def gap_rates(self, at: Any, rate: Floats) -> list[tuple[Floats, Floats]]:
+        """Change of weighted gaps and slips of each pair along a direction."""
+        ...
+
+    def rate_with(
+        self,
+        at: Any,
+        states: States,
+        force: Floats,
+        move: Floats,
+        slip_directions: dict[tuple[int, int], float] | None = None,
+    ) -> tuple[Floats, int]:
+        """Change per unit of load factor with given states, and negative pivots."""
+        ...
+
+
 def predict_through_events(
-    path: ContactPathEquations,
+    path: EventSystem,
     base: Point,
     tangent: Tangent,
     metric: Metric,
@@ -87,7 +122,7 @@ class EventPath:
 
     Parameters
     ----------
-    path : TouchingPath
+    path : EventSystem
     base : Point
         Committed.
     tangent : Tangent
@@ -96,11 +131,9 @@ class EventPath:
         There; changed in place.
     """
 
-    def __init__(
-        self, path: ContactPathEquations, base: Point, tangent: Tangent, states: States
-    ) -> None:
+    def __init__(self, path: EventSystem, base: Point, tangent: Tangent, states: States) -> None:
         self.path, self.base, self.tangent, self.states = path, base, tangent, states
-        self.at: Along = base.at
+        self.at: ContactEvaluation = base.at
         self.gaps = [terms.gap for terms in self.at.contact_state.terms]
         self.z, self.factor = base.u, base.factor
         self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}

@@ -16,7 +16,8 @@ from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]

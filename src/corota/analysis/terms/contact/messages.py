@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from corota.analysis.terms.contact.equations import ContactEquations, ContactEvaluation
+    from corota.analysis.terms.contact.problem import ContactEvaluation, ContactProblem
 
 #: How often a state must have changed to be named.
 OFTEN = 2
 
 
-def explained(problem: ContactEquations, at: ContactEvaluation | None) -> str:
+def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
     """Which pair and nodes a failed increment hung on, and what was tried."""
     if at is None:
         return ""

@@ -10,13 +10,19 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from corota.analysis.newton import ElementFailure, newton
+from corota.analysis.terms.contact.equations import (
+    MAX_EXTRA_CONTACT_ITERATIONS,
+    PATIENCE,
+    ContactEquations,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome, ResidualNorms, Settings
 
     Floats = NDArray[np.float64]
@@ -99,12 +105,6 @@ def solve_increment(
     contact : ContactIncrement
         Its ``accept`` commits contact, once the increment is taken.
     """
-    from corota.analysis.terms.contact.equations import (
-        MAX_EXTRA_CONTACT_ITERATIONS,
-        PATIENCE,
-        ContactEquations,
-    )
-
     if not system.contact_term.pairs:
         begin = None if known is None else system.with_loads(known, u, step_time)
         outcome = newton(inner, u, prescribed, step_time, settings, begin, report)

@@ -18,8 +18,22 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def output(contact_term: ContactTerm) -> tuple[Floats, dict[str, float], dict[str, Floats]]:
-    """See :meth:`corota.analysis.terms.contact.contact.ContactTerm.output`."""
+def output(
+    contact_term: ContactTerm,
+) -> tuple[Floats | None, dict[str, float], dict[str, Floats]]:
+    """Contact at the nodes of the committed state, and sums of the pairs.
+
+    Returns
+    -------
+    values : ndarray, shape (n_nodes, 5), or None without pairs
+        See :attr:`corota.results.Frame.C`.
+    sums : dict of str to float
+        Force on the slave surface, its moment about the origin, and energies.
+    pairs : dict of str to ndarray, shape (n_nodes, 5)
+        See :attr:`corota.results.Frame.pairs`.
+    """
+    if not contact_term.pairs:
+        return None, {}, {}
     n = len(contact_term.system.per_node)
     values = np.zeros((n, 5))
     sums: dict[str, float] = {}

@@ -14,7 +14,7 @@ from corota.model.contact import ContactPair, Tie
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -64,7 +64,7 @@ class Pair:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     item : ContactPair or Tie
 
     Attributes
@@ -77,7 +77,7 @@ class Pair:
         Multipliers of the pair: n, or 2 n with friction and in ties.
     """
 
-    def __init__(self, system: System, item: ContactPair | Tie) -> None:
+    def __init__(self, system: NumberedModel, item: ContactPair | Tie) -> None:
         self.item = item
         self.tied = isinstance(item, Tie)
         self.friction = 0.0 if isinstance(item, Tie) else item.friction

@@ -13,20 +13,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.path_system import NOT_CONSERVATIVE, SmoothPath
-from corota.analysis.terms.contact.equations import (
-    MAX_EXTRA_CONTACT_ITERATIONS,
-    ContactEquations,
-    ContactEvaluation,
-    RightHandSides,
-)
+from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
 from corota.analysis.terms.contact.event_predictor import predict_through_events
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.path_system import Metric, Point, Tangent
 
     Floats = NDArray[np.float64]

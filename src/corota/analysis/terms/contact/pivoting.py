@@ -26,9 +26,9 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.equations import (
-        ContactEquations,
+    from corota.analysis.terms.contact.problem import (
         ContactEvaluation,
+        ContactProblem,
         RightHandSides,
     )
 
@@ -69,14 +69,14 @@ class Pivoting:
 
     Parameters
     ----------
-    problem : TouchingSystem
-    at : Touched
-    asked : Asked
+    problem : ContactProblem
+    at : ContactEvaluation
+    right_sides : RightHandSides
         One right-hand side.
     """
 
     def __init__(
-        self, problem: ContactEquations, at: ContactEvaluation, right_sides: RightHandSides
+        self, problem: ContactProblem, at: ContactEvaluation, right_sides: RightHandSides
     ) -> None:
         self.problem, self.at, self.right_sides = problem, at, right_sides
         self.pairs = list(problem._pairs(at.contact_state))
@@ -392,7 +392,7 @@ class Pivoting:
 
 
 def pivoted(
-    problem: ContactEquations, at: ContactEvaluation, right_sides: RightHandSides
+    problem: ContactProblem, at: ContactEvaluation, right_sides: RightHandSides
 ) -> Found | None:
     """A correction with states from the whole linearised problem, None where there is none."""
     pairs = list(problem._pairs(at.contact_state))
@@ -407,14 +407,14 @@ def pivoted(
     return Pivoting(problem, at, right_sides).solve(bases)
 
 
-def _small(problem: ContactEquations) -> float:
+def _small(problem: ContactProblem) -> float:
     """Force that is none."""
     scales = problem.system.scales
     return 1e-9 * max(scales.force, scales.nothing)
 
 
 def responses(
-    problem: ContactEquations,
+    problem: ContactProblem,
     at: ContactEvaluation,
     states: States,
     slip_directions: list[Floats],
@@ -438,7 +438,7 @@ def responses(
 
 
 def rates_of(
-    problem: ContactEquations, at: ContactEvaluation, du: Floats, only: int | None = None
+    problem: ContactProblem, at: ContactEvaluation, du: Floats, only: int | None = None
 ) -> Any:
     """Changes of weighted gaps and slips of each pair, or one, with columns of displacements."""
     moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.newton import ElementFailure, GiveUp, Outcome
+from corota.analysis.terms.contact.equations import ContactEquations
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import Evaluation, System
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import ResidualNorms, Settings
-    from corota.analysis.terms.contact.equations import ContactEquations, ContactEvaluation
+    from corota.analysis.terms.contact.problem import ContactEvaluation
 
     Floats = NDArray[np.float64]
 
@@ -54,8 +56,6 @@ def relax(
     The parameters and results are those of
     :func:`corota.analysis.terms.contact.newton.newton_with_contact`.
     """
-    from corota.analysis.terms.contact.equations import ContactEquations
-
     problem = ContactEquations(system, system)
     problem.pivoting = problem.relaxing = True
     found = _creep(problem, system, u, prescribed, step_time, settings, report)

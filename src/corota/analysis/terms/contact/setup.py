@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota import _core
 from corota.analysis.terms.contact.smoothing import smoothed
+from corota.analysis.terms.contact.surface import Surface
 from corota.errors import ModelError
 from corota.mesh import EDGES
 from corota.model import elements
@@ -18,8 +18,7 @@ from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
-    from corota.model.model import Model
+    from corota.analysis.numbered_model import NumberedModel
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -28,62 +27,7 @@ if TYPE_CHECKING:
 REACH = 4.0
 
 
-@dataclass
-class Surface:
-    """Edges of a surface for the core.
-
-    Parameters
-    ----------
-    name : str
-    edges : ndarray of int, shape (n, 2)
-        Cell and local edge.
-    nodes : ndarray of int, shape (n, 3)
-        Corner, corner, mid-side node or -1; the element on the left.
-    bulge, thickness, length : ndarray, shape (n,)
-        Share of the drilling rotations in the shape of the edge [1], thickness and length of
-        the chord [length].
-    """
-
-    name: str
-    edges: Ints
-    nodes: Ints
-    bulge: Floats
-    thickness: Floats
-    length: Floats
-
-    def take(self, rows: Ints) -> Surface:
-        """Some of the edges."""
-        return Surface(
-            self.name,
-            self.edges[rows],
-            self.nodes[rows],
-            self.bulge[rows],
-            self.thickness[rows],
-            self.length[rows],
-        )
-
-    @property
-    def node_list(self) -> Ints:
-        """Nodes, each once."""
-        every = np.unique(self.nodes)
-        return np.asarray(every[every >= 0])
-
-
-def reference_nodes(model: Model) -> Ints:
-    """Nodes that carry rigid curves; they have two displacements and a rotation."""
-    found = {
-        int(pair.master.reference)
-        for pair in model.contacts
-        if isinstance(pair.master, RigidCurve)
-        and isinstance(pair.master.reference, int | np.integer)
-    }
-    for node in found:
-        if not 0 <= node < model.mesh.n_nodes:
-            raise ModelError(f"a rigid curve has the reference node index {node}: there is none")
-    return np.array(sorted(found), np.int64)
-
-
-def surface(system: System, where: str | Ints, item: ContactPair | Tie) -> Surface:
+def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -> Surface:
     """Edges of a surface; refuses what is no boundary.
 
     Raises
@@ -168,7 +112,9 @@ def along_contour(found: Surface) -> Surface:
     return found.take(np.array(order, np.int64))
 
 
-def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surface | None, float]:
+def contact_core(
+    system: NumberedModel, item: ContactPair
+) -> tuple[Any, Surface, Surface | None, float]:
     """The core's pair, its surfaces and how far it looks.
 
     Raises
@@ -231,7 +177,7 @@ def contact_core(system: System, item: ContactPair) -> tuple[Any, Surface, Surfa
     return core, slave, master, reach
 
 
-def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface, float]:
+def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, float]:
     """The same for a tie; slave edges that are out of its tolerance stay free."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
@@ -257,7 +203,9 @@ def tie_core(system: System, item: Tie) -> tuple[Any, Surface, Surface, float]:
     return core, slave, master, reach
 
 
-def _check_pair(system: System, item: ContactPair | Tie, slave: Surface, master: Surface) -> None:
+def _check_pair(
+    system: NumberedModel, item: ContactPair | Tie, slave: Surface, master: Surface
+) -> None:
     mesh = system.model.mesh
     kind = "tie" if isinstance(item, Tie) else "contact pair"
     both = _among(slave.edges, master.edges)
@@ -308,4 +256,4 @@ def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
     return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())
 
 
-__all__ = ["Surface", "contact_core", "reference_nodes", "surface", "tie_core"]
+__all__ = ["contact_core", "surface", "tie_core"]

@@ -14,7 +14,7 @@ from corota.model.contact import RigidCurve
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.contact.pair import Pair
 
     Floats = NDArray[np.float64]
@@ -25,12 +25,12 @@ BACK = 0.2
 SAME = 1e-9
 
 
-def check_side(system: System, pair: Pair, x: Floats) -> None:
+def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     """Refuse a slave surface that starts wholly on the wrong side of a rigid curve.
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     pair : Pair
     x : ndarray, shape (n_nodes, 3)
         Positions and rotations at the start.

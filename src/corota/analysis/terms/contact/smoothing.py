@@ -19,7 +19,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.setup import Surface
+    from corota.analysis.terms.contact.surface import Surface
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

@@ -1,0 +1,164 @@
+"""A model numbered for analysis: elements in the core, dofs, constraints, matrix pattern.
+
+What the terms of the equation are built on. It knows no loads, no supports and no contact.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota import _core
+from corota.analysis.blocks import blocks_of, check_shapes, core_input
+from corota.analysis.constraints.none import constraints_of
+from corota.analysis.constraints.setup import carry_curves, extra_dofs
+from corota.analysis.linear.matrix import AssembledPattern
+from corota.analysis.linear.system import LinearSystem
+from corota.analysis.memory import require_model
+from corota.analysis.terms.moving_mass import MovingMass
+from corota.analysis.terms.thermal import FreeStrains
+from corota.analysis.terms.user_material import UserBlocks
+from corota.errors import ModelError
+from corota.model import elements
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.timer import Timer
+    from corota.model.materials import Material
+    from corota.model.model import Model
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Names of the dofs in messages.
+DOF_NAMES = ("x", "y", "rotation")
+
+
+class NumberedModel:
+    """The dofs and matrices of a model.
+
+    Parameters
+    ----------
+    model : Model
+    solver : LinearSolver
+    threads : int
+
+    Attributes
+    ----------
+    n_dofs : int
+    start : ndarray of int, shape (n_nodes + 1,)
+        First dof of each node and the total.
+    is_rotation : ndarray of bool, shape (n_dofs,)
+    """
+
+    def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
+        self.model = model
+        self.blocks = blocks_of(model)
+        #: Mass that gravity acts on in steps that do not move.
+        self.mass = MovingMass()
+        self.linear = LinearSystem(solver)
+        mesh = model.mesh
+        inputs = [core_input(b) for b in self.blocks]
+        check_shapes(model, self.blocks)
+        require_model(self.blocks, mesh.n_nodes)
+        carried = np.zeros(mesh.n_nodes, np.int64)
+        for b in self.blocks:
+            own = elements.find(b.section.element).dofs_per_node
+            np.maximum.at(carried, b.nodes.ravel(), own)
+        extra = extra_dofs(model, carried > 0)
+        if model.contacts:
+            extra = carry_curves(model, carried, extra)
+        try:
+            self.core = _core.Problem(mesh.points, inputs, extra)
+        except ValueError as error:
+            raise ModelError(str(error)) from None
+        self.core.set_threads(threads)
+        self.user = UserBlocks(self.core, self.blocks)
+        self.free = FreeStrains(self.core, model, self.blocks)
+        self.n_dofs: int = self.core.n_dofs
+        self.start = self.core.dof_start.astype(np.int64)
+        self.per_node = np.diff(self.start)
+        self.node_of_dof = self.core.node_of_dof.astype(np.int64)
+        self.component = np.arange(self.n_dofs) - self.start[self.node_of_dof]
+        self.is_rotation = self.component == 2
+        self.pattern = AssembledPattern(self.core)
+        self.nlgeom = True
+        #: Largest local strain at the last recovery where it is linear, and the material there.
+        self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
+        self.constraints = constraints_of(model, self.start, carried, self.pattern)
+        #: The constraints as they were linearized for the last correction.
+        self.link = self.constraints.link(np.zeros(self.n_dofs))
+        self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
+        self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
+
+    # -- numbering ---------------------------------------------------------------------
+
+    def dofs(self, nodes: Ints, dof: int) -> Ints:
+        """Dof numbers of nodes, -1 where a node has no such dof."""
+        nodes = np.asarray(nodes, np.int64)
+        return np.where(self.per_node[nodes] > dof, self.start[nodes] + dof, -1)
+
+    def by_node(self, vector: Floats) -> Floats:
+        """Values by node and global component, shape (n_nodes, 3), 0 where there is no dof."""
+        out: Floats = self.core.by_node(np.ascontiguousarray(self.in_space(vector)))
+        return out
+
+    def in_space(self, vector: Floats) -> Floats:
+        """A vector along the axes of its nodes in global axes, shape (n_dofs,)."""
+        return self.constraints.to_global(vector)
+
+    def at_nodes(self, vector: Floats) -> Floats:
+        """A vector in global axes along the axes of its nodes, shape (n_dofs,)."""
+        return self.constraints.to_axes(vector)
+
+    def from_nodes(self, values: Floats) -> Floats:
+        """Inverse of `by_node`."""
+        out: Floats = values.reshape(-1, 3)[self.node_of_dof, self.component]
+        return self.at_nodes(out)
+
+    def describe(self, dof: int) -> str:
+        """Name a dof by the user's node label."""
+        node = self.node_of_dof[dof]
+        return f"node {self.model.mesh.node_labels[node]} {DOF_NAMES[self.component[dof]]}"
+
+    def product(self, values: Floats, x: Floats) -> Floats:
+        """A matrix in global axes, upper triangle, times a vector along the nodes' axes."""
+        return self.at_nodes(self.pattern.multiply(values, self.in_space(x)))
+
+    def thermal_rate(self, u: Floats, heating: Floats) -> Floats:
+        """Change of the internal force at `u` while the nodes heat up, shape (n_dofs,).
+
+        A central difference about the temperatures that the elements have; exact for constant
+        coefficients of expansion and a linear law.
+        """
+        now, here = self.free.now, self.in_space(u)
+        forces = []
+        for share in (0.5, -0.5):
+            force, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
+            self.free.apply(now + share * heating)
+            self.core.assemble(here, self.nlgeom, force, scale, np.empty(0))
+            forces.append(force)
+        self.free.apply(now)
+        return self.at_nodes(forces[0] - forces[1])
+
+    @property
+    def counted(self) -> NDArray[np.bool_]:
+        """Dofs that measure the length of a path: displacements, not rotations."""
+        counted: NDArray[np.bool_] = ~self.is_rotation
+        return counted
+
+    def timed(self, phase: str) -> Timer:
+        """Add the time of a block to the profile."""
+        return self.linear.timed(phase)
+
+    @property
+    def profile(self) -> dict[str, float]:
+        """Seconds by phase."""
+        return self.linear.profile
+
+
+__all__ = ["DOF_NAMES", "NumberedModel"]

@@ -1,0 +1,119 @@
+"""An increment with contact as its parts see it: evaluation, right-hand sides, the problem."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.linear.saddle_point import Coupling, SaddlePointSystem
+    from corota.analysis.terms.contact.contact import ContactState, ContactTerm
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+    States = list[NDArray[np.int8]]
+
+
+@dataclass
+class ContactEvaluation:
+    """Evaluation of a system and its contact.
+
+    Parameters
+    ----------
+    at : Evaluation
+        Of the system; its internal force holds that of contact.
+    contact_state : ContactState
+    """
+
+    at: Evaluation
+    contact_state: ContactState
+
+    @property
+    def residual(self) -> Floats:
+        """That of equilibrium, and zeros for the multipliers."""
+        return np.concatenate([self.at.residual, np.zeros(len(self.contact_state.multipliers))])
+
+    @property
+    def internal(self) -> Floats:
+        return self.at.internal
+
+    @property
+    def external(self) -> Floats:
+        return self.at.external
+
+    @property
+    def scale(self) -> Floats:
+        return self.at.scale
+
+
+@dataclass
+class RightHandSides:
+    """Right-hand sides of one linearisation, a column each.
+
+    Parameters
+    ----------
+    force, constrained : ndarray, shape (n_dofs, k)
+        Of equilibrium, and prescribed changes at held dofs.
+    own : ndarray, shape (k,)
+        Share of the contact residual: 1 in a Newton correction, 0 in a rate.
+    """
+
+    force: Floats
+    constrained: Floats
+    own: Floats
+
+
+class ContactProblem(Protocol):
+    """What the choice of states and messages see of the equations of an increment.
+
+    Attributes
+    ----------
+    n : int
+        Dofs.
+    last : list of ndarray or None
+        States of the last correction.
+    slip_directions : dict of int to ndarray
+        Of slipping tractions, by the pair's first multiplier.
+    flips : list of ndarray
+        How often the state of each constraint has changed.
+    single, sliding, pivoted : int
+        Single changes, bodies that slid, and corrections by pivoting so far.
+    loose : str
+        What nothing held until contact was closed for it.
+    """
+
+    n: int
+    system: System
+    contact_term: ContactTerm
+    last: States | None
+    slip_directions: dict[int, Floats]
+    flips: list[Ints]
+    single: int
+    sliding: int
+    pivoted: int
+    loose: str
+
+    @property
+    def border(self) -> SaddlePointSystem:
+        """Linear algebra with the multipliers."""
+        ...
+
+    def complementarity(self, at: ContactEvaluation) -> tuple[float, int, int]:
+        """Largest contact residual as a force; its pair and constraint."""
+        ...
+
+    def _pairs(self, contact_state: ContactState) -> Any: ...
+
+    def _coupling(
+        self, contact_state: ContactState, states: States
+    ) -> tuple[Coupling, Floats, int]: ...
+
+
+__all__ = ["ContactEvaluation", "ContactProblem", "RightHandSides"]

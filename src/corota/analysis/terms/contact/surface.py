@@ -1,0 +1,59 @@
+"""Edges of a contact surface as the core takes them."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class Surface:
+    """Edges of a surface for the core.
+
+    Parameters
+    ----------
+    name : str
+    edges : ndarray of int, shape (n, 2)
+        Cell and local edge.
+    nodes : ndarray of int, shape (n, 3)
+        Corner, corner, mid-side node or -1; the element on the left.
+    bulge, thickness, length : ndarray, shape (n,)
+        Share of the drilling rotations in the shape of the edge [1], thickness and length of
+        the chord [length].
+    """
+
+    name: str
+    edges: Ints
+    nodes: Ints
+    bulge: Floats
+    thickness: Floats
+    length: Floats
+
+    def take(self, rows: Ints) -> Surface:
+        """Some of the edges."""
+        return Surface(
+            self.name,
+            self.edges[rows],
+            self.nodes[rows],
+            self.bulge[rows],
+            self.thickness[rows],
+            self.length[rows],
+        )
+
+    @property
+    def node_list(self) -> Ints:
+        """Nodes, each once."""
+        every = np.unique(self.nodes)
+        return np.asarray(every[every >= 0])
+
+
+__all__ = ["Surface"]
