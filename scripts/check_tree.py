@@ -1,4 +1,4 @@
-"""Check what no linter sees: file sizes, licence lines, foreign addresses, the changelog."""
+"""Check what no linter sees: sizes, licence lines, foreign addresses, changelog, import circles."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -7,6 +7,9 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import house_facts
 
 ROOT = Path(__file__).resolve().parent.parent
 MAX_KILOBYTES = 600
@@ -51,7 +54,12 @@ def main() -> int:
     lines = [f"{path}: {fault}" for path in tracked() for fault in faults(path)]
     if "## [Unreleased]" not in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"):
         lines.append("CHANGELOG.md: no section '## [Unreleased]'")
-    print("\n".join(lines) if lines else "tree: sizes, licences and pins are in order")
+    graph = house_facts.without_conveniences(ROOT, house_facts.imports(ROOT))
+    lines += [
+        f"modules import each other in a circle: {', '.join(sorted(group))}"
+        for group in house_facts.circles(graph)
+    ]
+    print("\n".join(lines) if lines else "tree: sizes, licences, pins and imports are in order")
     return 1 if lines else 0
 
 

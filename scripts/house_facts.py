@@ -16,7 +16,16 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- facts: begin -->", "<!-- facts: end -->"
-#: Folders whose imports must not go in circles.
+#: Methods of convenience that call a function on their own object: imports when they are called.
+FACADES = {
+    "corota.model.model": {"corota.model.summary"},
+    "corota.results.results": {
+        "corota.results.arrays",
+        "corota.results.history",
+        "corota.results.probe",
+    },
+}
+#: Folders whose imports are looked at for circles by themselves.
 PARTS = ("analysis", "io/deck", "model", "results")
 
 
@@ -55,6 +64,15 @@ def imports(tree: Path) -> dict[str, set[str]]:
     return graph
 
 
+def without_conveniences(tree: Path, graph: dict[str, set[str]]) -> dict[str, set[str]]:
+    """The graph less the imports of methods of convenience: those here and in pyproject.toml."""
+    text = (tree / "pyproject.toml").read_text(encoding="utf-8")
+    dropped = {(a, b) for a, found in FACADES.items() for b in found}
+    for above, below in re.findall(r'^ +"(corota[\w.]*) -> (corota[\w.]*)",', text, re.MULTILINE):
+        dropped |= {(above, k) for k in graph if k == below or k.startswith(below + ".")}
+    return {k: {m for m in v if (k, m) not in dropped} for k, v in graph.items()}
+
+
 def circles(graph: dict[str, set[str]]) -> list[set[str]]:
     """Groups of modules that import each other in a circle (Tarjan 1972)."""
     number: dict[str, int] = {}
@@ -87,7 +105,8 @@ def circles(graph: dict[str, set[str]]) -> list[set[str]]:
 def in_circles(tree: Path, part: str = "") -> int:
     """Modules of a part of the package that take part in circles within it."""
     start = "corota." + part.replace("/", ".")
-    graph = {k: {m for m in v if m.startswith(start)} for k, v in imports(tree).items()}
+    graph = without_conveniences(tree, imports(tree))
+    graph = {k: {m for m in v if m.startswith(start)} for k, v in graph.items()}
     return sum(len(g) for g in circles({k: v for k, v in graph.items() if k.startswith(start)}))
 
 
@@ -146,7 +165,7 @@ def main() -> int:
     if chosen.circles:
         for part in ("", *PARTS):
             start = "corota." + part.replace("/", ".")
-            graph = imports(chosen.trees[-1])
+            graph = without_conveniences(chosen.trees[-1], imports(chosen.trees[-1]))
             inner = {k: {m for m in v if m.startswith(start)} for k, v in graph.items()}
             for group in circles({k: v for k, v in inner.items() if k.startswith(start)}):
                 sys.stdout.write(f"{part or 'corota'}: {', '.join(sorted(group))}\n")

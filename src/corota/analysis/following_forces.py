@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from corota import _core
     from corota.analysis.distributed_forces import LoadSum
-    from corota.analysis.equations import System
+    from corota.analysis.numbered_model import NumberedModel
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -37,7 +37,7 @@ class FollowingTraction:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     nodes : ndarray, shape (n, 3)
         Of each edge, the third repeated from the first where it is straight.
     thickness : ndarray, shape (n,)
@@ -52,7 +52,7 @@ class FollowingTraction:
 
     def __init__(
         self,
-        system: System,
+        system: NumberedModel,
         nodes: Ints,
         thickness: Floats,
         value: tuple[float, ...],
@@ -139,7 +139,7 @@ class TurningForce:
 
     Parameters
     ----------
-    system : System
+    system : NumberedModel
     nodes : ndarray of int, shape (n,)
         Each once, and with a rotation.
     dof : int
@@ -149,7 +149,7 @@ class TurningForce:
 
     follows = True
 
-    def __init__(self, system: System, nodes: Ints, dof: int, value: Floats) -> None:
+    def __init__(self, system: NumberedModel, nodes: Ints, dof: int, value: Floats) -> None:
         self.system, self.nodes = system, nodes
         # Along the axes of the nodes, as all nodal forces are given.
         given = np.zeros(system.n_dofs)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import duration
 from corota.verification.catalogue import GROUPS, chosen
-from corota.verification.runner import Outcome
+from corota.verification.outcome import Outcome
 from corota.verification.runner import run as run_problems
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from corota.model.model import Model
     from corota.model.steps import Step
-    from corota.results.results import Frame, Results
+    from corota.results.frame import Frame
+    from corota.results.results import Results
 
 
 @dataclass

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.model.units import Units
-    from corota.results.results import Frame, PointFields
+    from corota.results.frame import Frame, PointFields
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.verification.catalogue import Curve, Picture, Problem, Study, Value
-    from corota.verification.runner import Outcome
+    from corota.verification.outcome import Outcome
 
 #: Dots per inch: enough for a page, small enough to keep under version control.
 DPI = 80.0

@@ -8,43 +8,16 @@ import time
 import warnings
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, field
 from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
-from corota.verification.catalogue import Study, Value, problems
+from corota.verification.catalogue import Value, problems
+from corota.verification.outcome import Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from corota.verification.catalogue import Problem
-
-
-@dataclass
-class Outcome:
-    """What came of one problem.
-
-    Parameters
-    ----------
-    name : str
-    values : list of Value
-    seconds : float
-        Of the measurement.
-    error : str
-        Why there are no values.
-    study : Study, optional
-    """
-
-    name: str
-    values: list[Value] = field(default_factory=list)
-    seconds: float = 0.0
-    error: str = ""
-    study: Study | None = None
-
-    @property
-    def ok(self) -> bool:
-        """Whether there are values and all are within their tolerances."""
-        return not self.error and bool(self.values) and all(v.ok for v in self.values)
 
 
 def measure(name: str, full: bool = False, pages: str = "") -> Outcome:

@@ -6,27 +6,34 @@ from __future__ import annotations
 import difflib
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from corota.errors import Diagnostic, Location
 from corota.io.deck import numerals
+from corota.io.deck.drafts import (
+    AttachedDraft,
+    Draft,
+    GeneralDraft,
+    InitialDraft,
+    Instance,
+    InteractionDraft,
+    MaterialDraft,
+    PairDraft,
+    PretensionDraft,
+    Scope,
+    StepDraft,
+    TieDraft,
+)
 from corota.io.deck.lexer import Card, Row, key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from corota.io.deck.amplitudes import Curve
-    from corota.io.deck.cards.attachments import AttachedDraft
-    from corota.io.deck.cards.contact import GeneralDraft, InteractionDraft, PairDraft
-    from corota.io.deck.cards.lines import LineDraft
-    from corota.io.deck.cards.pretension import PretensionDraft
-    from corota.io.deck.cards.tie import TieDraft
     from corota.mesh.data import Floats, Ints
-    from corota.model.loads import Amplitude, LoadKind
-    from corota.model.materials import Expansion
-    from corota.model.steps import Output, Step
+    from corota.model.loads import Amplitude
 
 Number = TypeVar("Number", int, float)
 
@@ -37,224 +44,6 @@ FOLLOWS = re.compile(
 )
 #: Findings kept; the rest is counted only.
 MAX_DIAGNOSTICS = 200
-
-
-@dataclass(slots=True)
-class NodeBlock:
-    """Nodes of consecutive lines: labels (n,), coordinates (n, 3), line numbers (n,)."""
-
-    labels: Ints
-    points: Floats
-    file: str
-    lines: Ints
-
-
-@dataclass(slots=True)
-class ElementBlock:
-    """Elements of one type: labels (n,), node labels (n, k), line numbers (n,)."""
-
-    card: Card
-    type: str
-    labels: Ints
-    nodes: Ints
-    file: str
-    lines: Ints
-
-
-@dataclass(slots=True)
-class Entry:
-    """Labels, or the name of another set, in a set."""
-
-    where: Location
-    labels: Ints
-    name: str = ""
-
-
-@dataclass(slots=True)
-class NamedSet:
-    """A node or element set: entries in the user's order."""
-
-    name: str
-    where: Location
-    entries: list[Entry] = field(default_factory=list)
-
-
-@dataclass(slots=True)
-class SurfaceRow:
-    """One line of a surface: element label or set, and a face such as ``S2``."""
-
-    where: Location
-    text: str
-    target: str
-    face: str
-
-
-@dataclass(slots=True)
-class Surface:
-    """A surface of element edges, of nodes, or a rigid profile.
-
-    ``profile`` has rows x0, y0, x1, y1, cx, cy, sweep in the deck's order.
-    """
-
-    name: str
-    card: Card
-    nodes: bool
-    rows: list[SurfaceRow] = field(default_factory=list)
-    profile: Floats | None = None
-    fillet: float = 0.0
-
-
-@dataclass(slots=True)
-class SectionDraft:
-    """One ``*SOLID SECTION``."""
-
-    card: Card
-    elset: str
-    material: str
-    thickness: float
-    plane: str
-    local_strain: str
-    orientation: str
-    mean_dilatation: bool = False
-    beta0: float | None = None
-    #: Whether ``*NODAL THICKNESS`` gives the thickness.
-    nodal: bool = False
-
-
-@dataclass(slots=True)
-class PlasticDraft:
-    """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING`` with the places of their rows.
-
-    ``ready`` is false after an error; ``voce`` holds Q and b where the cyclic hardening is
-    given by parameters.
-    """
-
-    card: Card | None = None
-    kind: str = "ISOTROPIC"
-    ready: bool = True
-    curve: list[tuple[float, float]] = field(default_factory=list)
-    rows: list[Location] = field(default_factory=list)
-    back: list[tuple[float, float]] = field(default_factory=list)
-    cyclic_card: Card | None = None
-    cyclic: tuple[list[tuple[float, float]], list[Location]] | None = None
-    voce: tuple[float, float] | None = None
-
-
-@dataclass(slots=True)
-class MaterialDraft:
-    """One ``*MATERIAL`` with the numbers of the cards below it."""
-
-    name: str
-    card: Card
-    law: str = ""
-    constants: list[float] = field(default_factory=list)
-    law_where: Location | None = None
-    law_card: Card | None = None
-    #: Rows of constants and temperature, where there are several.
-    table: list[list[float]] = field(default_factory=list)
-    rho: float = 0.0
-    damping: tuple[float, float] = (0.0, 0.0)
-    plastic: PlasticDraft | None = None
-    expansion: float | Expansion = 0.0
-
-
-@dataclass(slots=True)
-class Draft:
-    """One data line of a support or a load, its target not yet looked up.
-
-    ``kind`` is ``fixed``, ``force``, ``pressure``, ``surface pressure``,
-    ``surface traction``, ``gravity`` or ``centrifugal``; ``index`` the degree of freedom
-    (from 0) or the face (from 0).
-    """
-
-    kind: str
-    card: Card
-    row: Row
-    target: str
-    value: tuple[float, ...]
-    index: int = -1
-    amplitude: str = ""
-    silent: bool = False
-    #: Of a support: how often its value is integrated over time, and whether it stays where it is.
-    order: int = 0
-    keep: bool = False
-
-
-@dataclass(slots=True)
-class InitialDraft:
-    """A line of initial temperature or stress; ``point`` from 1, 0 for all."""
-
-    draft: Draft
-    point: int = 0
-
-
-@dataclass(slots=True)
-class StepDraft:
-    """One step as written."""
-
-    card: Card
-    nlgeom: bool
-    max_increments: int
-    ramp: bool
-    procedure: Card | None = None
-    times: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
-    direct: bool = False
-    make: type[Step] | None = None
-    options: dict[str, Any] = field(default_factory=dict)
-    supports: list[Draft] = field(default_factory=list)
-    loads: list[Draft] = field(default_factory=list)
-    new_supports: bool = False
-    new_loads: set[LoadKind] = field(default_factory=set)
-    #: Kinds of conditions that cards of the step gave so far.
-    said: set[str] = field(default_factory=set)
-    outputs: list[Output] = field(default_factory=list)
-    frequency: int = 1
-    #: Increments between checkpoints that are kept, 0 for none.
-    restart: int = 0
-    #: For frequencies: whether stresses and displacements of earlier steps count; else None.
-    preload: bool | None = None
-
-
-@dataclass(slots=True)
-class Instance:
-    """A part placed in the plane: shift, then turn by ``angle`` about ``centre``."""
-
-    name: str
-    part: str
-    card: Card
-    shift: tuple[float, float] = (0.0, 0.0)
-    angle: float = 0.0
-    centre: tuple[float, float] = (0.0, 0.0)
-    scope: Scope = field(default_factory=lambda: Scope())
-
-
-@dataclass(slots=True)
-class Scope:
-    """One name space: the flat model, a part, or an instance's own data."""
-
-    name: str = ""
-    nodes: list[NodeBlock] = field(default_factory=list)
-    elements: list[ElementBlock] = field(default_factory=list)
-    nsets: dict[str, NamedSet] = field(default_factory=dict)
-    elsets: dict[str, NamedSet] = field(default_factory=dict)
-    surfaces: dict[str, Surface] = field(default_factory=dict)
-    sections: list[SectionDraft] = field(default_factory=list)
-    lines: list[LineDraft] = field(default_factory=list)
-    orientations: dict[str, float] = field(default_factory=dict)
-
-    def joined(self, own: Scope) -> Scope:
-        """The data of a part with those that one of its instances adds."""
-        return Scope(
-            self.name,
-            self.nodes + own.nodes,
-            self.elements + own.elements,
-            {**self.nsets, **own.nsets},
-            {**self.elsets, **own.elsets},
-            {**self.surfaces, **own.surfaces},
-            self.sections + own.sections,
-            self.lines + own.lines,
-            {**self.orientations, **own.orientations},
-        )
 
 
 @dataclass

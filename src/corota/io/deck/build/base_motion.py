@@ -11,7 +11,8 @@ from corota.model.integrated import IntegratedAmplitude
 from corota.model.steps import Dynamic, ModalDynamic
 
 if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck, Draft, StepDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Draft, StepDraft
     from corota.model.model import Model
 
 #: What is prescribed, by how often it is integrated.

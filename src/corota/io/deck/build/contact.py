@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from corota.io.deck.build.mesh import View
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.cards.contact import InteractionDraft, PairDraft
-    from corota.io.deck.deck import Deck, Draft, Surface, SurfaceRow
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Draft, InteractionDraft, PairDraft, Surface, SurfaceRow
     from corota.io.deck.lexer import Card
     from corota.mesh.data import Floats, Ints, Mesh
     from corota.model.model import Model

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from corota.io.deck.cards.contact import InteractionDraft, PairDraft
-from corota.io.deck.deck import Surface
+from corota.io.deck.drafts import InteractionDraft, PairDraft, Surface
 from corota.io.deck.lexer import Row, key
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ from corota.io.deck.lexer import key
 from corota.model.materials import Elastic, Orthotropic
 
 if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck, MaterialDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import MaterialDraft
     from corota.model.materials import Material
 
 

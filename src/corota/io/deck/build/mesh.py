@@ -16,7 +16,8 @@ from corota.mesh.data import Cells, Mesh
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, REVERSED, classify
 
 if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck, ElementBlock, Instance, NodeBlock, Scope
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import ElementBlock, Instance, NodeBlock, Scope
     from corota.mesh.data import Floats, Ints
 
 #: Largest coordinate; areas and their products stay finite.

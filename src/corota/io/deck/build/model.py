@@ -42,8 +42,8 @@ from corota.model.steps import Static, SteadyState
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from corota.io.deck.cards.tie import TieDraft
-    from corota.io.deck.deck import Deck, Draft, SectionDraft, StepDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Draft, SectionDraft, StepDraft, TieDraft
     from corota.mesh.data import Ints
     from corota.model.loads import Load
     from corota.model.materials import Material

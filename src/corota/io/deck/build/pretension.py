@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.cards.pretension import PretensionDraft
-    from corota.io.deck.deck import Deck, Draft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Draft, PretensionDraft
     from corota.mesh.data import Floats, Ints, Mesh
     from corota.model.model import Model
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from corota.errors import Location
     from corota.io.deck.build.mesh import MeshBuilder, View
-    from corota.io.deck.deck import NamedSet, Surface, SurfaceRow
+    from corota.io.deck.drafts import NamedSet, Surface, SurfaceRow
     from corota.io.deck.lexer import Card
     from corota.mesh.data import Ints, Mesh
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.io.deck.cards.tie import TieDraft
-    from corota.io.deck.deck import Deck, Draft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Draft, TieDraft
     from corota.mesh.data import Floats, Ints
     from corota.model.model import Model
 

@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from corota.io.deck.deck import Instance, Scope, nearest
+from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import Instance, Scope
 from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:

@@ -3,12 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.io.deck.deck import Draft, nearest
+from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import AttachedDraft, Draft
 from corota.io.deck.lexer import key
 from corota.model.attachments import Dashpot, PointMass
 
@@ -26,29 +26,6 @@ if TYPE_CHECKING:
 TYPES = {"MASS": 1, "DASHPOTA": 2}
 #: The card that gives the value of each.
 CARDS = {"MASS": "MASS", "DASHPOTA": "DASHPOT"}
-
-
-@dataclass
-class AttachedDraft:
-    """One ``*ELEMENT`` card of point masses or dashpots.
-
-    Parameters
-    ----------
-    type : str
-    name : str
-        Its element set.
-    card : Card
-    nodes : list of list of Draft
-        For each element its nodes, not yet looked up.
-    value : float or None
-        None until the card with the value is read.
-    """
-
-    type: str
-    name: str
-    card: Card
-    nodes: list[list[Draft]] = field(default_factory=list)
-    value: float | None = None
 
 
 def elements(deck: Deck, card: Card, type_: str) -> None:

@@ -4,18 +4,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import GeneralDraft, InteractionDraft, PairDraft
 from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:
     from corota.errors import Location
-    from corota.io.deck.deck import Deck, Surface
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Surface
     from corota.io.deck.lexer import Card, Row
 
 #: Types of contact pairs of CalculiX and Abaqus, and the discretization here.
@@ -29,57 +30,6 @@ TYPES = {
 }
 #: Names of PRESSURE-OVERCLOSURE.
 LAWS = ("HARD", "LINEAR", "TABULAR", "EXPONENTIAL", "TIED")
-
-
-@dataclass(slots=True)
-class InteractionDraft:
-    """One ``*SURFACE INTERACTION`` with the cards below it.
-
-    ``law`` is a name of :data:`LAWS`; ``pressure`` and ``overclosure`` its numbers.
-    """
-
-    name: str
-    card: Card
-    law: str = "HARD"
-    law_where: Location | None = None
-    pressure: list[float] = field(default_factory=list)
-    overclosure: list[float] = field(default_factory=list)
-    friction: float = 0.0
-
-
-@dataclass(slots=True)
-class PairDraft:
-    """One line of ``*CONTACT PAIR`` or ``*TIE``: slave, master and options."""
-
-    card: Card
-    row: Row
-    slave: str
-    master: str
-    tied: bool = False
-    interaction: str = ""
-    method: str = "mortar"
-    start: str = "keep"
-    adjust: float = 0.0
-    adjust_set: str = ""
-    clearance: float | None = None
-    stabilise: bool = False
-    smooth: bool = False
-    name: str = ""
-
-    def joins(self, slave: str, master: str) -> bool:
-        """Whether these are its surfaces."""
-        return (key(self.slave), key(self.master)) == (key(slave), key(master))
-
-
-@dataclass(slots=True)
-class GeneralDraft:
-    """General contact: whether all outer edges take part, or the pairs of its lines."""
-
-    card: Card
-    every: bool = False
-    pairs: list[tuple[Card, Row]] = field(default_factory=list)
-    interaction: str = ""
-    where: Location | None = None
 
 
 def profile(deck: Deck, card: Card, found: Surface) -> None:

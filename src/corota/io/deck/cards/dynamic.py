@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.step import keeps_preload, open_step, step_times
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
-from corota.io.deck.deck import Draft
+from corota.io.deck.drafts import Draft
 from corota.io.deck.lexer import key
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck, MaterialDraft, StepDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import MaterialDraft, StepDraft
     from corota.io.deck.lexer import Card
 
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.io.deck import numerals
-from corota.io.deck.deck import ElementBlock, Entry, NamedSet, NodeBlock, nearest
+from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import ElementBlock, Entry, NamedSet, NodeBlock
 from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:

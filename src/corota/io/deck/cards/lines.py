@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.deck.drafts import LineDraft
 from corota.io.deck.elements import LINE_ELEMENTS
 from corota.io.deck.lexer import Row, key
 from corota.model.materials import Elastic
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
     from corota.io.deck.build.mesh import MeshBuilder
     from corota.io.deck.build.sets import Sets
-    from corota.io.deck.deck import Deck, SectionDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import SectionDraft
     from corota.io.deck.lexer import Card
     from corota.mesh.data import Ints
     from corota.model.materials import Material
@@ -48,19 +49,6 @@ SIZES: dict[str, tuple[str, ...]] = {
         "the thickness of the web",
     ),
 }
-
-
-@dataclass(slots=True)
-class LineDraft:
-    """A section of line elements: ``role`` is ``beam`` or ``spring``."""
-
-    role: str
-    card: Card
-    elset: str
-    material: str = ""
-    elastic: Elastic | None = None
-    profile: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rows: list[Row] = field(default_factory=list)
 
 
 def _numbers(deck: Deck, card: Card, row: Row, names: Iterable[str]) -> list[float] | None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from corota.io.deck.deck import Draft, MaterialDraft, SectionDraft
+from corota.io.deck.drafts import Draft, MaterialDraft, SectionDraft
 from corota.io.deck.lexer import key
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 

@@ -13,17 +13,8 @@ from corota.io.deck import numerals
 from corota.io.deck.cards import attachments as attachments
 from corota.io.deck.cards.contact import profile
 from corota.io.deck.cards.generate import in_global_axes
-from corota.io.deck.deck import (
-    Deck,
-    ElementBlock,
-    Entry,
-    NamedSet,
-    NodeBlock,
-    Surface,
-    SurfaceRow,
-    int_array,
-    nearest,
-)
+from corota.io.deck.deck import Deck, int_array, nearest
+from corota.io.deck.drafts import ElementBlock, Entry, NamedSet, NodeBlock, Surface, SurfaceRow
 from corota.io.deck.elements import (
     ALIASES,
     ELEMENTS,

@@ -13,7 +13,8 @@ from corota.model.paths import ArcLength, Label
 from corota.model.steps import Buckle
 
 if TYPE_CHECKING:
-    from corota.io.deck.deck import Deck, StepDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import StepDraft
     from corota.io.deck.lexer import Card
 
 #: Values of *CONTROLS that have a meaning here: position in its line, option of the step.

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.cards.material import open_material
-from corota.io.deck.deck import PlasticDraft
+from corota.io.deck.drafts import PlasticDraft
 from corota.model.plasticity import Mises, Voce
 
 if TYPE_CHECKING:
     from corota.errors import Location
-    from corota.io.deck.deck import Deck, MaterialDraft
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import MaterialDraft
     from corota.io.deck.lexer import Card
 
 #: Back-stresses that one material may have.

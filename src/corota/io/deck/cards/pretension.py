@@ -4,25 +4,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.tie import parameter_row
-from corota.io.deck.deck import Draft
+from corota.io.deck.drafts import Draft
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.lexer import Card
-
-
-@dataclass(slots=True)
-class PretensionDraft:
-    """One section: its surface, its node, and the normal, if it is given."""
-
-    card: Card
-    surface: str
-    node: Draft
-    normal: tuple[float, float] | None = None
+    from corota.io.deck.drafts import PretensionDraft
+from corota.io.deck.lexer import Card
 
 
 def pretension(deck: Deck, card: Card) -> None:

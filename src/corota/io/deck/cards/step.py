@@ -12,7 +12,8 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck.amplitudes import Curve, smooth_steps
-from corota.io.deck.deck import Draft, StepDraft, nearest
+from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import Draft, StepDraft
 from corota.io.deck.lexer import key
 from corota.model.loads import Amplitude
 

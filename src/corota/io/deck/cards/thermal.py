@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.step import loads_of
-from corota.io.deck.deck import Draft, InitialDraft
+from corota.io.deck.drafts import Draft, InitialDraft
 from corota.model.loads import InitialStress, InitialTemperature, Temperature
 from corota.model.materials import Expansion
 

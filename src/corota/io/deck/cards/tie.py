@@ -4,41 +4,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from corota.io.deck.deck import Draft
+from corota.io.deck.drafts import Draft, TieDraft
 from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:
-    from corota.errors import Location
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card, Row
 
 #: Degrees of freedom of decks in the plane, and their index here.
 PLANAR = {1: 0, 2: 1, 6: 2}
-
-
-@dataclass(slots=True)
-class TieDraft:
-    """One constraint as written.
-
-    ``kind`` is ``equation``, ``kinematic``, ``distributing``, ``same``, ``straight`` or ``axes``.
-    ``terms`` holds the terms of an equation, the nodes of a straight line; the first one the
-    reference node of a coupling.
-    """
-
-    kind: str
-    card: Card
-    where: Location
-    terms: list[Draft] = field(default_factory=list)
-    target: Draft | None = None
-    surface: str = ""
-    elset: str = ""
-    dofs: tuple[int, ...] = (0, 1, 2)
-    angle: float = 0.0
-    centre: tuple[float, float] | None = None
-    ready: bool = False
 
 
 def equation(deck: Deck, card: Card) -> None:

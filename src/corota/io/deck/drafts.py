@@ -1,0 +1,378 @@
+"""What single cards leave: plain data of nodes, sets, sections and loads, not yet looked up."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from corota.errors import Location
+from corota.io.deck.lexer import Card, Row, key
+
+if TYPE_CHECKING:
+    from corota.mesh.data import Floats, Ints
+    from corota.model.loads import LoadKind
+    from corota.model.materials import Elastic, Expansion
+    from corota.model.steps import Output, Step
+
+
+@dataclass(slots=True)
+class NodeBlock:
+    """Nodes of consecutive lines: labels (n,), coordinates (n, 3), line numbers (n,)."""
+
+    labels: Ints
+    points: Floats
+    file: str
+    lines: Ints
+
+
+@dataclass(slots=True)
+class ElementBlock:
+    """Elements of one type: labels (n,), node labels (n, k), line numbers (n,)."""
+
+    card: Card
+    type: str
+    labels: Ints
+    nodes: Ints
+    file: str
+    lines: Ints
+
+
+@dataclass(slots=True)
+class Entry:
+    """Labels, or the name of another set, in a set."""
+
+    where: Location
+    labels: Ints
+    name: str = ""
+
+
+@dataclass(slots=True)
+class NamedSet:
+    """A node or element set: entries in the user's order."""
+
+    name: str
+    where: Location
+    entries: list[Entry] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class SurfaceRow:
+    """One line of a surface: element label or set, and a face such as ``S2``."""
+
+    where: Location
+    text: str
+    target: str
+    face: str
+
+
+@dataclass(slots=True)
+class Surface:
+    """A surface of element edges, of nodes, or a rigid profile.
+
+    ``profile`` has rows x0, y0, x1, y1, cx, cy, sweep in the deck's order.
+    """
+
+    name: str
+    card: Card
+    nodes: bool
+    rows: list[SurfaceRow] = field(default_factory=list)
+    profile: Floats | None = None
+    fillet: float = 0.0
+
+
+@dataclass(slots=True)
+class SectionDraft:
+    """One ``*SOLID SECTION``."""
+
+    card: Card
+    elset: str
+    material: str
+    thickness: float
+    plane: str
+    local_strain: str
+    orientation: str
+    mean_dilatation: bool = False
+    beta0: float | None = None
+    #: Whether ``*NODAL THICKNESS`` gives the thickness.
+    nodal: bool = False
+
+
+@dataclass(slots=True)
+class PlasticDraft:
+    """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING`` with the places of their rows.
+
+    ``ready`` is false after an error; ``voce`` holds Q and b where the cyclic hardening is
+    given by parameters.
+    """
+
+    card: Card | None = None
+    kind: str = "ISOTROPIC"
+    ready: bool = True
+    curve: list[tuple[float, float]] = field(default_factory=list)
+    rows: list[Location] = field(default_factory=list)
+    back: list[tuple[float, float]] = field(default_factory=list)
+    cyclic_card: Card | None = None
+    cyclic: tuple[list[tuple[float, float]], list[Location]] | None = None
+    voce: tuple[float, float] | None = None
+
+
+@dataclass(slots=True)
+class MaterialDraft:
+    """One ``*MATERIAL`` with the numbers of the cards below it."""
+
+    name: str
+    card: Card
+    law: str = ""
+    constants: list[float] = field(default_factory=list)
+    law_where: Location | None = None
+    law_card: Card | None = None
+    #: Rows of constants and temperature, where there are several.
+    table: list[list[float]] = field(default_factory=list)
+    rho: float = 0.0
+    damping: tuple[float, float] = (0.0, 0.0)
+    plastic: PlasticDraft | None = None
+    expansion: float | Expansion = 0.0
+
+
+@dataclass(slots=True)
+class Draft:
+    """One data line of a support or a load, its target not yet looked up.
+
+    ``kind`` is ``fixed``, ``force``, ``pressure``, ``surface pressure``,
+    ``surface traction``, ``gravity`` or ``centrifugal``; ``index`` the degree of freedom
+    (from 0) or the face (from 0).
+    """
+
+    kind: str
+    card: Card
+    row: Row
+    target: str
+    value: tuple[float, ...]
+    index: int = -1
+    amplitude: str = ""
+    silent: bool = False
+    #: Of a support: how often its value is integrated over time, and whether it stays where it is.
+    order: int = 0
+    keep: bool = False
+
+
+@dataclass(slots=True)
+class InitialDraft:
+    """A line of initial temperature or stress; ``point`` from 1, 0 for all."""
+
+    draft: Draft
+    point: int = 0
+
+
+@dataclass(slots=True)
+class StepDraft:
+    """One step as written."""
+
+    card: Card
+    nlgeom: bool
+    max_increments: int
+    ramp: bool
+    procedure: Card | None = None
+    times: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
+    direct: bool = False
+    make: type[Step] | None = None
+    options: dict[str, Any] = field(default_factory=dict)
+    supports: list[Draft] = field(default_factory=list)
+    loads: list[Draft] = field(default_factory=list)
+    new_supports: bool = False
+    new_loads: set[LoadKind] = field(default_factory=set)
+    #: Kinds of conditions that cards of the step gave so far.
+    said: set[str] = field(default_factory=set)
+    outputs: list[Output] = field(default_factory=list)
+    frequency: int = 1
+    #: Increments between checkpoints that are kept, 0 for none.
+    restart: int = 0
+    #: For frequencies: whether stresses and displacements of earlier steps count; else None.
+    preload: bool | None = None
+
+
+@dataclass(slots=True)
+class Instance:
+    """A part placed in the plane: shift, then turn by ``angle`` about ``centre``."""
+
+    name: str
+    part: str
+    card: Card
+    shift: tuple[float, float] = (0.0, 0.0)
+    angle: float = 0.0
+    centre: tuple[float, float] = (0.0, 0.0)
+    scope: Scope = field(default_factory=lambda: Scope())
+
+
+@dataclass(slots=True)
+class Scope:
+    """One name space: the flat model, a part, or an instance's own data."""
+
+    name: str = ""
+    nodes: list[NodeBlock] = field(default_factory=list)
+    elements: list[ElementBlock] = field(default_factory=list)
+    nsets: dict[str, NamedSet] = field(default_factory=dict)
+    elsets: dict[str, NamedSet] = field(default_factory=dict)
+    surfaces: dict[str, Surface] = field(default_factory=dict)
+    sections: list[SectionDraft] = field(default_factory=list)
+    lines: list[LineDraft] = field(default_factory=list)
+    orientations: dict[str, float] = field(default_factory=dict)
+
+    def joined(self, own: Scope) -> Scope:
+        """The data of a part with those that one of its instances adds."""
+        return Scope(
+            self.name,
+            self.nodes + own.nodes,
+            self.elements + own.elements,
+            {**self.nsets, **own.nsets},
+            {**self.elsets, **own.elsets},
+            {**self.surfaces, **own.surfaces},
+            self.sections + own.sections,
+            self.lines + own.lines,
+            {**self.orientations, **own.orientations},
+        )
+
+
+@dataclass
+class AttachedDraft:
+    """One ``*ELEMENT`` card of point masses or dashpots.
+
+    Parameters
+    ----------
+    type : str
+    name : str
+        Its element set.
+    card : Card
+    nodes : list of list of Draft
+        For each element its nodes, not yet looked up.
+    value : float or None
+        None until the card with the value is read.
+    """
+
+    type: str
+    name: str
+    card: Card
+    nodes: list[list[Draft]] = field(default_factory=list)
+    value: float | None = None
+
+
+@dataclass(slots=True)
+class InteractionDraft:
+    """One ``*SURFACE INTERACTION`` with the cards below it.
+
+    ``law`` is a name of :data:`LAWS`; ``pressure`` and ``overclosure`` its numbers.
+    """
+
+    name: str
+    card: Card
+    law: str = "HARD"
+    law_where: Location | None = None
+    pressure: list[float] = field(default_factory=list)
+    overclosure: list[float] = field(default_factory=list)
+    friction: float = 0.0
+
+
+@dataclass(slots=True)
+class PairDraft:
+    """One line of ``*CONTACT PAIR`` or ``*TIE``: slave, master and options."""
+
+    card: Card
+    row: Row
+    slave: str
+    master: str
+    tied: bool = False
+    interaction: str = ""
+    method: str = "mortar"
+    start: str = "keep"
+    adjust: float = 0.0
+    adjust_set: str = ""
+    clearance: float | None = None
+    stabilise: bool = False
+    smooth: bool = False
+    name: str = ""
+
+    def joins(self, slave: str, master: str) -> bool:
+        """Whether these are its surfaces."""
+        return (key(self.slave), key(self.master)) == (key(slave), key(master))
+
+
+@dataclass(slots=True)
+class GeneralDraft:
+    """General contact: whether all outer edges take part, or the pairs of its lines."""
+
+    card: Card
+    every: bool = False
+    pairs: list[tuple[Card, Row]] = field(default_factory=list)
+    interaction: str = ""
+    where: Location | None = None
+
+
+@dataclass(slots=True)
+class LineDraft:
+    """A section of line elements: ``role`` is ``beam`` or ``spring``."""
+
+    role: str
+    card: Card
+    elset: str
+    material: str = ""
+    elastic: Elastic | None = None
+    profile: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rows: list[Row] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class PretensionDraft:
+    """One section: its surface, its node, and the normal, if it is given."""
+
+    card: Card
+    surface: str
+    node: Draft
+    normal: tuple[float, float] | None = None
+
+
+@dataclass(slots=True)
+class TieDraft:
+    """One constraint as written.
+
+    ``kind`` is ``equation``, ``kinematic``, ``distributing``, ``same``, ``straight`` or ``axes``.
+    ``terms`` holds the terms of an equation, the nodes of a straight line; the first one the
+    reference node of a coupling.
+    """
+
+    kind: str
+    card: Card
+    where: Location
+    terms: list[Draft] = field(default_factory=list)
+    target: Draft | None = None
+    surface: str = ""
+    elset: str = ""
+    dofs: tuple[int, ...] = (0, 1, 2)
+    angle: float = 0.0
+    centre: tuple[float, float] | None = None
+    ready: bool = False
+
+
+__all__ = [
+    "AttachedDraft",
+    "Draft",
+    "ElementBlock",
+    "Entry",
+    "GeneralDraft",
+    "InitialDraft",
+    "Instance",
+    "InteractionDraft",
+    "LineDraft",
+    "MaterialDraft",
+    "NamedSet",
+    "NodeBlock",
+    "PairDraft",
+    "PlasticDraft",
+    "PretensionDraft",
+    "Scope",
+    "SectionDraft",
+    "StepDraft",
+    "Surface",
+    "SurfaceRow",
+    "TieDraft",
+]

@@ -1,0 +1,108 @@
+"""What an increment leaves: a frame, and the fields of its blocks of elements."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from corota.display import Brief
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class PointFields(Brief):
+    """Values at the quadrature points of the cells of one block (same element, section).
+
+    Parameters
+    ----------
+    element : str
+    cells : ndarray of int, shape (n,)
+        Global cell indices.
+    points : ndarray, shape (n, p, 2)
+        Current positions of the quadrature points [length].
+    shape : ndarray, shape (p, k)
+        Shape functions at the points, for extrapolation to the k cell nodes.
+    frame_rotation : ndarray, shape (n,)
+        Rotation of the element frame [rad].
+    volume : ndarray, shape (n, p)
+        Reference volume of each point [length^3].
+    values : dict of str to ndarray
+        ``S`` stress (n, p, 4) and ``E`` strain (n, p, 4), rows xx, yy, zz, xy in global axes,
+        shear strain engineering; scalars (n, p): ``MISES``, ``ENER``, later ``PEEQ``, ...
+    """
+
+    element: str
+    cells: Ints
+    points: Floats
+    shape: Floats
+    frame_rotation: Floats
+    volume: Floats
+    values: dict[str, Floats]
+
+
+@dataclass
+class Frame(Brief):
+    """One converged increment.
+
+    Parameters
+    ----------
+    step, increment : int
+        From 1; increment 0 is the state at the start.
+    time, step_time : float
+        Total and step time [time].
+    factor : float
+        Load factor: share of the step's loads reached.
+    U : ndarray, shape (n_nodes, 2)
+        Displacement [length].
+    UR : ndarray, shape (n_nodes,)
+        Drilling rotation [rad], 0 at nodes without one.
+    RF : ndarray, shape (n_nodes, 3)
+        Reaction force and moment: internal minus external.
+    F : ndarray, shape (n_nodes, 3)
+        External force and moment.
+    fields : list of PointFields
+    scalars : dict of str to float
+        ``strain energy``, ``external work``, ``iterations``, ...
+    V, A : ndarray, shape (n_nodes, 3), or None
+        Velocity and acceleration, the rotation's last; in dynamic steps.
+    C : ndarray, shape (n_nodes, 5), or None
+        Contact at slave nodes, 0 elsewhere: pressure, shear traction (positive along the slave
+        surface, the body on the left), gap, slip so far, status (0 open, 1 closed, 2 slipping);
+        tractions per reference area.
+    constraint_force : ndarray, shape (n_nodes, 3), or None
+        Force and moment of constraints on nodes: what of the internal force neither loads nor
+        supports carry. Static increments of models with constraints only; not stored in files.
+    pairs : dict of str to ndarray, shape (n_nodes, 5)
+        The same for each contact pair, where there are several.
+    averages : dict of str to ndarray
+        Stress, strain and others at the nodes by the names they have in result files; of frames
+        of files that hold no values at quadrature points.
+    """
+
+    step: int
+    increment: int
+    time: float
+    step_time: float
+    factor: float
+    U: Floats
+    UR: Floats
+    RF: Floats
+    F: Floats
+    fields: list[PointFields] = field(default_factory=list)
+    scalars: dict[str, float] = field(default_factory=dict)
+    V: Floats | None = None
+    A: Floats | None = None
+    C: Floats | None = None
+    constraint_force: Floats | None = None
+    pairs: dict[str, Floats] = field(default_factory=dict)
+    averages: dict[str, Floats] = field(default_factory=dict)
+
+
+__all__ = ["Frame", "PointFields"]
