@@ -7,11 +7,10 @@ import math
 from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.tie import parameter_row
-from corota.io.deck.drafts import Draft
+from corota.io.deck.drafts import Draft, PretensionDraft
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
-    from corota.io.deck.drafts import PretensionDraft
 from corota.io.deck.lexer import Card
 
 
