@@ -54,18 +54,28 @@ PHRASES = {
     r"skipped in silence": "silently ignored",
     r"passed over": "ignored",
     r"cells a side": "elements per side",
-    r"lacking energy": "energy-balance error",
+    r"lacking energy|energy lacking|balance lacks": "energy-balance error",
+    r"conditions lack|lack of the contact": "contact residual",
 }
 
 
 def python_faults(text: str) -> list[tuple[int, str]]:
     """Retired identifiers of Python code by line."""
     tokens = tokenize.generate_tokens(io.StringIO(text).readline)
-    return [
+    found = [
         (t.start[0], f"'{t.string}' is retired: {IDENTIFIERS[t.string]}")
         for t in tokens
         if t.type == tokenize.NAME and t.string in IDENTIFIERS
     ]
+    # Parameters and types of docstrings: "name, name : type".
+    for number, line in enumerate(text.splitlines(), 1):
+        if re.match(r"\s+\w+(, \w+)* : \w", line):
+            found += [
+                (number, f"'{word}' is retired: {IDENTIFIERS[word]}")
+                for word in re.findall(r"\w+", line)
+                if word in IDENTIFIERS
+            ]
+    return found
 
 
 def rust_faults(text: str) -> list[tuple[int, str]]:

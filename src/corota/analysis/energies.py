@@ -207,7 +207,7 @@ class Balance:
     ----------
     system : System
     step : Dynamic
-    now : Moving
+    now : MotionState
         Where it starts.
     inertia : Inertia
     account : Energies

@@ -176,7 +176,7 @@ class System(NumberedModel):
         ----------
         at : Evaluation
             Overwritten: the tangent's held rows become diagonal.
-        du_held : ndarray, shape (n_dofs,)
+        du_prescribed : ndarray, shape (n_dofs,)
             Prescribed increments at held dofs, 0 elsewhere. They act through the tangent.
 
         Returns
@@ -205,7 +205,7 @@ class System(NumberedModel):
             Overwritten: the tangent's held rows become diagonal.
         rhs : ndarray, shape (n_dofs,) or (n_dofs, k)
             Forces; those at held dofs do not matter.
-        du_held : ndarray, of the same shape
+        du_prescribed : ndarray, of the same shape
             Prescribed increments at held dofs, 0 elsewhere. They act through the tangent.
 
         Returns

@@ -170,7 +170,7 @@ class Scales:
         return out[0], out[1]
 
     def add_complementarity(self, norms: ResidualNorms, complementarity: float) -> None:
-        """Judge what contact conditions lack, as a force, with the residual judged last."""
+        """Judge the contact residual, a force, with the residual judged last."""
         # Where nothing is loaded yet, and where all surfaces part, forces of rounding size are
         # the measure.
         force = max(self.force, self.nothing)

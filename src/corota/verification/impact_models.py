@@ -136,7 +136,7 @@ class Flight:
     rebound : float
         Velocity of the centre of mass at the end over that of the start.
     kinetic, strain, plastic, energy_error : float
-        Energies at the end, and what the balance lacks at most at any time.
+        Energies at the end, and the largest energy-balance error at any time.
     sideways : float
         Largest momentum along the wall over that of the start.
     squash : float

@@ -143,7 +143,7 @@ class Follow(Relation):
         What the dependent measures: direction of a displacement, or (0, 0, 1).
     axes : ndarray, shape (2, 2)
         Columns: axes of the reference node.
-    turning : bool
+    nlgeom : bool
         Whether rotations are finite.
     """
 
@@ -219,7 +219,7 @@ class Mean(Relation):
         What each dependent measures, as in :class:`Follow`.
     axes : ndarray, shape (n, 2, 2)
         Columns: axes of each node.
-    turning : bool
+    nlgeom : bool
         Whether rotations are finite.
     """
 

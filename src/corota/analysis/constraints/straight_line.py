@@ -36,7 +36,7 @@ class OnLine(Relation):
         Axes of the node's master displacement and of its dependent one.
     axes : ndarray, shape (2, 2, 2)
         Columns: axes of the two ends.
-    turning : bool
+    nlgeom : bool
         Whether the line moves with its ends; else it is linearised about the reference.
     """
 

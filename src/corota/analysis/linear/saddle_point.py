@@ -178,7 +178,7 @@ class SaddlePointSystem:
             Right-hand sides of equilibrium.
         rhs : ndarray, shape (n, k)
             And of the constraints.
-        du_held : ndarray, shape (n_dofs, k)
+        du_prescribed : ndarray, shape (n_dofs, k)
             Prescribed changes at held dofs, 0 elsewhere.
 
         Returns

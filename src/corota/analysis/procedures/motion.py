@@ -91,12 +91,12 @@ class Inertia:
     ----------
     system : System
     kind : {"consistent", "constant", "lumped"}
-    light : ndarray of bool, shape (n_nodes,), optional
+    massless : ndarray of bool, shape (n_nodes,), optional
         Nodes whose mass the other nodes of their elements carry.
 
     Attributes
     ----------
-    light : ndarray of bool, shape (n_dofs,)
+    massless : ndarray of bool, shape (n_dofs,)
         Displacements without mass.
     """
 
@@ -235,7 +235,7 @@ class Driven:
 
     Parameters
     ----------
-    held : ndarray of bool
+    constrained : ndarray of bool
     u, v, a : ndarray
         Displacement, velocity and acceleration, which mean nothing elsewhere.
     """
@@ -263,7 +263,7 @@ class NewmarkMotion:
     system : System
     inertia : Inertia
     scheme : Scheme
-    start : Moving
+    start : MotionState
     dt : float
     driven : Driven
         Prescribed motion at the end.

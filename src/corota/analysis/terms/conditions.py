@@ -69,7 +69,7 @@ class Conditions:
 
     Attributes
     ----------
-    held : ndarray of bool, shape (n_dofs,)
+    constrained : ndarray of bool, shape (n_dofs,)
         Dofs with a prescribed value.
     fixed : ndarray of int
         Their numbers.

@@ -102,7 +102,7 @@ def study() -> Study:
     """Error of the balance of energy against increments of the way across."""
     finer = (1, 2, 4)
     return Study(
-        "what the work lacks over strain energy and friction",
+        "energy-balance error of work, strain energy and friction",
         {
             f"friction {f:g}": (
                 [10.0 * k for k in finer],

@@ -52,7 +52,7 @@ def measure() -> Iterator[Value]:
         flight = flown(element, plastic, increments)
         text = f"{'yielding' if plastic else 'elastic'}, {element}"
         yield Value(
-            f"energy that the balance lacks at most, {text}",
+            f"largest energy-balance error, {text}",
             0.0,
             flight.energy_error,
             0.03 if plastic else 2e-4,
@@ -65,7 +65,11 @@ def measure() -> Iterator[Value]:
         yield Value(f"velocity of the rebound at most, {text}", 1.0, flight.rebound, 0.0, "at most")
     slow, fast = flown("Q4I", True, 0, 8e-3).energy_error, flown("Q4I", True).energy_error
     yield Value(
-        "energy lacking with finer increments over that before", 0.7, fast / slow, 0.0, "at most"
+        "energy-balance error with finer increments over that before",
+        0.7,
+        fast / slow,
+        0.0,
+        "at most",
     )
 
 
@@ -85,10 +89,10 @@ def curve() -> Curve:
 
 
 def study() -> Study:
-    """Energy that the balance lacks against the error that increments may make."""
+    """Energy-balance error against the error that increments may make."""
     sizes = (8e-3, 2e-3, 5e-4)
     return Study(
-        "energy that the balance of the yielding ring lacks",
+        "energy-balance error of the yielding ring",
         {
             e: ([1.0 / s for s in sizes], [flown(e, True, 0, s).energy_error for s in sizes])
             for e in ("Q4I", "Q4D")

@@ -82,7 +82,7 @@ def direction(
 
 
 def _aside(metric: Metric, du: Floats, df: float, old: Tangent, new: Tangent) -> float:
-    """What a chord lacks of a sum of two directions, neither of them backwards."""
+    """Distance of a chord from the sums of two directions, neither of them backwards."""
     a, b = shares(metric, du, df, old, new)
     if min(a, b) < 0.0:
         a = max(metric.dot(old.u, old.factor, du, df), 0.0)

@@ -52,7 +52,7 @@ MAX_STATE_REPEATS = 2
 MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Corrections after which partly covered nodes keep to whom they belong.
 CORRECTIONS_BEFORE_FREEZE = 4
-#: Relative difference of lacks that is none.
+#: Relative difference of contact residuals that is none.
 RELATIVE_DIFFERENCE = 1e-6
 #: Share of the friction bound from which a correction is made anew with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
@@ -135,7 +135,7 @@ class ContactEquations:
         """Keep the tangent: states of contact are looked back at."""
 
     def complementarity(self, at: ContactEvaluation) -> tuple[float, int, int]:
-        """Largest lack of the contact conditions as a force; its pair and constraint."""
+        """Largest contact residual as a force; its pair and constraint."""
         worst = (0.0, 0, 0)
         for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
             if pair.n:
@@ -402,7 +402,7 @@ class ContactEquations:
     def _one_change(
         self, contact_state: ContactState, wanted: States, changed: list[NDArray[np.bool_]]
     ) -> States:
-        """Only the change that the conditions lack most, and all that lie next to nothing."""
+        """Only the change of largest contact residual, and all that lie next to nothing."""
         assert self.last is not None
         self.single += 1
         best, where = -1.0, (0, 0)

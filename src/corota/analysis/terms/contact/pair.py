@@ -268,7 +268,7 @@ class Pair:
         return q - self.stiffness * np.where(seen, slip, 0.0)
 
     def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
-        """What the contact conditions lack, as a force by constraint, shape (n,)."""
+        """Contact residual as a force by constraint, shape (n,)."""
         seen = terms.area > COVERED * self.full
         area = np.where(seen, terms.area, self.full)
 
