@@ -83,6 +83,15 @@ def make_parser() -> Parser:
         "--provenance", action="store_true", help="write versions and digests beside the results"
     )
 
+    run.add_argument(
+        "--serve",
+        nargs="?",
+        type=_port,
+        const=0,
+        metavar="PORT",
+        help="show the run in a page of this machine while it goes on; prints the address",
+    )
+
     resume = command("resume", "Go on with a run that stopped, from its newest checkpoint.")
     resume.add_argument("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
     resume.add_argument(
@@ -177,6 +186,13 @@ def make_parser() -> Parser:
         help="size of the page; what does not fit is thinned, with a note (9.5)",
     )
 
+    watch = command("watch", "Show a run at work, in a browser or in the terminal.")
+    watch.add_argument("job", help="stem of the job's files, its deck, or any of them")
+    watch.add_argument("-o", "--output", metavar="DIR", help="folder of the files; else the job's")
+    watch.add_argument("--terminal", action="store_true", help="lines instead of a page")
+    watch.add_argument("--open", action="store_true", help="open the page in a browser")
+    watch.add_argument("--port", type=_port, default=0, metavar="PORT", help="else any free one")
+
     info = command("info", "Describe a deck, a mesh or a result file.")
     info.add_argument("file")
     _reading(info)
@@ -266,6 +282,13 @@ def _values(text: str) -> tuple[str, list[float]]:
 
 def _whole(text: str) -> int:
     return 0 if text.strip() == "0" else _count(text)
+
+
+def _port(text: str) -> int:
+    number = int(text) if text.strip().isdigit() else -1
+    if not 0 <= number < 65536:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port, 0 to 65535")
+    return number
 
 
 def _count(text: str) -> int:

@@ -162,7 +162,12 @@ def carry_out(
     if terminal.json:
         observers.insert(1, Events(terminal.record))
     whole = any(f in ("npz", "vtu") for f in formats)
-    with files, stop.listening(), warnings.catch_warnings():
+    with (
+        _served(files, model.name, terminal, getattr(args, "serve", None)),
+        files,
+        stop.listening(),
+        warnings.catch_warnings(),
+    ):
         warnings.simplefilter("ignore")  # they are among the notes of the results
         try:
             results = solve(
@@ -207,6 +212,24 @@ def carry_out(
         }
     )
     return 0
+
+
+@contextlib.contextmanager
+def _served(files: JobFiles, name: str, terminal: Terminal, port: int | None) -> Iterator[None]:
+    """Serve the page of the run while it goes on, if that was asked for."""
+    if port is None:
+        yield
+        return
+    from corota.cli.watch import tell_address
+    from corota.report.records import JobPaths
+    from corota.report.server import PageServer
+
+    with PageServer(JobPaths(files.folder, files.name or name), port) as server:
+        tell_address(server.address, terminal)
+        try:
+            yield
+        finally:
+            server.wait_for_pages()
 
 
 def _tell_checkpoint(files: JobFiles, terminal: Terminal) -> None:

@@ -22,6 +22,7 @@ from corota.io.events import Events, json_line
 from corota.io.finite import check_frame
 from corota.io.folder_lock import FolderLock
 from corota.io.requests import due_now, left_over, wants_file
+from corota.io.stop_request import StopRequest, stop_file
 from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.dat import check_requests, dat_blocks
 from corota.io.tables.dat_modes import buckling_table, eigenvalue_tables
@@ -147,6 +148,7 @@ class JobFiles(BaseObserver):
         self.checkpointed: Checkpoint | None = None
         self._known_cuts: dict[tuple[int, int], int] = {}
         self._held: FolderLock | None = None
+        self._end_request: StopRequest | None = None
         self.run = os.urandom(6).hex() if resume is None else resume.run
 
     # Called by the analysis.
@@ -173,6 +175,7 @@ class JobFiles(BaseObserver):
         self._stop, self._newest = False, None
         self.paths.clear()
         self._held = FolderLock(self.folder / f".{name}.lock")
+        self._end_request = StopRequest(stop_file(self.folder, name))
         try:
             self._start(model, steps, name)
         except BaseException:
@@ -306,6 +309,11 @@ class JobFiles(BaseObserver):
         if resumed is not None and number == resumed.state.step and not self._increments:
             return  # it is in the files
         self._events.step(number, step)
+
+    @property
+    def stop(self) -> bool:
+        """Whether a page or another process asked the run to end after this increment."""
+        return self._end_request is not None and self._end_request.asked
 
     # Checkpoints.
     @property
@@ -474,6 +482,8 @@ class JobFiles(BaseObserver):
                     path.unlink(missing_ok=True)
         if self._held is not None:
             self._held.release()
+        if self._end_request is not None:
+            self._end_request.clear()
 
     def __enter__(self) -> JobFiles:
         return self

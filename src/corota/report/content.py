@@ -142,8 +142,8 @@ def _content(
         content.chunks["model"] = model_chunk(results)
         if not isinstance(results, FileResults):
             more = [*more, *_more_of_memory(results)]
-    history = history_chunk(records, _facts(results, name, provenance or {}), content.notes)
-    content.chunks["history"] = history
+    facts = facts_of(results, name, provenance)
+    content.chunks["history"] = history_chunk(records, facts, content.notes)
     budget = int((limit * 1e6 - OWN) / BASE64) - content.size
     frames: list[tuple[str, NodalArrays, list[int]]] = []
     if results is not None:
@@ -152,9 +152,7 @@ def _content(
             frames.append((kind, NodalArrays(of), wanted))
     chunks = _frames(frames, budget, content.notes, name)
     if content.notes:  # once more, with what was left out
-        content.chunks["history"] = history_chunk(
-            records, _facts(results, name, provenance or {}), content.notes, again=True
-        )
+        content.chunks["history"] = history_chunk(records, facts, content.notes, again=True)
     for number, data in enumerate(chunks):
         content.chunks[f"frame-{number}"] = data
     return content
@@ -171,9 +169,11 @@ def _more_of_memory(results: Results) -> list[tuple[str, Results]]:
     return found
 
 
-def _facts(results: Results | None, name: str, provenance: dict[str, Any]) -> dict[str, Any]:
+def facts_of(
+    results: Results | None, name: str, provenance: dict[str, Any] | None = None
+) -> dict[str, Any]:
     """Name, versions, counts and phase times."""
-    facts: dict[str, Any] = {"job": name, "provenance": provenance}
+    facts: dict[str, Any] = {"job": name, "provenance": provenance or {}}
     if results is not None:
         facts["info"] = results.info
         facts["critical points"] = [str(point) for point in results.critical_points]
@@ -183,7 +183,7 @@ def _facts(results: Results | None, name: str, provenance: dict[str, Any]) -> di
 
 
 # The model.
-def model_chunk(results: Results) -> bytes:
+def model_chunk(results: Results, level: int = 9) -> bytes:
     """Mesh, sets, sections, supports, loads, contact surfaces: what no frame changes."""
     model, mesh = results.model, results.mesh
     arrays: dict[str, NDArray[Any]] = {
@@ -226,7 +226,7 @@ def model_chunk(results: Results) -> bytes:
         "averaging": vf.AVERAGING,
         "line elements": list(elements.line_names()),
     }
-    return pack(header, arrays)
+    return pack(header, arrays, level)
 
 
 def _ends(results: Results, pairs: Any) -> Ints:
@@ -237,7 +237,11 @@ def _ends(results: Results, pairs: Any) -> Ints:
 
 # The course of the run.
 def history_chunk(
-    records: Records, facts: dict[str, Any], notes: list[str], again: bool = False
+    records: Records,
+    facts: dict[str, Any],
+    notes: list[str],
+    again: bool = False,
+    level: int = 9,
 ) -> bytes:
     """Rows, iterations, cut-backs, notes and the end of the run.
 
@@ -250,6 +254,8 @@ def history_chunk(
         Of what the page leaves out; gets those of what is thinned here.
     again : bool
         Whether the notes have them already.
+    level : int
+        Of zlib.
     """
     table = records.table()
     kept = thinned(len(table), MOST_ROWS)
@@ -275,7 +281,7 @@ def history_chunk(
         "iterations": iterations[chosen],
         "iteration numbers": chosen,
     }
-    return pack(header, arrays)
+    return pack(header, arrays, level)
 
 
 def thinned(count: int, most: int) -> Ints:
@@ -286,11 +292,13 @@ def thinned(count: int, most: int) -> Ints:
 
 
 # The frames.
-def frame_chunk(kind: str, arrays: NodalArrays, index: int, names: list[str], bits: int) -> bytes:
+def frame_chunk(
+    kind: str, arrays: NodalArrays, index: int, names: list[str], bits: int, level: int = 9
+) -> bytes:
     """Arrays of a frame with its step, increment, time and what else it is called by."""
     frame = arrays.results.frames
     head = _head(kind, frame, index)
-    return pack(head, arrays.read(index, names, bits))
+    return pack(head, arrays.read(index, names, bits), level)
 
 
 def _head(kind: str, frames: Sequence[Frame], index: int) -> dict[str, Any]:

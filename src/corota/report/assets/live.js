@@ -44,6 +44,7 @@ export async function follow(source, scene, take) {
   let seen = -1;
   for (;;) {
     let state = null;
+    const begin = performance.now();
     try {
       state = await source.state();
     } catch {
@@ -62,7 +63,9 @@ export async function follow(source, scene, take) {
         break;
       }
     }
-    await new Promise((resolve) => setTimeout(resolve, BEAT));
+    // What takes long to answer is asked for less often: the run needs the processor.
+    const pause = Math.max(BEAT, 5 * (performance.now() - begin));
+    await new Promise((resolve) => setTimeout(resolve, Math.min(pause, 10 * BEAT)));
   }
   button.hidden = true;
 }

@@ -1,0 +1,273 @@
+"""The page of a run at work: a server for this machine only, fed by the files of the job."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import threading
+import time
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from corota.errors import CorotaError
+from corota.io.result_reader import read_results
+from corota.io.stop_request import ask_to_stop
+from corota.report.content import BITS, facts_of, frame_chunk, history_chunk, model_chunk
+from corota.report.fields import NodalArrays
+from corota.report.page import page
+from corota.report.records import JobRecords
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from corota.io.result_reader import FileResults
+    from corota.report.records import JobPaths, Records
+
+Answer = TypeVar("Answer")
+
+HOST = "127.0.0.1"
+#: Of zlib: the run needs the processor more than the page.
+LEVEL = 1
+#: Seconds after which a run whose process is not found counts as ended if its log does not grow.
+QUIET = 60.0
+#: Seconds within which a page that is open asks again.
+STILL_ASKING = 2.5
+#: Times that a result file is read again if the run exchanged it meanwhile.
+TRIES = 4
+
+
+class JobWatch:
+    """What a page asks of a job, from its files as they are now.
+
+    Parameters
+    ----------
+    job : JobPaths
+    """
+
+    def __init__(self, job: JobPaths) -> None:
+        self.job = job
+        self._records = JobRecords(job)
+        self._lock = threading.Lock()
+        self._model: tuple[str, bytes] | None = None
+
+    def records(self) -> Records:
+        """The course of the run so far."""
+        with self._lock:
+            return self._records.update()
+
+    def state(self) -> dict[str, Any]:
+        """How far the run is: ``version`` changes with the course, ``over`` with its end."""
+        found = self.records()
+        return {
+            "version": len(found.rows)
+            + len(found.iterations)
+            + len(found.cut_backs)
+            + len(found.notes)
+            + len(found.end),
+            "frames": self._read(lambda results: len(results.frames)) or 0,
+            "over": not self.at_work(found),
+            "status": found.end.get("status", ""),
+        }
+
+    def at_work(self, records: Records | None = None) -> bool:
+        """Whether a process still writes the files."""
+        found = records or self.records()
+        if found.end:
+            return False
+        try:
+            holder = int((self.job.folder / f".{self.job.name}.lock").read_text())
+            os.kill(holder, 0)
+        except (OSError, ValueError):
+            # Ended by force, or on another machine: then its log still grows.
+            return self._age() < QUIET
+        return True
+
+    def _age(self) -> float:
+        try:
+            return time.time() - self.job.path("jsonl").stat().st_mtime
+        except OSError:
+            return 0.0
+
+    def model(self) -> bytes | None:
+        """Chunk of the model; made once for a run."""
+
+        def make(results: FileResults) -> bytes:
+            run = results.attributes.get("run", "")
+            if self._model is None or self._model[0] != run:
+                self._model = (run, model_chunk(results, LEVEL))
+            return self._model[1]
+
+        return self._read(make)
+
+    def history(self) -> bytes:
+        """Chunk of the course of the run."""
+        facts = self._read(lambda results: facts_of(results, self.job.name)) or {
+            "job": self.job.name
+        }
+        return history_chunk(self.records(), facts, [], level=LEVEL)
+
+    def frame(self, index: int) -> bytes | None:
+        """Chunk of a frame; None where there is none yet."""
+
+        def make(results: FileResults) -> bytes | None:
+            if not 0 <= index < len(results.frames):
+                return None
+            arrays = NodalArrays(results)
+            return frame_chunk("increment", arrays, index, arrays.names, BITS, LEVEL)
+
+        return self._read(make)
+
+    def _read(self, action: Callable[[FileResults], Answer]) -> Answer | None:
+        """Answer of an action to the result file; None while there is none.
+
+        The run exchanges two copies of the file and goes on writing in the one that is not
+        visible: an answer counts if the file was the visible one before and after.
+        """
+        path = self.job.path("vtkhdf")
+        for _ in range(TRIES):
+            try:
+                before = os.stat(path).st_ino
+                with read_results(path) as results:
+                    found = action(results)
+                if os.stat(path).st_ino == before:
+                    return found
+            except (CorotaError, OSError, KeyError, ValueError):
+                if not path.exists():
+                    return None
+        return None
+
+    def stop(self) -> None:
+        """Ask the run to end after the increment at work, with a checkpoint."""
+        ask_to_stop(self.job.folder, self.job.name)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Answers below the address with the token; all else is not found."""
+
+    watch: ClassVar[JobWatch]
+    token: ClassVar[str]
+    server: PageServer
+    protocol_version = "HTTP/1.1"
+
+    def do_GET(self) -> None:
+        name = self._name()
+        if name is None:
+            return self._fail(HTTPStatus.NOT_FOUND)
+        self.server.asked()
+        if name == "":
+            text = page(None, title=self.watch.job.name, live=f"/{self.token}")
+            return self._answer(text.encode(), "text/html; charset=utf-8")
+        if name == "state":
+            return self._answer(json.dumps(self.watch.state()).encode(), "application/json")
+        data = None
+        if name in ("model", "history"):
+            data = getattr(self.watch, name)()
+        elif name.startswith("frame/") and name[6:].isdigit():
+            data = self.watch.frame(int(name[6:]))
+        if data is None:
+            return self._answer(b"", "application/octet-stream", HTTPStatus.NO_CONTENT)
+        return self._answer(data, "application/octet-stream")
+
+    def do_POST(self) -> None:
+        own = f"http://{self.headers.get('Host')}"
+        if self._name() != "stop" or self.headers.get("Origin", own) != own:
+            return self._fail(HTTPStatus.NOT_FOUND)
+        self.watch.stop()
+        return self._answer(b"{}", "application/json")
+
+    def _name(self) -> str | None:
+        """What is asked for; None if the address is not that of this page.
+
+        A page of another site that has its name resolve to this machine sends its own name.
+        """
+        port = self.server.server_address[1]
+        if self.headers.get("Host") not in (f"{HOST}:{port}", f"localhost:{port}"):
+            return None
+        parts = self.path.split("?")[0].split("/", 2)
+        if len(parts) != 3 or not secrets.compare_digest(parts[1], self.token):
+            return None
+        return parts[2]
+
+    def _fail(self, status: HTTPStatus) -> None:
+        self._answer(b"", "text/plain", status)
+
+    def _answer(self, data: bytes, kind: str, status: HTTPStatus = HTTPStatus.OK) -> None:
+        try:
+            self.send_response(status)
+            for name, value in (
+                ("Content-Type", kind),
+                ("Content-Length", str(len(data))),
+                ("Cache-Control", "no-store"),
+                ("X-Content-Type-Options", "nosniff"),
+                ("Referrer-Policy", "no-referrer"),
+            ):
+                self.send_header(name, value)
+            self.end_headers()
+            self.wfile.write(data)
+        except OSError:  # the page was closed
+            self.close_connection = True
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Nothing on the terminal."""
+
+
+class PageServer(ThreadingHTTPServer):
+    """Serves the page of a job on the loopback address, at a path that nobody guesses.
+
+    Parameters
+    ----------
+    job : JobPaths
+    port : int
+        Any free one by default.
+
+    Attributes
+    ----------
+    address : str
+        Of the page.
+    """
+
+    daemon_threads = True
+
+    def __init__(self, job: JobPaths, port: int = 0) -> None:
+        token = secrets.token_urlsafe(18)
+        handler = type("Handler", (_Handler,), {"watch": JobWatch(job), "token": token})
+        super().__init__((HOST, port), handler)
+        self.watch: JobWatch = handler.watch  # type: ignore[attr-defined]
+        self.address = f"http://{HOST}:{self.server_address[1]}/{token}/"
+        self._last = 0.0
+        self._thread = threading.Thread(
+            target=self.serve_forever,
+            kwargs={"poll_interval": 0.1},
+            name="corota-page",
+            daemon=True,
+        )
+
+    def asked(self) -> None:
+        """Note that a page asked."""
+        self._last = time.monotonic()
+
+    def __enter__(self) -> PageServer:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.shutdown()
+        self.server_close()
+
+    def wait_for_pages(self, seconds: float = 10.0) -> None:
+        """Let pages that are open fetch the end of the run; they ask until they know it."""
+        limit = time.monotonic() + seconds
+        while (now := time.monotonic()) < limit and now - self._last < STILL_ASKING:
+            time.sleep(0.1)
+
+
+__all__ = ["JobWatch", "PageServer"]
