@@ -3,8 +3,9 @@
 import { openChunk } from "./chunk.js";
 import { byId } from "./dom.js";
 
-/** Milliseconds between two questions, and frames that are kept. */
+/** Milliseconds between two questions, frames that are fetched at once and that are kept. */
 const BEAT = 1000;
+const AT_ONCE = 4;
 const MOST_FRAMES = 200;
 
 export class LiveSource {
@@ -64,29 +65,30 @@ export async function follow(source, scene, take) {
       }
     }
     // What takes long to answer is asked for less often: the run needs the processor.
-    const pause = Math.max(BEAT, 5 * (performance.now() - begin));
+    const pause = Math.max(BEAT, 2 * (performance.now() - begin));
     await new Promise((resolve) => setTimeout(resolve, Math.min(pause, 10 * BEAT)));
   }
   button.hidden = true;
 }
 
-/** The newest frame, and some between it and the last one that is known. */
+/** The newest frame and some of those that are missing, spread over the run; how many came. */
 async function newFrames(source, scene, count) {
-  if (!count) return 0;
-  const newest = count - 1;
-  const last = Math.max(-1, ...source.known);
-  const step = Math.max(1, Math.ceil((newest - last) / 8));
+  const missing = [];
+  for (let index = 0; index < count; index++) if (!source.known.has(index)) missing.push(index);
+  if (!missing.length || (scene.all.length >= MOST_FRAMES && missing.at(-1) !== count - 1)) return 0;
+  const stride = Math.max(1, Math.ceil(missing.length / AT_ONCE));
+  const wanted = missing.filter((_, i) => (missing.length - 1 - i) % stride === 0);
   let found = 0;
-  for (let index = last + step; index <= newest; index = index < newest ? Math.min(index + step, newest) : index + 1) {
+  for (const index of wanted) {
     const frame = await source.chunk(`frame/${index}`);
+    if (!frame) break; // not written yet
     source.known.add(index);
-    if (!frame) continue;
-    scene.add(frame);
+    scene.all.push(frame);
     found += 1;
   }
+  scene.all.sort((a, b) => a.index - b.index);
   if (scene.all.length > MOST_FRAMES) {
     scene.all = scene.all.filter((_, i) => i % 2 === 0 || i === scene.all.length - 1);
-    scene.refresh();
   }
   return found;
 }

@@ -158,7 +158,7 @@ class Page {
   async openEmbedded() {
     const source = new EmbeddedSource();
     this.build(await source.chunk("model"), await source.chunk("history"));
-    if (this.model) for await (const frame of source.frames()) this.scene.add(frame);
+    if (this.model) for await (const frame of source.frames()) this.scene.all.push(frame);
     this.assemble();
   }
 
@@ -186,8 +186,10 @@ class Page {
       this.tables.updateIncrements?.();
     }
     if (frames) {
-      const atEnd = this.scene.index >= this.scene.shown.length - 1 - frames;
+      const atEnd = this.scene.index >= this.scene.shown.length - 1;
+      const { frame } = this.scene;
       this.scene.settle();
+      this.scene.index = Math.max(this.scene.shown.indexOf(frame), 0);
       this.scene.tell("frames");
       if (atEnd && !this.player.playing) this.scene.show(this.scene.shown.length - 1);
     }

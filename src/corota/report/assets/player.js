@@ -528,9 +528,10 @@ export class Player {
 
 export function describeFrame(frame) {
   if (frame.label) return frame.label;
+  const factor = frame["load factor"];
   return (
     `step ${frame.step}, increment ${frame.increment}, time ${format(frame.time, 4)}` +
-    (frame.factor && frame.factor !== frame.time ? `, load factor ${format(frame.factor, 4)}` : "")
+    (factor && factor !== frame.time ? `, load factor ${format(factor, 4)}` : "")
   );
 }
 

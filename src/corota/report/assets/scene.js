@@ -41,12 +41,6 @@ export class Scene extends EventTarget {
     return this.shown[this.index];
   }
 
-  add(frame) {
-    frame.factor = frame["load factor"];
-    this.all.push(frame);
-    this.refresh();
-  }
-
   /** Take up frames that came or went. */
   refresh() {
     this.shown = this.frames;
