@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import random
 import shutil
 import signal
@@ -23,7 +24,9 @@ import tempfile
 import time
 import warnings
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from multiprocessing import get_context
 from pathlib import Path
 
 import h5py
@@ -78,6 +81,13 @@ class Tally:
     same: int = 0
     counts: Counter[str] = field(default_factory=Counter)
     faults: list[str] = field(default_factory=list)
+
+    def add(self, other: Tally) -> None:
+        """Add what happened to others."""
+        self.runs += other.runs
+        self.same += other.same
+        self.counts += other.counts
+        self.faults += other.faults
 
 
 def whole(case: Case, base: Path, every: int) -> Whole:
@@ -271,42 +281,44 @@ def damage(data: bytes, other: bytes, rng: random.Random) -> tuple[str, bytes]:
     return how, bytes(out)
 
 
-def damaged_run(own: Whole, folder: Path, other: bytes, rng: random.Random, tally: Tally) -> bytes:
-    """Damage one or both checkpoints of a run that was ended, and resume it."""
-    before = Strike(rng.uniform(0.4, 0.95) * own.seconds)
-    for _ in range(20):
-        code, _ = run(own.case, folder, 1, False, before)
-        if (folder / f"{JOB}.ckpt.1").exists():
+def damaged_runs(own: Whole, times: int, other: bytes, rng: random.Random, tally: Tally) -> bytes:
+    """End a run, damage one or both of its checkpoints and resume it, several times."""
+    base = own.folder.with_name("ended")
+    paths = [f"{JOB}.ckpt", f"{JOB}.ckpt.1"]
+    hit = Strike(rng.uniform(0.4, 0.95) * own.seconds)
+    for _ in range(8):
+        run(own.case, base, 1, False, hit)
+        if all((base / name).exists() for name in paths):
             break
-        before = Strike(inside="before fsync", count=rng.randint(1, own.calls["before fsync"]))
+        flushes = own.calls.get("before fsync", 1)
+        hit = Strike(inside="before fsync", count=rng.randint(flushes // 2 + 1, flushes))
     else:
-        return other
-    paths = [folder / f"{JOB}.ckpt", folder / f"{JOB}.ckpt.1"]
-    if not all(path.exists() for path in paths):
-        return other
-    sound = paths[0].read_bytes()
-    both = rng.random() < 0.3
-    for path in paths if both else [rng.choice(paths)]:
-        data = path.read_bytes()
-        how, bad = damage(data, other or paths[1].read_bytes(), rng)
-        if bad == data:
-            bad = data[:-1]
-        path.write_bytes(bad)
-        tally.counts[how] += 1
-        tally.counts["damaged"] += 1
-    tally.runs += 1
-    code, log = run(own.case, folder, 1, True, Strike())
-    if code == 6 and both and log.strip():
-        tally.counts["refused"] += 1
-        tally.same += 1
-    elif code == own.code and not both:
-        differences = folder_differences(own.folder, folder)
-        tally.counts["by the other one"] += 1
-        tally.same += not differences
-        if differences:
-            tally.faults.append(f"{own.case.name}: damaged, resumed wrongly: {differences[:3]}")
-    else:
-        tally.faults.append(f"{own.case.name}: damaged: exit code {code}: {log.strip()}")
+        return other  # a run without two checkpoints
+    sound = (base / paths[0]).read_bytes()
+    for number in range(times):
+        folder = own.folder.with_name(f"damaged{number}")
+        shutil.copytree(base, folder)
+        both = rng.random() < 0.3
+        for name in paths if both else [rng.choice(paths)]:
+            data = (folder / name).read_bytes()
+            how, bad = damage(data, other or (folder / paths[1]).read_bytes(), rng)
+            (folder / name).write_bytes(data[:-1] if bad == data else bad)
+            tally.counts[how] += 1
+            tally.counts["damaged"] += 1
+        tally.runs += 1
+        code, log = run(own.case, folder, 1, True, Strike())
+        fault = ""
+        if both and code == 6 and log.strip():
+            tally.counts["refused"] += 1
+        elif not both and code == own.code:
+            tally.counts["by the other one"] += 1
+            if differences := folder_differences(own.folder, folder):
+                fault = f"resumed wrongly: {differences[:3]}"
+        else:
+            fault = f"exit code {code}: {log.strip()}"
+        faults = [f"{own.case.name}: damaged: {fault}"] if fault else []
+        tally.faults += faults
+        _tell(faults, folder)
     return sound
 
 
@@ -319,9 +331,7 @@ def table(tallies: dict[str, Tally], by: str) -> list[str]:
     lines = [head, "| --- " * 7 + "|"]
     total = Tally()
     for tally in tallies.values():
-        total.runs += tally.runs
-        total.same += tally.same
-        total.counts += tally.counts
+        total.add(tally)
     for name, tally in {**tallies, "all": total}.items():
         c = tally.counts
         vtk = c["vtk"] if vtkHDFReader is not None else "not installed"
@@ -332,6 +342,47 @@ def table(tallies: dict[str, Tally], by: str) -> list[str]:
     return lines
 
 
+@dataclass
+class Plan:
+    """What a campaign does; its parts run side by side."""
+
+    runs: int
+    seconds: float
+    by_term: bool
+    damaged: int
+    only: str
+    seed: int
+    jobs: int
+    base: Path
+
+
+def campaign(plan: Plan, part: int) -> tuple[dict[str, Tally], Tally]:
+    """The runs of one part: tallies by kind, and that of damaged checkpoints."""
+    wanted = [case for case in cases() if plan.only in case.name]
+    late = time.monotonic() + (plan.seconds or float("inf"))
+    tallies, broken = {case.kind: Tally() for case in wanted}, Tally()
+    known: dict[str, Whole] = {}
+    for number in range(plan.runs):
+        if number % len(wanted) % plan.jobs != part or time.monotonic() > late:
+            continue
+        own = _known(wanted[number % len(wanted)], plan.base, known)
+        folder = own.folder.with_name(f"run{number}")
+        tally = tallies[own.case.kind]
+        faults = len(tally.faults)
+        rng = random.Random(f"{plan.seed} {number}")
+        struck_run(own, folder, plan.by_term, rng, tally)
+        _tell(tally.faults[faults:], folder)
+    rng, other = random.Random(f"{plan.seed} damaged {part}"), b""
+    share = math.ceil(plan.damaged / plan.jobs)
+    for case in wanted[part :: plan.jobs]:
+        if broken.counts["damaged"] >= share or time.monotonic() > late:
+            break
+        if case.kind != "examples":
+            own = _known(case, plan.base, known)
+            other = damaged_runs(own, 10, other, rng, broken)
+    return tallies, broken
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=300)
@@ -340,38 +391,36 @@ def main() -> int:
     parser.add_argument("--damaged", type=int, default=0, help="damaged checkpoints after that")
     parser.add_argument("--only", default="", help="cases whose name holds this")
     parser.add_argument("--seed", type=int, default=17)
+    parser.add_argument("--jobs", type=int, default=1, help="parts that run side by side")
     parser.add_argument("--write", action="store_true", help="put the table into docs/restart.md")
     args = parser.parse_args()
-    rng = random.Random(args.seed)
-    wanted = [case for case in cases() if args.only in case.name]
     base = Path(tempfile.mkdtemp(prefix="corota-kill-"))
+    plan = Plan(
+        args.runs,
+        args.seconds,
+        args.signal == "TERM",
+        args.damaged,
+        args.only,
+        args.seed,
+        args.jobs,
+        base,
+    )
     _load()
     begin = time.monotonic()
-    late = begin + (args.seconds or float("inf"))
-    tallies = {case.kind: Tally() for case in wanted}
+    if args.jobs == 1:
+        parts = [campaign(plan, 0)]
+    else:
+        with ProcessPoolExecutor(args.jobs, get_context("fork")) as pool:
+            parts = list(pool.map(campaign, [plan] * args.jobs, range(args.jobs)))
+    tallies: dict[str, Tally] = {}
     broken = Tally()
-    try:
-        known: dict[str, Whole] = {}
-        for number in range(args.runs):
-            if time.monotonic() > late:
-                break
-            own = _known(wanted[number % len(wanted)], base, known)
-            folder = own.folder.with_name(f"run{number}")
-            tally = tallies[own.case.kind]
-            faults = len(tally.faults)
-            struck_run(own, folder, args.signal == "TERM", rng, tally)
-            _tell(tally.faults[faults:], folder)
-        other, number = b"", 0
-        while broken.counts["damaged"] < args.damaged and time.monotonic() <= late:
-            own = _known(wanted[number % len(wanted)], base, known)
-            number += 1
-            folder = own.folder.with_name(f"damaged{number}")
-            faults = len(broken.faults)
-            other = damaged_run(own, folder, other, rng, broken)
-            _tell(broken.faults[faults:], folder)
-    finally:
-        if not any(t.faults for t in (*tallies.values(), broken)):
-            shutil.rmtree(base, ignore_errors=True)
+    for found, damaged in parts:
+        broken.add(damaged)
+        for kind, tally in found.items():
+            tallies.setdefault(kind, Tally()).add(tally)
+    faults = broken.faults + [fault for tally in tallies.values() for fault in tally.faults]
+    if not faults:
+        shutil.rmtree(base, ignore_errors=True)
     lines = table(tallies, args.signal) if args.runs else []
     if args.damaged:
         c = broken.counts
@@ -381,14 +430,15 @@ def main() -> int:
             f"Damaged checkpoints: {c['damaged']} in {broken.runs} runs ("
             + ", ".join(f"{way} {c[way]}" for way in ways)
             + f"): {c['by the other one']} runs went on from the other one, {c['refused']} with "
-            f"both damaged were refused, {len(broken.faults)} resumed wrongly.",
+            f"both damaged were refused, {len(broken.faults)} were resumed wrongly.",
         ]
     text = "\n".join(lines)
     spent = time.monotonic() - begin
-    sys.stdout.write(f"{text}\n\n{len(known)} cases, {spent:.0f} s, {machine()}\n")
+    sys.stdout.write(f"{text}\n\n{len(cases())} cases, {spent:.0f} s, {machine()}\n")
     if args.write:
-        write_between(PAGE, f"kill {args.signal}", text)
-    return int(any(t.faults for t in (*tallies.values(), broken)))
+        mark = f"kill {args.signal}" if args.runs else "kill damaged"
+        write_between(PAGE, mark, text.strip())
+    return int(bool(faults))
 
 
 def _load() -> None:

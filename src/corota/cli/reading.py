@@ -40,7 +40,7 @@ def read_input(name: str, args: Any) -> Model:
         lenient=args.lenient,
         allow_include=args.allow_include,
         as_written=args.as_written,
-        parameters=dict(args.parameters),
+        parameters=dict(getattr(args, "parameters", ())),
     )
 
 
