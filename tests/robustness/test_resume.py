@@ -308,12 +308,6 @@ def test_restart_card_keeps_checkpoints_of_the_ends_of_steps(tmp_path):
     assert folder_differences(tmp_path / "whole", tmp_path / "part") == []
 
 
-def test_restart_read_says_what_does_it(tmp_path):
-    (tmp_path / "job.inp").write_text("*RESTART, READ, STEP=1\n" + DECK.format(period=0.01))
-    with pytest.raises(ct.DeckError, match="corota resume"):
-        ct.read(tmp_path / "job.inp")
-
-
 def test_a_model_with_functions_is_asked_for(tmp_path):
     """A law in Python is not stored: without the model the error says so, with it all is there."""
     build = MODELS["law in Python"]

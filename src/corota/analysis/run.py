@@ -150,6 +150,7 @@ class Analysis:
 
         if steps is None:
             steps = model.steps or [Static()]
+            start = model.start if start is None else start
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)

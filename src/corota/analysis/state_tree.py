@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 #: Attributes that follow from others, by class: linear solvers, memory, clocks, caches.
 DERIVED: dict[str, frozenset[str]] = {
+    "Model": frozenset({"start"}),
     "System": frozenset({"model", "blocks", "largest_linear_strain", "_spare"}),
-    "Conditions": frozenset({"_known"}),
+    "Conditions": frozenset({"_known", "names", "_runs_on", "_moves_on"}),
     "SaddlePointSystem": frozenset({"_resolve", "_link"}),
     "State": frozenset({"resumption", "recover"}),
     "Balance": frozenset({"inertia"}),
@@ -35,6 +36,7 @@ DERIVED: dict[str, frozenset[str]] = {
 }
 #: Attributes of new objects that must be there although they are not stored.
 BLANK: dict[str, dict[str, Any]] = {
+    "Model": {"start": None},
     "SaddlePointSystem": {"_link": None, "_resolve": None},
 }
 #: Packages whose classes may be made from a tree.

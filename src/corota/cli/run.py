@@ -110,7 +110,7 @@ def run(args: Any, terminal: Terminal) -> int:
     """Run a deck; return the exit code."""
     from corota import __version__
     from corota.io.job import CHECKPOINT_SECONDS, JobFiles
-    from corota.io.provenance import source_of, write_provenance
+    from corota.io.provenance import place_of, write_provenance
 
     begin = time.perf_counter()
     terminal.line(terminal.color(f"Corota {__version__}", "bold") + f"  {args.deck}")
@@ -138,7 +138,7 @@ def run(args: Any, terminal: Terminal) -> int:
         profile={"read": read},
         checkpoint_every=every or 0,
         checkpoint_seconds=CHECKPOINT_SECONDS if every is None else 0.0,
-        source=source_of(args.deck),
+        source=place_of(args.deck),
     )
     return carry_out(model, None, files, terminal, args, begin)
 

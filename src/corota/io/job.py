@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 from corota.analysis.checkpoint import model_tree
 from corota.analysis.state_tree import Reader, Unstorable, Writer
-from corota.errors import InputError
+from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full
 from corota.io.checkpoint import ENDINGS as CHECKPOINTS
 from corota.io.checkpoint import store
 from corota.io.events import Events, json_line
 from corota.io.finite import check_frame
 from corota.io.folder_lock import FolderLock
+from corota.io.provenance import place_of
 from corota.io.requests import due_now, left_over, wants_file
 from corota.io.stop_request import StopRequest, stop_file
 from corota.io.tables.csv_history import CsvWriter, Histories
@@ -165,6 +166,10 @@ class JobFiles(BaseObserver):
         check_requests(steps)
         self.model, self.steps = model, steps
         name = self._checked_name(model)
+        self._place = self._source
+        if not self._place and model.sources:
+            with contextlib.suppress(FileError):
+                self._place = place_of(model.sources[0])
         self._histories = Histories(model, steps, self._extra)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -199,7 +204,10 @@ class JobFiles(BaseObserver):
         inputs = {os.path.realpath(file) for file in model.sources}
         for ending in ENDINGS:
             path = self.folder / f"{name}.{ending}"
-            if os.path.realpath(path) in inputs:
+            if os.path.realpath(path) in inputs or any(
+                os.path.realpath(p) in inputs
+                for p in self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")
+            ):
                 raise InputError(
                     f"{path} is an input of this job and would be replaced by its results: take "
                     "another folder (-o) or name (--name)"
@@ -392,7 +400,7 @@ class JobFiles(BaseObserver):
             "points": self._points,
             "every": self._every,
             "seconds": self._seconds,
-            "source": self._source,
+            "source": self._place,
         }
 
     def iteration(self, info: Iteration) -> None:

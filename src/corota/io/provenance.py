@@ -43,6 +43,11 @@ def source_of(deck: str | PathLike[str]) -> dict[str, str]:
     return {"deck": Path(deck).name, "sha256": sha256(deck)}
 
 
+def place_of(deck: str | PathLike[str]) -> dict[str, str]:
+    """Name, digest and place of a deck, by which a later job finds it."""
+    return source_of(deck) | {"path": str(Path(deck).resolve())}
+
+
 def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path:
     """Write ``NAME.provenance.json`` into a folder; return its path.
 
@@ -76,4 +81,4 @@ def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path
     return path
 
 
-__all__ = ["sha256", "source_of", "write_provenance"]
+__all__ = ["place_of", "sha256", "source_of", "write_provenance"]

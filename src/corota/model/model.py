@@ -104,7 +104,9 @@ class Model(Loading, LineSections, InitialFields):
     title : str
         Heading of a deck.
     sources : list of str
-        Files that it was read from, which results never replace.
+        Files that it was read from, the deck first; results never replace them.
+    start : Checkpoint or None
+        Where an analysis of :attr:`steps` starts, after ``*RESTART, READ``.
     time_points : dict of str to ndarray
         Times [time] within a step, by the name that :class:`corota.model.steps.Output` gives.
     unit_system : Units
@@ -131,6 +133,7 @@ class Model(Loading, LineSections, InitialFields):
         self.notes: list[str] = []
         self.title = ""
         self.sources: list[str] = []
+        self.start: Any = None
         self.time_points: dict[str, NDArray[np.float64]] = {}
         self.unit_system = Units()
 

@@ -244,7 +244,7 @@ KEYWORDS: dict[str, Keyword] = {
     "NODEOUTPUT": Keyword(output.node_file, _FILE, _FILE_IGNORED),
     "ELFILE": Keyword(output.el_file, _FILE, _FILE_IGNORED),
     "ELEMENTOUTPUT": Keyword(output.el_file, _FILE, _FILE_IGNORED),
-    "RESTART": Keyword(output.restart, "WRITE READ FREQUENCY STEP INC", "OVERLAY"),
+    "RESTART": Keyword(output.restart, "WRITE READ FREQUENCY STEP INC ENDSTEP JOB", "OVERLAY"),
     "OUTPUT": Keyword(
         output.output,
         "FREQUENCY FREQUENCYF VARIABLE",

@@ -15,6 +15,7 @@ from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.keywords import interpret
 from corota.io.deck.lexer import Lexer, key
+from corota.io.deck.restart import card_that_reads, with_earlier_steps
 from corota.model.units import Units
 
 if TYPE_CHECKING:
@@ -64,6 +65,9 @@ def read_deck(
     cards = lexer.read()
     deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}), literal=as_written)
     deck.diagnostics = lexer.diagnostics
+    saved = None
+    if (reads := card_that_reads(cards)) is not None:
+        cards, saved = with_earlier_steps(deck, lexer, cards, reads)
     for card in cards:
         interpret(deck, card)
     if not cards and not deck.n_errors:
@@ -80,7 +84,9 @@ def read_deck(
     if deck.n_errors or model is None:
         raise DeckError(deck.diagnostics)
     _name_units(model, lexer)
-    model.sources = sorted(str(file) for file in lexer.files)
+    first = str(Path(path).resolve())
+    model.sources = [first, *sorted({str(file) for file in lexer.files} - {first})]
+    model.start = None if saved is None else saved.state
     for finding in deck.diagnostics:
         warnings.warn(str(finding), stacklevel=2)
     return model

@@ -27,16 +27,16 @@ ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
 
 
 def restart(deck: Deck, card: Card) -> None:
-    """``*RESTART, WRITE[, FREQUENCY=]``: keep checkpoints of this step and the later ones."""
+    """``*RESTART, WRITE[, FREQUENCY=]``: keep checkpoints of this step and the later ones.
+
+    What ``READ`` means is done before; steps of the earlier deck end with it.
+    """
     deck.no_rows(card)
-    if card.has("READ"):
-        deck.error(
-            card,
-            card.at("READ"),
-            "a deck does not start from a checkpoint here",
-            hint="go on by the command corota resume, or with other steps by "
-            "corota.resume(path, steps=[...])",
-        )
+    if card.has("READ") and deck.step is not None:
+        deck.error(card, card.at("READ"), "READ belongs before the first *STEP")
+        return
+    if card.has("READ") and not card.has("WRITE"):
+        deck.restart = 0
         return
     deck.restart = deck.parameter_integer(card, "FREQUENCY", 1, 0)
     if deck.step is not None:
