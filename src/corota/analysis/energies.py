@@ -221,7 +221,7 @@ class Balance:
         self.carried = step.scheme == "energy_momentum"
         first = self._kinetic(now)
         account.set_kinetic(first[0])
-        self.energy, self.mass = first[0], first[4]
+        self.energy, self.mass, self.momenta = first[0], first[4], first[1:4]
         self._inside = self._outside = 0.0
         self._contact = system.contact_term.force
         account.drive(now.external, now.reaction() - self._contact)

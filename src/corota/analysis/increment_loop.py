@@ -125,6 +125,11 @@ class IncrementLoop:
         self.system, self.step, self.number, self.state = system, step, number, state
         self.observers, self.save = observers, save
 
+    def show_start(self, scalars: dict[str, float]) -> None:
+        """Show the state at the start of an analysis that starts in motion, as increment 0."""
+        if self.number == 1 and not self.state.resumes:
+            self.save(self.state, 0, 0.0, scalars)
+
     def run(self, stepper: Stepper) -> None:
         """Take increments to the end of the step.
 

@@ -330,7 +330,8 @@ class Analysis:
         state.energies.begin(step, state.at.internal)
         if number == 1:
             state.notes += system.contact_term.notes
-            self._save(number, state, 0, 0.0, {})
+            if not step.starts_in_motion:
+                self._save(number, state, 0, 0.0, {})
 
     def _keep_iterate(self, state: State) -> None:
         """Where the last attempt ended, as a frame of its own."""

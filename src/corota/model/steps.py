@@ -108,6 +108,8 @@ class Step(Brief, Loading):
     where: Location | None = field(default=None, compare=False, repr=False)
 
     procedure = ""
+    #: Whether the state at the start has velocities and forces that only the procedure finds.
+    starts_in_motion = False
 
     def __post_init__(self) -> None:
         self._kinds()
@@ -249,6 +251,7 @@ class Dynamic(Step):
     redistribute: bool = True
 
     procedure = "dynamic"
+    starts_in_motion = True
 
     def __post_init__(self) -> None:
         if self.increments:

@@ -132,6 +132,14 @@ class DynamicStepper(NewtonStepper):
         if resumes:
             found = state.resume(self.kind, control=control, book=self.book, ends=self.ends)
             self.now, self.turned = found["now"], found["turned"]
+            return
+        now = self.now
+        scalars: dict[str, float] = {}
+        self.ends.start(now, system.contact_term.force)
+        state.u, state.v, state.a = now.u, now.v, now.a
+        state.at, state.reaction = self.ends.at, self.ends.reaction
+        self.book.add_to(scalars)
+        loop.show_start(scalars)
 
     def memory(self) -> dict[str, Any]:
         """What a checkpoint holds beside the committed state."""

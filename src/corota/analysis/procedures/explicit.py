@@ -166,8 +166,8 @@ class ExplicitStepper:
         state.counters["stable increment"] = self.stable  # type: ignore[assignment]
         if state.v is None:
             state.v = initial_velocity(system, state.u)
-        rates = system.conditions.support_rates(0.0, dt)[0]
-        state.v[constrained] = rates[constrained]
+        given_v, given_a = system.conditions.support_rates(0.0, dt)
+        state.v[constrained] = given_v[constrained]
         self.u = state.u.copy()
         self.at = system.evaluate(self.u, 0.0)
         self.moving = ~constrained & (mass > 0.0)
@@ -192,6 +192,10 @@ class ExplicitStepper:
             for name, value in state.resume(self.kind, known=self.known).items():
                 if name != "kind":
                     setattr(self, name, value)
+            return
+        state.at, state.a = self.at, np.where(constrained, given_a, a)
+        state.reaction = np.where(constrained, self.at.residual + mass * given_a, 0.0)
+        loop.show_start({"kinetic energy": first, "external work": account.work})
 
     def _increment(self) -> float:
         """Increment that was asked for, or a stable one [time]."""

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.procedures.motion import ConservingMotion, NewmarkMotion
+    from corota.analysis.procedures.motion import ConservingMotion, MotionState, NewmarkMotion
 
     Floats = NDArray[np.float64]
 
@@ -44,6 +44,13 @@ class EndForces:
         self.system = system
         # Time from the instant of the last known inertia to the end of that increment.
         self._lag = 0.0
+
+    def start(self, now: MotionState, contact: Floats) -> None:
+        """Take the forces at the start of a motion, in which contact has a force."""
+        internal = now.internal - contact
+        self.at = Evaluation(internal, now.external, internal, np.empty(0), None, now.link)
+        whole = now.reaction() - now.gathered(contact)
+        self.reaction = np.where(self.system.conditions.constrained, whole, 0.0)
 
     def find(
         self, motion: NewmarkMotion | ConservingMotion, contact: Floats, step_time: float
