@@ -19,7 +19,8 @@ def run(args: Any, terminal: Terminal) -> int:
     """Draw what was asked for and tell the file."""
     from corota import plots
 
-    args.elements, args.lenient, args.allow_include, args.as_written = [], True, True, False
+    args.elements, args.parameters, args.lenient, args.allow_include = [], [], True, True
+    args.as_written = False
     source = Path(args.file)
     if not is_result(args.file):
         if not args.model and source.suffix.lower() == ".inp":
