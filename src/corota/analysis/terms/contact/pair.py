@@ -94,6 +94,7 @@ class Pair:
         self.on_slave = np.zeros(len(system.per_node), bool)
         self.on_slave[self.slave.node_list] = True
         self.fixed: Terms | None = None  # of geometrically linear steps
+        self.fixed_offset: Floats = np.zeros(0)  # the offset that they were made with
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
         #: Gaps and areas of the committed state where gaps must not fall below those.
         self.start: tuple[Floats, Floats] | None = None
@@ -188,9 +189,9 @@ class Pair:
 
     def _linear(self, x: Floats, old: Floats) -> Terms:
         """The pair as it is in the reference configuration, linear in displacement."""
-        if self.fixed is None:
-            self.core.search(self.reference)
-            self.fixed = self._read(self.core.evaluate(self.reference, self.reference))
+        offset = self.core.offset
+        if self.fixed is None or not np.array_equal(offset, self.fixed_offset):
+            self.fixed, self.fixed_offset = self._frozen(offset), offset
         at = self.fixed
 
         def rise(gradient: Floats, since: Floats) -> Floats:
@@ -212,6 +213,23 @@ class Pair:
             at.slip_gradient,
             (gap, at.area),
         )
+
+    def _frozen(self, offset: Floats) -> Terms:
+        """Gaps of the reference configuration, and their gradients on the pairing there.
+
+        The gradients are taken with the gap closed: the ends of what is covered move with the
+        displacement, and with an open gap that would count, though it is of second order.
+        """
+        self.core.search(self.reference)
+        open_ = self._read(self.core.evaluate(self.reference, self.reference))
+        if self.tied:
+            return open_
+        gap, area = open_.parts
+        seen = area > COVERED * self.full
+        self.core.offset = offset + np.where(seen, gap / np.where(seen, area, 1.0), 0.0)
+        closed = self._read(self.core.evaluate(self.reference, self.reference))
+        self.core.offset = offset
+        return replace(closed, gap=open_.gap, parts=open_.parts)
 
     # -- states ------------------------------------------------------------------------
 
