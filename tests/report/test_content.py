@@ -170,6 +170,17 @@ def test_modes_are_frames_of_their_own(tmp_path: Path) -> None:
         assert heads[0]["label"].startswith("mode 1, frequency ")
 
 
+def test_a_static_step_before_a_dynamic_one(tmp_path: Path) -> None:
+    model = beam(ct.Elastic(E=1000.0, nu=0.3, rho=1.0))
+    steps = [ct.Static(), ct.Dynamic(period=1.0, first_increment=0.5)]
+    with ct.JobFiles(tmp_path) as files:
+        results = ct.solve(model, steps, observers=[files], threads=1)
+    for content in (content_of_job(find_job(tmp_path / "beam")), content_of_results(results)):
+        first, *_, last = frames_of(content)
+        assert "VEL" not in first[1]
+        np.testing.assert_allclose(last[1]["VEL"], results.frame().V, rtol=4e-5)
+
+
 def test_records_grow_by_whole_lines(job: Path, tmp_path: Path) -> None:
     text = Path(f"{job}.jsonl").read_bytes()
     table = Path(f"{job}.csv").read_bytes()

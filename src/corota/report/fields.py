@@ -13,8 +13,6 @@ from corota.report.chunk import rounded
 from corota.results import variables as vf
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from corota.results.results import Results
@@ -77,38 +75,31 @@ class NodalArrays:
         """Arrays of a frame that are not zero everywhere, rounded."""
         if self._frames is not None:
             frames = self._frames
-
-            def get(name: str) -> Floats:
-                found: Floats = frames.at_points(name, index)
-                return found
+            data = {f: frames.at_points(f, index) for n in names for f in _files_of(n, self._have)}
         else:
             data = point_data(self.results.frames[index], self.results.averaging)
-
-            def get(name: str) -> Floats:
-                zero = np.zeros(self.results.mesh.n_nodes)
-                return data.get(name, zero)
-
         arrays = {}
         for name in names:
-            values = self._assemble(name, get)
-            if values.any():
+            files = [f for f in _files_of(name, self._have) if f in data]
+            # A frame of a static step has no velocity, for instance.
+            if files and (values := _assembled(name, [data[f] for f in files])).any():
                 arrays[name] = rounded(values, bits)
         return arrays
 
-    def _assemble(self, name: str, get: Callable[[str], Floats]) -> Floats:
-        values: Floats
-        if name in VECTORS:
-            main, turn = VECTORS[name]
-            values = get(main)[:, :2]
-            if turn:
-                values = np.column_stack([values, get(turn)])
-            if name == "RF":
-                values = without_rounding(values)
-            return values
-        for file, own in TENSOR_FILES.items():
-            if own == name:
-                return get(file)[:, :4]
-        return get("rotation" if name == "UR" else name)
+
+def _files_of(name: str, have: set[str]) -> list[str]:
+    """Names in files of the arrays that make one of the page."""
+    if name in VECTORS:
+        return [file for file in VECTORS[name] if file in have]
+    of_tensor = {own: file for file, own in TENSOR_FILES.items()}
+    return ["rotation" if name == "UR" else of_tensor.get(name, name)]
+
+
+def _assembled(name: str, parts: list[Floats]) -> Floats:
+    if name in VECTORS:
+        values = np.column_stack([parts[0][:, :2], *parts[1:]])
+        return without_rounding(values) if name == "RF" else values
+    return parts[0][:, :4] if parts[0].ndim == 2 else parts[0]
 
 
 def without_rounding(forces: Floats) -> Floats:

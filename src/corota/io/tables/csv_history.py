@@ -91,6 +91,8 @@ def balance_error(scalars: dict[str, float]) -> float:
     """Energy that appeared from nowhere, as a share of the largest so far; 0 at the start."""
     if "energy balance error" in scalars:
         return scalars["energy balance error"]
+    if "external work" not in scalars:  # modes, for instance: nothing was balanced
+        return 0.0
     stored = [v for k, v in scalars.items() if k.endswith("energy") or k.endswith("dissipation")]
     work = scalars.get("external work", 0.0)
     scale = max([abs(work), *map(abs, stored)], default=0.0)

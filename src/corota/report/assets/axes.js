@@ -1,6 +1,6 @@
 // A chart: curves over any abscissa, of which a click finds the nearest point. Axes by uPlot.
 
-import { LINES } from "./colors.js";
+import { lineColor } from "./colors.js";
 import { el, format, ink } from "./dom.js";
 
 /** Curves that go back and forth: every point in its order, gaps where a number is missing. */
@@ -63,7 +63,7 @@ export class Chart {
    */
   show(lines, { x, y, y2, marks = [] } = {}) {
     Object.assign(this.options, { x: x ?? this.options.x, y: y ?? this.options.y, y2: y2 ?? this.options.y2 });
-    this.lines = lines.map((line, i) => ({ stroke: LINES[i % LINES.length], ...line }));
+    this.lines = lines;
     this.marks = marks;
     this.build();
   }
@@ -74,6 +74,7 @@ export class Chart {
 
   build() {
     this.plot?.destroy();
+    this.lines.forEach((line, i) => (line.stroke = lineColor(i)));
     const second = this.lines.some((line) => line.second);
     const axis = (scale, label, side) => ({
       scale,

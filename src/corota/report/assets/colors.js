@@ -18,10 +18,20 @@ const STOPS = {
 export const MAPS = Object.keys(STOPS);
 /** For values on both sides of zero; its middle is white. */
 export const DIVERGING = "blue–orange";
-/** Of lines in charts, in this order (Okabe and Ito). */
-export const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7400", "#6f6f6f"];
+/** Of lines in charts, in this order (Okabe and Ito, lighter on dark ground). */
+const LINES = {
+  light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7400", "#6f6f6f"],
+  dark: ["#56b4e9", "#ff9a4d", "#3fc79a", "#f0a3cf", "#f0c14b", "#9db8ff", "#d3c95c", "#b5b5b5"],
+};
 /** Of sections, pale enough for symbols above them. */
 const SHADES = { light: ["c9dcf0", "fadcc0", "cbe6d6", "ecd3e3", "f2e6ac", "d8d8e2"], dark: ["2f4a66", "6b4a2a", "2c5744", "603f56", "5f5522", "454552"] };
+
+export const isDark = () => document.documentElement.dataset.shade === "dark";
+
+export function lineColor(index) {
+  const found = LINES[isDark() ? "dark" : "light"];
+  return found[index % found.length];
+}
 
 const hex = (text, at) => [0, 2, 4].map((i) => parseInt(text.slice(at + i, at + i + 2), 16));
 
@@ -41,8 +51,8 @@ export function table(name) {
 }
 
 /** Colors of sections, repeated over 256 places. */
-export function shades(dark) {
-  const found = SHADES[dark ? "dark" : "light"];
+export function shades() {
+  const found = SHADES[isDark() ? "dark" : "light"];
   const out = new Uint8Array(1024);
   for (let i = 0; i < 256; i++) out.set([...hex(found[i % found.length], 0), 255], 4 * i);
   return out;

@@ -51,8 +51,10 @@ export class History {
     return found;
   }
 
-  get failed() {
-    return this.end.status === "failed";
+  /** Cut-backs of the log; results in memory have no log, but the attempts of each increment. */
+  get cutBackCount() {
+    const attempts = this.column("attempts") ?? [];
+    return this.cutBacks.length || attempts.reduce((sum, count) => sum + Math.max(count - 1, 0), 0);
   }
 }
 

@@ -121,7 +121,7 @@ class Page {
     if (model) parts.push(`${model.nNodes.toLocaleString("en")} nodes, ${model.nCells.toLocaleString("en")} elements`);
     if (history.count) parts.push(`${history.count.toLocaleString("en")} increments`);
     if (history.iterationCount) parts.push(`${(history.iterationNumbers.at(-1) + 1).toLocaleString("en")} iterations`);
-    if (history.cutBacks.length) parts.push(`${history.cutBacks.length} cut-backs`);
+    if (history.cutBackCount) parts.push(`${history.cutBackCount} cut-backs`);
     if (end.elapsed) parts.push(`${format(end.elapsed, 3)} s`);
     byId("subtitle").textContent = parts.join(" · ");
     byId("footer").textContent = `Corota ${history.facts.file?.version ?? history.start.version ?? ""}`;
@@ -151,7 +151,7 @@ class Page {
     this.tables = new Tables(byId("tables"), this.model, this.history, this.scene, this.charts.pick);
     if (this.model && this.scene.shown.length) {
       this.player.refresh("look");
-      this.scene.show(this.scene.shown.length - 1);
+      this.scene.show(this.scene.shown.findLastIndex((frame) => frame.kind !== "iterate"));
     }
   }
 

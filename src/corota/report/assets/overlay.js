@@ -115,19 +115,20 @@ export class Overlay {
   /** A turning arrow about a place, counter-clockwise for positive moments. */
   turn(x, y, sign, stroke) {
     const { context } = this;
+    const radius = 9;
+    // Angles of the screen grow clockwise; the arc leaves a gap at its right-hand side.
+    const [start, end] = sign > 0 ? [-0.5, 0.9 - 2 * Math.PI] : [0.5, 2 * Math.PI - 0.9];
     this.#style(stroke, 1.6);
     context.beginPath();
-    context.arc(x, y, 9, 0.3, 2 * Math.PI - 0.9);
+    context.arc(x, y, radius, start, end, sign > 0);
     context.stroke();
-    const end = sign > 0 ? 2 * Math.PI - 0.9 - Math.PI * 2 + 0.25 : 2 * Math.PI - 0.9;
-    const at = sign > 0 ? 0.3 : end;
     const way = sign > 0 ? -1 : 1;
-    const [px, py] = [x + 9 * Math.cos(at), y + 9 * Math.sin(at)];
-    const [tx, ty] = [-way * Math.sin(at), way * Math.cos(at)];
+    const [tipX, tipY] = [x + radius * Math.cos(end), y + radius * Math.sin(end)];
+    const [alongX, alongY] = [-way * Math.sin(end), way * Math.cos(end)];
     context.beginPath();
-    context.moveTo(px + 6 * tx, py + 6 * ty);
-    context.lineTo(px - 3.5 * ty, py + 3.5 * tx);
-    context.lineTo(px + 3.5 * ty, py - 3.5 * tx);
+    context.moveTo(tipX + 6 * alongX, tipY + 6 * alongY);
+    context.lineTo(tipX - 4 * alongY, tipY + 4 * alongX);
+    context.lineTo(tipX + 4 * alongY, tipY - 4 * alongX);
     context.closePath();
     context.fill();
   }

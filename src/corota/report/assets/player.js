@@ -1,6 +1,6 @@
 // The player: stage, camera, controls of frames and looks, probe.
 
-import { MAPS, shades, table } from "./colors.js";
+import { MAPS, isDark, shades, table } from "./colors.js";
 import { byId, el, fill, format, ink, onceAFrame } from "./dom.js";
 import { extremes } from "./fields.js";
 import { Overlay } from "./overlay.js";
@@ -69,6 +69,7 @@ export class Player {
     this.draw = onceAFrame(() => this.#draw());
     byId("mesh").checked = this.model.nCells <= EDGES_UP_TO;
     byId("undeformed").checked = true;
+    byId("contact").checked = true;
     this.#controls();
     this.#gestures();
     this.#modelControls();
@@ -200,6 +201,7 @@ export class Player {
     if (scene.shown.length && this.view === "results") {
       for (const place of [0, 0.25, 0.5, 0.75, 1]) {
         scene.index = Math.round(place * (scene.shown.length - 1));
+        if (scene.frame.kind === "iterate") continue; // wherever that went
         const positions = scene.positions();
         for (let i = 0; i < positions.length; i++) {
           if (!this.model.used[i >> 1]) continue;
@@ -237,7 +239,7 @@ export class Player {
 
   get #meshInk() {
     const size = Math.sqrt((this.camera.scale ** 2 * this.model.size ** 2) / Math.max(this.model.nCells, 1));
-    const level = document.documentElement.dataset.shade === "dark" ? 0.85 : 0.1;
+    const level = isDark() ? 0.85 : 0.1;
     return [level, level, level, Math.min(0.45, 0.05 + size / 60)];
   }
 
@@ -251,8 +253,11 @@ export class Player {
     const nodes = scene.positions();
     const positions = model.surface.spread(nodes, 2);
     const values = scene.field ? scene.values() : new Float32Array(model.nNodes);
-    const { range, bands } = scene;
-    const colors = table(scene.mapName);
+    // The last attempt of a run that stopped has displacements only.
+    const blank = scene.frame.kind === "iterate" && scene.field?.source !== "U";
+    const { bands } = scene;
+    const range = blank ? [0, 255] : scene.range;
+    const colors = blank ? shades() : table(scene.mapName);
     this.nodes = nodes;
     this.positions = positions;
     this.drawnValues = model.surface.spread(values, 1);
@@ -274,7 +279,7 @@ export class Player {
     }
     if (this.checked("extremes") && scene.field) this.#markExtremes(values, nodes);
     if (this.probed) this.#markProbe(nodes);
-    if (scene.field) {
+    if (scene.field && !blank) {
       const scale = scene.scale === 1 ? "" : `displacements × ${format(scene.scale, 3)}`;
       overlay.legend({ name: scene.field.name, meaning: scene.field.meaning, range, bands, table: colors, remark: scale });
     }
@@ -289,7 +294,7 @@ export class Player {
     const sections = Float32Array.from(model.sections, (s) => Math.max(s, 0));
     this.drawnValues = model.surface.spreadCells(sections);
     this.painter.data(this.still, this.drawnValues);
-    this.painter.colors(shades(document.documentElement.dataset.shade === "dark"));
+    this.painter.colors(shades());
     this.painter.paint({ camera, range: [0, 255], bands: 0, mesh: this.checked("mesh"), meshInk: this.#meshInk });
     overlay.chains(model.surface.outline, this.still, ink("outline"), 1.1);
     overlay.rigid(model, null, 0);

@@ -1,7 +1,6 @@
 // Tables below: the model, materials with their curves, notes, extremes, increments, versions.
 
 import { Chart } from "./axes.js";
-import { LINES } from "./colors.js";
 import { byId, el, format } from "./dom.js";
 import { extremes } from "./fields.js";
 
@@ -57,9 +56,8 @@ export class Tables {
     // A chart needs the width of its place, which it has once it is in the page.
     requestAnimationFrame(() => {
       const chart = new Chart(box, { title, x, y, height: 170 });
-      chart.show(Object.entries(lines).map(([label, points], i) => ({
+      chart.show(Object.entries(lines).map(([label, points]) => ({
         label,
-        stroke: LINES[i % LINES.length],
         x: points.map(([a]) => a),
         y: points.map(([, b]) => b),
       })), { x, y });
@@ -177,7 +175,7 @@ export class Tables {
     const total = profile.reduce((sum, [, seconds]) => sum + seconds, 0);
     const about = [["status", end.status ?? "still at work"], ["error", end.message], ["seconds", end.elapsed],
       ["degrees of freedom", facts.info?.n_dofs], ["threads", facts.info?.threads],
-      ["cut-backs", this.history.cutBacks.length], ...(facts["critical points"] ?? []).map((text) => ["critical point", text])]
+      ["cut-backs", this.history.cutBackCount], ...(facts["critical points"] ?? []).map((text) => ["critical point", text])]
       .filter(([, value]) => value !== undefined && value !== null);
     return el("div", { class: "row" }, table(["", ""], about),
       profile.length ? table(["phase", "seconds", "share"], profile.map(([phase, seconds]) => [phase, seconds, `${((100 * seconds) / total).toFixed(1)} %`])) : null);

@@ -1,0 +1,76 @@
+"""The page in a browser: it opens without a fault, plays, answers a probe and follows a curve."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import corota as ct
+from benchmarks.browser import Browser, find_browser
+from benchmarks.report_pages import READY, aborted, check_page
+from corota.report import report_job
+from corota.report.records import JobPaths
+from corota.report.server import PageServer
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_browser() is None, reason="there is no Chromium on the path"),
+]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with Browser() as made:
+        yield made
+
+
+def test_finished_run(browser: Browser, tmp_path: Path) -> None:
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2, cell="quad8"), name="beam")
+    model.section("all", element="Q8R", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    model.force("right", y=-1.0)
+    path = ct.solve(model, ct.Static(increments=5), threads=1).report(tmp_path / "beam.html")
+    found = check_page(browser, path)
+    assert found["faults"] == []
+    assert (found["frames"], found["play"], found["probe"], found["curve"]) == (6, True, True, True)
+    # What the page computes is what Python computes.
+    results = ct.solve(model, ct.Static(increments=5), threads=1)
+    browser.run("window.corotaReport.scene.show(5)")
+    for name in ("MISES", "SP1", "EP3", "U", "S12"):
+        values = browser.run(
+            "(() => { const { scene } = window.corotaReport;"
+            f" return [...scene.values(scene.fields.get('{name}'))]; }})()"
+        )
+        wanted = results.nodal(name)
+        assert values == pytest.approx(wanted, rel=1e-3, abs=1e-3 * abs(wanted).max())
+
+
+def test_aborted_run(browser: Browser, tmp_path: Path) -> None:
+    path = report_job(aborted(tmp_path))
+    assert check_page(browser, path)["faults"] == []
+    assert browser.run("document.getElementById('status').textContent") == "stopped"
+    assert "limit load" in browser.run("document.getElementById('message').textContent")
+
+
+@pytest.mark.parametrize("keys", [("ArrowLeft", 37, -1), ("Home", 36, None), ("End", 35, None)])
+def test_keys(browser: Browser, tmp_path: Path, keys: tuple[str, int, int | None]) -> None:
+    path = report_job(aborted(tmp_path))
+    browser.open(path.as_uri(), READY)
+    count = browser.run("window.corotaReport.scene.shown.length")
+    browser.run("window.corotaReport.scene.show(5)")
+    name, code, step = keys
+    browser.key(name, code)
+    wanted = 5 + step if step else {"Home": 0, "End": count - 1}[name]
+    assert browser.run("window.corotaReport.scene.index") == wanted
+
+
+def test_page_of_a_run_at_work(browser: Browser, tmp_path: Path) -> None:
+    aborted(tmp_path)
+    with PageServer(JobPaths(tmp_path, "aborted")) as server:
+        browser.open(server.address, "window.corotaReport?.scene?.shown.length > 3")
+        assert browser.console == []
+        assert all(address.startswith(server.address) for address in browser.requests)
+        assert browser.run("document.getElementById('status').textContent") == "stopped"
