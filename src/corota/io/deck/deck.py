@@ -83,6 +83,8 @@ class Deck:
     pairs: list[PairDraft] = field(default_factory=list)
     interactions: dict[str, InteractionDraft] = field(default_factory=dict)
     general: GeneralDraft | None = None
+    #: Reference nodes of distributing couplings, by the set of their elements.
+    couplers: dict[str, Draft] = field(default_factory=dict)
     pretensions: list[PretensionDraft] = field(default_factory=list)
     carriers: dict[str, tuple[Card, Draft]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -77,6 +78,8 @@ class Surface:
     card: Card
     nodes: bool
     rows: list[SurfaceRow] = field(default_factory=list)
+    #: How surfaces, one in each row, make this one.
+    combine: str = ""
     profile: Floats | None = None
     fillet: float = 0.0
 
@@ -348,6 +351,10 @@ class TieDraft:
     surface: str = ""
     elset: str = ""
     dofs: tuple[int, ...] = (0, 1, 2)
+    #: Nodes and their weights, where a card lists them.
+    members: list[tuple[Draft, float]] = field(default_factory=list)
+    #: Distance from the reference node within which nodes of a surface take part.
+    radius: float = math.inf
     angle: float = 0.0
     centre: tuple[float, float] | None = None
     ready: bool = False

@@ -151,7 +151,7 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
     **dict.fromkeys(
-        ("DASHPOT1", "DASHPOT2", "GAPUNI", "DCOUP3D", "ROTARYI"),
+        ("DASHPOT1", "DASHPOT2", "GAPUNI", "ROTARYI"),
         "of dashpots this version has DASHPOTA, of masses MASS, and no gaps",
     ),
 }

@@ -87,7 +87,10 @@ KEYWORDS: dict[str, Keyword] = {
     "NSET": Keyword(mesh.nset, "NSET GENERATE ELSET INSTANCE INTERNAL UNSORTED", place="model"),
     "ELSET": Keyword(mesh.elset, "ELSET GENERATE INSTANCE INTERNAL", place="model"),
     "SURFACE": Keyword(
-        mesh.surface, "NAME TYPE INTERNAL FILLETRADIUS", "REGIONTYPE TRIM MAXRATIO", place="model"
+        mesh.surface,
+        "NAME TYPE INTERNAL FILLETRADIUS COMBINE",
+        "REGIONTYPE TRIM MAXRATIO",
+        place="model",
     ),
     "MATERIAL": Keyword(material.material, "NAME", place="model"),
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
@@ -177,9 +180,13 @@ KEYWORDS: dict[str, Keyword] = {
         "POSITION ISOTHERMAL",
         place="model",
     ),
-    "COUPLING": Keyword(tie.coupling, "REFNODE SURFACE", "CONSTRAINTNAME", place="model"),
+    "COUPLING": Keyword(
+        tie.coupling, "REFNODE SURFACE INFLUENCERADIUS", "CONSTRAINTNAME", place="model"
+    ),
+    "KINEMATICCOUPLING": Keyword(tie.kinematic_coupling, "REFNODE", place="model"),
+    "DISTRIBUTINGCOUPLING": Keyword(tie.distributing_coupling, "ELSET", place="model"),
     "KINEMATIC": Keyword(tie.kinematic, place="model"),
-    "DISTRIBUTING": Keyword(tie.distributing, ignored="COUPLING", place="model"),
+    "DISTRIBUTING": Keyword(tie.distributing, "WEIGHTINGMETHOD", ignored="COUPLING", place="model"),
     "PRE-TENSIONSECTION": Keyword(
         pretension.pretension, "SURFACE ELEMENT NODE", "NAME", place="model"
     ),
@@ -210,7 +217,9 @@ KEYWORDS: dict[str, Keyword] = {
     ),
     "FRICTION": Keyword(contact.friction, "", "SLIPTOLERANCE LAGRANGE ELASTICSLIP", place="model"),
     "CLEARANCE": Keyword(contact.clearance, "SLAVE MASTER VALUE", place="model"),
-    "TIE": Keyword(contact.tie, "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION", place="model"),
+    "TIE": Keyword(
+        contact.tie, "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION NOTHICKNESS", place="model"
+    ),
     "CONTACTCONTROLS": Keyword(
         contact.contact_controls,
         "STABILIZE SLAVE MASTER",
@@ -233,7 +242,7 @@ KEYWORDS: dict[str, Keyword] = {
     ),
     "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"),
     "CLOAD": Keyword(step.cload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
-    "DLOAD": Keyword(step.dload, "OP AMPLITUDE LOADCASE", "REGIONTYPE CONSTANTRESULTANT"),
+    "DLOAD": Keyword(step.dload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE CONSTANTRESULTANT"),
     "DSLOAD": Keyword(
         step.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
     ),
@@ -335,7 +344,6 @@ UNSUPPORTED: dict[str, str] = {
     "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
     **dict.fromkeys(
         (
-            "DISTRIBUTINGCOUPLING",
             "EMBEDDEDELEMENT",
             "CYCLICSYMMETRYMODEL",
         ),

@@ -32,6 +32,7 @@ from corota.io.deck.elements import (
     WRITTEN_BY_MESHIO,
 )
 from corota.io.deck.lexer import key
+from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, InitialVelocity, NodalForce
 from corota.model.local_strain import LocalStrain
 from corota.model.materials import Orthotropic
@@ -491,19 +492,24 @@ class ModelBuilder:
     def _loads(self, draft: Draft) -> list[Load]:
         if draft.kind == "surface shear":
             return list(self._shear(draft))
+        if draft.kind == "volume":
+            return list(self._volume_force(draft))
         load = self._load(draft)
         return [] if load is None else [load]
 
     def _shear(self, draft: Draft) -> Iterator[Load]:
         """Shear along the edges of a surface, towards a direction."""
-        name, amplitude = self._edge_set(draft), self._amplitude(draft)
+        name, amplitude = self._edges_of(draft), self._amplitude(draft)
         if name is None or amplitude is None:
             return
-        edges = self.mesh.edge_sets[name]
+        edges = self.mesh.edge_sets[name] if isinstance(name, str) else name
         ends = np.array([nodes[:2] for nodes in self.mesh.edge_nodes(edges)])
         along = self.mesh.points[ends[:, 1]] - self.mesh.points[ends[:, 0]]
         along = np.asarray(along / np.hypot(along[:, :1], along[:, 1:]), np.float64)
         size = math.hypot(*draft.value)
+        if size == 0.0:
+            yield EdgeLoad(edges, "shear", (0.0,), amplitude, where=draft.row.where)
+            return
         share = along @ (np.array(draft.value) / size)
         if (np.abs(share) < 1e-6).any():
             self.deck.row_error(
@@ -534,7 +540,7 @@ class ModelBuilder:
                 return None
             return build_temperature(draft, nodes, amplitude)
         if draft.kind.startswith("surface "):
-            edges = self._edge_set(draft)
+            edges = self._edges_of(draft)
             if edges is None or amplitude is None:
                 return None
             kind = draft.kind.removeprefix("surface ")
@@ -589,6 +595,51 @@ class ModelBuilder:
         full = self.sets.full_name(self.sets.elsets, root, draft.target)
         name = self.sets.spelled(self.sets.elsets, full) if full else ""
         return self._body(draft, name or found.cells, amplitude)
+
+    def _volume_force(self, draft: Draft) -> Iterator[Load]:
+        """A force per volume as gravity: the core takes forces per mass."""
+        amplitude, root = self._amplitude(draft), self.meshes.views[0]
+        cells = np.arange(self.mesh.n_cells)
+        if draft.target:
+            if numerals.is_integer(draft.target):
+                root = self._numbering(root, draft.target, "cells")
+            row = draft.row
+            found = self.sets.elements(root, draft.target, row.at(0), draft.card, row.text)
+            if found is None:
+                return
+            cells = found.cells
+        if amplitude is None:
+            return
+        rho = np.full(self.mesh.n_cells, -1.0)
+        for section in self.model.sections:
+            rho[cells_of(self.mesh, section.cells)] = section.material.rho
+        for density in np.unique(rho[cells]).tolist():
+            if density == 0.0:
+                self.deck.row_error(
+                    draft.card,
+                    draft.row,
+                    1,
+                    "a force per volume is taken per mass, and a material here has no density",
+                    "give *DENSITY; statics does not depend on its value",
+                )
+                return
+            if density > 0.0:
+                value = (draft.value[0] / density, draft.value[1] / density)
+                mine = cells[rho[cells] == density]
+                yield BodyForce(mine, "gravity", value, amplitude, draft.row.where)
+
+    def _edges_of(self, draft: Draft) -> str | Ints | None:
+        """Name of a surface, or edges of one face of elements."""
+        if draft.index < 0:
+            return self._edge_set(draft)
+        root, row = self.meshes.views[0], draft.row
+        if numerals.is_integer(draft.target):
+            root = self._numbering(root, draft.target, "cells")
+        found = self.sets.elements(root, draft.target, row.at(0), draft.card, row.text)
+        if found is None:
+            return None
+        edges = self.sets.faces(found.cells, draft.index, draft.card, row.at(1), row.text)
+        return edges if edges is not None and len(edges) else None
 
     def _body(self, draft: Draft, cells: str | Ints, amplitude: str) -> BodyForce:
         kind = cast("Literal['gravity', 'centrifugal']", draft.kind)

@@ -98,7 +98,7 @@ class Sets:
             if surface.nodes:
                 self.mesh.node_sets[name] = self._node_surface(view, surface)
             else:
-                self.mesh.edge_sets[name] = self._edges[full] = self._surface(view, surface)
+                self.mesh.edge_sets[name] = self._edge_surface(full)
 
     def spelled(self, table: dict[str, tuple[View, NamedSet]], full: str) -> str:
         """Name under which a set is in the mesh."""
@@ -283,6 +283,37 @@ class Sets:
                 if found is not None:
                     parts.append(found)
         return _unique(np.concatenate(parts))
+
+    def _edge_surface(self, full: str) -> Ints:
+        """Edges of a surface, also of one that others make."""
+        if full not in self._edges:
+            view, surface = self.surfaces[full]
+            self._edges[full] = np.zeros((0, 2), np.int64)  # while it is open
+            made = self._combined if surface.combine else self._surface
+            self._edges[full] = made(view, surface)
+        return self._edges[full]
+
+    def _combined(self, view: View, surface: Surface) -> Ints:
+        """Union, difference or intersection of surfaces."""
+        out: Ints | None = None
+        for row in surface.rows:
+            full = self.full_name(self.surfaces, view, row.target)
+            if not full or self.surfaces[full][1].nodes:
+                text = f"no surface of edges named {numerals.shown(row.target)}"
+                hint = nearest(row.target, [s.name for _, s in self.surfaces.values()])
+                self.deck.error(surface.card, row.where, text, text=row.text, hint=hint)
+                continue
+            edges = self._edge_surface(full)
+            if out is None:
+                out = edges
+                continue
+            inside = (out[:, None] == edges[None]).all(axis=2).any(axis=1)
+            if surface.combine == "UNION":
+                extra = (edges[:, None] == out[None]).all(axis=2).any(axis=1)
+                out = np.concatenate([out, edges[~extra]])
+            else:
+                out = out[inside if surface.combine == "INTERSECTION" else ~inside]
+        return out if out is not None else np.zeros((0, 2), np.int64)
 
     def _surface(self, view: View, surface: Surface) -> Ints:
         parts = [np.zeros((0, 2), np.int64)]

@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
 from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
 
 if TYPE_CHECKING:
@@ -70,6 +71,9 @@ def _build(
     if tie.kind == "same":
         _same(model, find, rotating, tie)
         return
+    if tie.members:
+        _weighted(deck, model, find, rotating, tie)
+        return
     single = [single_node(deck, find, term, model) for term in tie.terms]
     if None in single:
         return
@@ -83,6 +87,13 @@ def _build(
     chosen: str | Ints | None
     if tie.surface:
         chosen, weights = _surface(deck, model, name, tie)
+        if chosen is not None:
+            near = np.hypot(*(model.mesh.points[chosen] - model.mesh.points[reference]).T)
+            inside = near <= tie.radius * (1.0 + 1e-9)
+            if not inside.any():
+                raise InputError(f"no node of {tie.surface} is within the radius", tie.where)
+            chosen = chosen[inside]
+            weights = weights[inside] if weights is not None else None
     elif tie.elset:
         chosen = cells(tie)
     else:
@@ -95,6 +106,33 @@ def _build(
     kind = cast("Literal['kinematic', 'distributing']", tie.kind)
     title = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, title, tie.where))
+    rotating[reference] = True
+
+
+def _weighted(
+    deck: Deck, model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft
+) -> None:
+    """Distributing coupling of listed nodes; its element names the reference node."""
+    draft = deck.couplers.get(key(tie.elset))
+    if draft is None:
+        deck.error(
+            tie.card,
+            tie.card.at("ELSET"),
+            f"no set named {tie.elset!r} of DCOUP2D or DCOUP3D elements",
+            hint=nearest(tie.elset, deck.couplers),
+        )
+        return
+    reference = single_node(deck, find, draft, model)
+    found = [(find(item), weight) for item, weight in tie.members]
+    if reference is None or any(nodes is None for nodes, _ in found):
+        return
+    share = np.zeros(model.mesh.n_nodes)
+    for nodes, weight in found:
+        assert nodes is not None
+        share[model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes] += weight
+    chosen = np.flatnonzero(share)
+    coupling = Coupling(chosen, reference, "distributing", tie.dofs, share[chosen], "", tie.where)
+    model.constraints.append(coupling)
     rotating[reference] = True
 
 

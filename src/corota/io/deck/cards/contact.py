@@ -290,7 +290,7 @@ def friction(deck: Deck, card: Card) -> None:
     """``*FRICTION``: coefficient, stick slope."""
     into = _open(deck, card)
     rows = list(card.rows())
-    if into is None:
+    if into is None or card.has("ROUGH"):
         return
     if len(rows) != 1:
         deck.error(card, card.where, f"one data line is expected, found {len(rows)}")

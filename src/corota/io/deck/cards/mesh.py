@@ -13,6 +13,7 @@ from corota.io.deck import numerals
 from corota.io.deck.cards import attachments as attachments
 from corota.io.deck.cards.contact import profile
 from corota.io.deck.cards.generate import in_global_axes
+from corota.io.deck.cards.tie import couplers
 from corota.io.deck.deck import Deck, int_array, nearest
 from corota.io.deck.drafts import ElementBlock, Entry, NamedSet, NodeBlock, Surface, SurfaceRow
 from corota.io.deck.elements import (
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
     from corota.mesh.data import Ints
 
+#: Elements that name the reference node of ``*DISTRIBUTING COUPLING``.
+COUPLERS = ("DCOUP2D", "DCOUP3D")
 #: Bytes of a set from which it is read in bulk.
 LONG = 1 << 16
 #: Entries of one GENERATE line.
@@ -109,6 +112,9 @@ def element(deck: Deck, card: Card) -> None:
     if not name:
         return
     type_ = key(name)
+    if type_ in COUPLERS:
+        couplers(deck, card)
+        return
     if type_ in attachments.TYPES:
         attachments.elements(deck, card, type_)
         return
@@ -323,6 +329,9 @@ def surface(deck: Deck, card: Card) -> None:
     if kind == "SEGMENTS":
         profile(deck, card, found)
         return
+    if card.has("COMBINE"):
+        _combination(deck, card, found)
+        return
     for row in card.rows():
         deck.extra_fields(card, row, 2)
         if not row.get(0):
@@ -331,6 +340,17 @@ def surface(deck: Deck, card: Card) -> None:
         found.rows.append(SurfaceRow(row.where, row.text, row.get(0), key(row.get(1))))
     if not found.rows:
         deck.error(card, card.where, f"surface {name} is empty")
+
+
+def _combination(deck: Deck, card: Card, found: Surface) -> None:
+    """``COMBINE=``: names of surfaces, of which a difference takes two."""
+    found.combine = deck.choice(card, "COMBINE", ("UNION", "DIFFERENCE", "INTERSECTION"), "UNION")
+    for row in card.rows():
+        for index in range(len(row)):
+            if row.get(index):
+                found.rows.append(SurfaceRow(row.at(index), row.text, row.get(index), ""))
+    if len(found.rows) < 2 or (found.combine == "DIFFERENCE" and len(found.rows) > 2):
+        deck.error(card, card.where, "the names of two surfaces are expected")
 
 
 def _label(deck: Deck, card: Card, row: Row, what: str, index: int = 0) -> int | None:

@@ -131,6 +131,9 @@ def controls(deck: Deck, card: Card) -> None:
         return
     kind = key(card.value("PARAMETERS"))
     rows = list(card.rows())
+    if not kind and (card.has("ANALYSIS") or card.has("TYPE")):
+        deck.note(f"{card.where}: *CONTROLS has no effect here: increments adapt by themselves")
+        return
     if kind in _WITHOUT_EFFECT:
         deck.notes.append(f"{card.where}: *CONTROLS, PARAMETERS={kind} has no effect here")
         return

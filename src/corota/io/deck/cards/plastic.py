@@ -118,6 +118,7 @@ def _table(deck: Deck, card: Card) -> tuple[list[tuple[float, float]], list[Loca
                 row,
                 2,
                 "a yield curve that depends on temperature is not part of this version",
+                "give the curve at the temperature of the part alone",
             )
             return None
         points.append((stress, strain))

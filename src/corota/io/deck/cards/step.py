@@ -42,6 +42,18 @@ _KINDS = {
     "distributed": "distributed loads (*DLOAD, *DSLOAD)",
     "temperature": "temperatures (*TEMPERATURE)",
 }
+_TRACTION = re.compile(r"(TRVEC|TRSHR)(\d{1,9})\Z", re.ASCII)
+#: Loads that other programs know, and what to give instead.
+_OTHER_LOADS = (
+    (re.compile(r"HP\d?\Z"), "give each edge its mean pressure: P1 to P4, or P on surfaces"),
+    (
+        re.compile(r"(P\d?|BX|BY|TRVEC\d?|TRSHR\d?)NU\Z"),
+        "no user subroutine is called: give values",
+    ),
+    (re.compile(r"(ROTA|CORIO)\Z"), "turn the base by *BOUNDARY, or give BX and BY"),
+    (re.compile(r"ROTDYNF\Z"), "CENTRIF takes the square of the angular velocity"),
+    (re.compile(r"(F|VBF|SBF|SP)\d?\Z"), "give springs by *SPRING, pressures by P1 to P4"),
+)
 _FACE = re.compile(r"P(\d{1,9})\Z", re.ASCII)
 
 
@@ -431,14 +443,46 @@ def dload(deck: Deck, card: Card) -> None:
             _gravity(deck, card, row, now)
         elif label == "CENTRIF":
             _centrifugal(deck, card, row, now)
+        elif label in ("BX", "BY"):
+            _volume_force(deck, card, row, label, now)
+        elif traction := _TRACTION.match(label):
+            _edge_traction(deck, card, row, traction.group(1), int(traction.group(2)), now)
         else:
+            known = "expected P1 to P4, TRVEC1 to 4, TRSHR1 to 4, BX, BY, GRAV or CENTRIF"
+            why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
             deck.row_error(
                 card,
                 row,
                 1,
-                f"unknown load type {row.get(1)!r}; expected P1 to P4, GRAV or CENTRIF",
-                nearest(label, ("GRAV", "CENTRIF")) if label else "",
+                f"load type {row.get(1)!r} is not part of this version"
+                if why
+                else f"unknown load type {row.get(1)!r}; {known}",
+                why or (nearest(label, ("GRAV", "CENTRIF")) if label else ""),
             )
+
+
+def _volume_force(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> None:
+    """``BX``, ``BY``: force per volume."""
+    deck.extra_fields(card, row, 3)
+    value = deck.real(card, row, 2, "the force per volume")
+    if value is not None:
+        vector = (value, 0.0) if label == "BX" else (0.0, value)
+        now.loads.append(
+            Draft("volume", card, row, row.get(0), vector, amplitude=card.value("AMPLITUDE"))
+        )
+
+
+def _edge_traction(deck: Deck, card: Card, row: Row, label: str, face: int, now: StepDraft) -> None:
+    """``TRVECn``, ``TRSHRn``: as those of ``*DSLOAD``, on one face of elements."""
+    if not row.get(0):
+        deck.row_error(card, row, 0, "an element number or a set is missing")
+    elif not 1 <= face <= 4:
+        deck.row_error(card, row, 1, f"face {face} does not exist; expected 1 to 4")
+    else:
+        draft = _traction(deck, card, row, label, now)
+        if draft is not None:
+            draft.index = face - 1
+            now.loads.append(draft)
 
 
 def _pressure(deck: Deck, card: Card, row: Row, face: int, now: StepDraft) -> None:
@@ -498,52 +542,50 @@ def dsload(deck: Deck, card: Card) -> None:
     now = loads_of(deck, card, "distributed")
     if now is None:
         return
+    for row in card.rows():
+        label = key(row.get(1))
+        if label == "P":
+            value = deck.real(card, row, 2, "the size of the load")
+            deck.extra_fields(card, row, 3)
+            if value is not None:
+                amplitude = card.value("AMPLITUDE")
+                now.loads.append(
+                    Draft("surface pressure", card, row, row.get(0), (value,), -1, amplitude)
+                )
+        elif label in ("TRVEC", "TRSHR"):
+            draft = _traction(deck, card, row, label, now)
+            if draft is not None:
+                now.loads.append(draft)
+        else:
+            why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
+            deck.row_error(
+                card, row, 1, f"unknown load type {row.get(1)!r}; expected P, TRVEC or TRSHR", why
+            )
+
+
+def _traction(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> Draft | None:
+    """Size and direction of ``TRVEC`` or ``TRSHR``; ``None`` after an error."""
     follower = deck.choice(card, "FOLLOWER", ("YES", "NO", ""), "YES") != "NO"
     kinds = {
         "TRSHR": "surface shear",
         "TRVEC": "surface following traction" if follower else "surface traction",
     }
-    for row in card.rows():
-        label = key(row.get(1))
-        value = deck.real(card, row, 2, "the size of the load")
-        if value is None:
-            continue
-        amplitude = card.value("AMPLITUDE")
-        if label == "P":
-            deck.extra_fields(card, row, 3)
-            now.loads.append(
-                Draft("surface pressure", card, row, row.get(0), (value,), -1, amplitude)
-            )
-            continue
-        if label not in ("TRVEC", "TRSHR"):
-            deck.row_error(
-                card, row, 1, f"unknown load type {row.get(1)!r}; expected P, TRVEC or TRSHR"
-            )
-            continue
-        deck.extra_fields(card, row, 6)
-        x = deck.real(card, row, 3, "the direction x", 0.0)
-        y = deck.real(card, row, 4, "the direction y", 0.0)
-        size = math.hypot(x or 0.0, y or 0.0)
-        if label == "TRSHR" and not follower:
-            text = "a shear traction follows the surface: FOLLOWER=NO belongs to TRVEC"
-            deck.error(card, card.at("FOLLOWER"), text)
-        elif x is None or y is None:
-            continue
-        elif size == 0.0:
-            deck.row_error(card, row, 3, "the direction of the traction is zero")
-        else:
-            vector = (value * x / size, value * y / size)
-            now.loads.append(
-                Draft(
-                    kinds[label],
-                    card,
-                    row,
-                    row.get(0),
-                    vector,
-                    -1,
-                    amplitude,
-                )
-            )
+    deck.extra_fields(card, row, 6)
+    value = deck.real(card, row, 2, "the size of the load")
+    x = deck.real(card, row, 3, "the direction x", 0.0)
+    y = deck.real(card, row, 4, "the direction y", 0.0)
+    if value is None or x is None or y is None:
+        return None
+    size = math.hypot(x, y)
+    if label == "TRSHR" and not follower:
+        text = "a shear traction follows the surface: FOLLOWER=NO belongs to TRVEC"
+        deck.error(card, card.at("FOLLOWER"), text)
+        return None
+    if size == 0.0:
+        deck.row_error(card, row, 3, "the direction of the traction is zero")
+        return None
+    vector = (value * x / size, value * y / size)
+    return Draft(kinds[label], card, row, row.get(0), vector, -1, card.value("AMPLITUDE"))
 
 
 def _renews(deck: Deck, now: StepDraft | None, card: Card, kind: str) -> bool:

@@ -119,6 +119,8 @@ def coupling(deck: Deck, card: Card) -> None:
     surface = deck.required(card, "SURFACE")
     if reference is not None and surface:
         tie = TieDraft("kinematic", card, card.where, [reference], surface=surface)
+        if key(card.value("INFLUENCERADIUS")) not in ("", "WHOLESURFACE"):
+            tie.radius = deck.parameter_number(card, "INFLUENCERADIUS", math.inf, 0.0)
         deck.ties.append(tie)
 
 
@@ -129,7 +131,61 @@ def kinematic(deck: Deck, card: Card) -> None:
 
 def distributing(deck: Deck, card: Card) -> None:
     """``*DISTRIBUTING``: first and last dof of the reference node that follow the surface."""
+    deck.choice(card, "WEIGHTINGMETHOD", ("UNIFORM",), "UNIFORM")
     _kind(deck, card, "distributing")
+
+
+def kinematic_coupling(deck: Deck, card: Card) -> None:
+    """``*KINEMATIC COUPLING, REF NODE=``: node or set, first dof, last dof."""
+    reference = _reference(deck, card, "REFNODE")
+    rows = list(card.rows())
+    if not rows:
+        deck.error(card, card.where, "a data line is missing: node or set, first dof, last dof")
+    for row in rows:
+        deck.extra_fields(card, row, 3)
+        first = deck.integer(card, row, 1, "the first dof", 1)
+        last = deck.integer(card, row, 2, "the last dof", first if row.get(1) else 6)
+        if reference is None or first is None or last is None:
+            return
+        dofs = tuple(PLANAR[d] for d in range(first, last + 1) if d in PLANAR)
+        if not row.get(0):
+            deck.row_error(card, row, 0, "a node number or a set is missing")
+        elif not 1 <= first <= last <= 6:
+            deck.row_error(card, row, 1, "expected 1 <= first dof <= last dof <= 6")
+        elif dofs:
+            tie = TieDraft("kinematic", card, row.where, [reference], ready=True, dofs=dofs)
+            tie.target = Draft("set", card, row, row.get(0), (0.0,))
+            deck.ties.append(tie)
+
+
+def couplers(deck: Deck, card: Card) -> None:
+    """``*ELEMENT, TYPE=DCOUP2D`` or ``DCOUP3D``: number, reference node of a coupling."""
+    name = deck.required(card, "ELSET")
+    for row in card.rows():
+        deck.extra_fields(card, row, 2)
+        label = deck.integer(card, row, 0, "the element number")
+        node = deck.integer(card, row, 1, "the reference node")
+        if name and label is not None and node is not None:
+            deck.couplers[key(name)] = Draft("node", card, row, str(node), ())
+
+
+def distributing_coupling(deck: Deck, card: Card) -> None:
+    """``*DISTRIBUTING COUPLING, ELSET=``: node or set, weight."""
+    name = deck.required(card, "ELSET")
+    tie = TieDraft("distributing", card, card.where, ready=True, elset=name)
+    for row in card.rows():
+        deck.extra_fields(card, row, 2)
+        weight = deck.real(card, row, 1, "the weight", 1.0)
+        if not row.get(0):
+            deck.row_error(card, row, 0, "a node number or a set is missing")
+        elif weight is not None and weight <= 0.0:
+            deck.row_error(card, row, 1, f"the weight must be > 0, not {weight:g}")
+        elif weight is not None:
+            tie.members.append((Draft("node", card, row, row.get(0), (0.0,)), weight))
+    if not tie.members and not deck.n_errors:
+        deck.error(card, card.where, "a data line is missing: node or set, weight")
+    elif name:
+        deck.ties.append(tie)
 
 
 def _kind(deck: Deck, card: Card, kind: str) -> None:
