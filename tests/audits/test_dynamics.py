@@ -15,68 +15,23 @@ from scipy.integrate import solve_ivp
 import corota as ct
 from corota.mesh import Mesh
 from corota.mesh.data import Cells
-from corota.model.loads import Amplitude, BodyForce, Fixed, NodalForce
+from corota.model.loads import BodyForce, Fixed, NodalForce
+from support.particles import (
+    LIGHT,
+    bars,
+    chain,
+    chain_matrices,
+    extrapolated,
+    integrate,
+    lagrange,
+    linear_motion,
+    modal_damping,
+    network,
+    table,
+)
 
 IMPLICIT = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
 pytestmark = pytest.mark.filterwarnings("ignore:central differences took")
-LIGHT = 1e-13  # density of lines that carry point masses
-
-
-def network(points, lines=(), dots=()):
-    """Model of two-node lines and single points, by node indices."""
-    points = np.asarray(points, float)
-    cells = []
-    if len(lines):
-        cells.append(Cells("line2", np.asarray(lines, np.int64), np.arange(1, len(lines) + 1)))
-    if len(dots):
-        numbers = np.arange(len(lines) + 1, len(lines) + len(dots) + 1)
-        cells.append(Cells("point1", np.asarray(dots, np.int64).reshape(-1, 1), numbers))
-    return ct.Model(Mesh(points, cells, np.arange(1, len(points) + 1)))
-
-
-def bars(model, cells, stiffness, length, density=LIGHT):
-    """Trusses with the axial stiffness EA/L."""
-    model.truss(cells, material=ct.Elastic(E=stiffness * length, rho=density), area=1.0)
-
-
-def table(model, name, time, value, **options):
-    model.amplitudes[name] = Amplitude(np.asarray(time, float), np.asarray(value, float), **options)
-
-
-def extrapolated(run, increments):
-    """Richardson's extrapolation of a result of second order."""
-    return (4.0 * run(2 * increments) - run(increments)) / 3.0
-
-
-def integrate(rate, state, end, breaks=()):
-    """State at the end, with restarts where the right-hand side is not smooth."""
-    times = [0.0, *[t for t in breaks if 0.0 < t < end], end]
-    for start, stop in zip(times, times[1:], strict=False):
-        state = solve_ivp(rate, (start, stop), state, method="DOP853", rtol=1e-11, atol=1e-12).y[
-            :, -1
-        ]
-    return state
-
-
-def lagrange(positions, masses, potential, q, qd, end):
-    """Integrate Lagrange's equations of particles x(q) under V(q), by complex steps."""
-    q, n = np.asarray(q, float), len(q)
-    masses = np.repeat(masses, 2)
-
-    def jacobian(at):
-        h = 1e-30
-        return np.array([positions(at + 1j * h * e).ravel().imag / h for e in np.eye(n)]).T
-
-    def rate(_, z):
-        at, v = z[:n], z[n:]
-        jac = jacobian(at)
-        h = 1e-6
-        turned = (jacobian(at + h * v) - jacobian(at - h * v)) @ v / (2 * h)
-        force = -np.array([potential(at + 1e-30j * e).imag / 1e-30 for e in np.eye(n)])
-        matrix = jac.T @ (masses[:, None] * jac)
-        return np.r_[v, np.linalg.solve(matrix, force - jac.T @ (masses * turned))]
-
-    return integrate(rate, np.r_[q, qd], end)
 
 
 # --- particles and springs in large motion ------------------------------------------------------
@@ -530,25 +485,6 @@ def test_free_fall_of_two_materials_in_thickness(element, mass):
 # --- frequencies and complex modes --------------------------------------------------------------
 
 
-def chain(stiffness, masses):
-    """Particles on the x axis, each joined to the one before it, the first to a support."""
-    n = len(masses)
-    model = network([[float(i), 0.0] for i in range(n + 1)], [[i, i + 1] for i in range(n)])
-    for i in range(n):
-        bars(model, [i], stiffness[i], 1.0)
-        model.point_mass([i + 1], masses[i])
-        model.fix([i + 1], x=None)
-    model.fix([0])
-    return model
-
-
-def chain_matrices(stiffness, masses):
-    k = np.zeros((len(masses) + 1,) * 2)
-    for i, s in enumerate(stiffness):
-        k[i : i + 2, i : i + 2] += s * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    return k[1:, 1:], np.diag(masses), -k[1:, 0]
-
-
 def test_chain_modes_masses_and_participation():
     # Generalized eigenproblem of three particles by LAPACK; unit modal mass; participation
     # phi^T M 1 and its square over the total mass.
@@ -869,20 +805,6 @@ def without_first_support(model):
     """A chain whose support is left to the steps."""
     model.supports = [f for f in model.supports if not (f.dof == 0 and list(f.nodes) == [0])]
     return model
-
-
-def modal_damping(k, m, share):
-    squares, modes = linalg.eigh(k, m)
-    return m @ modes @ np.diag(2 * share * np.sqrt(squares)) @ modes.T @ m
-
-
-def linear_motion(k, m, c, load, end, breaks, start=None):
-    n = len(m)
-
-    def rate(t, z):
-        return np.r_[z[n:], np.linalg.solve(m, load(t) - k @ z[:n] - c @ z[n:])]
-
-    return integrate(rate, np.zeros(2 * n) if start is None else start, end, breaks)
 
 
 STIFFNESS, MASSES = [100.0, 200.0, 50.0], [1.0, 2.0, 0.5]
