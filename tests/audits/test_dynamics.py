@@ -28,6 +28,7 @@ from support.particles import (
     modal_damping,
     network,
     table,
+    without_first_support,
 )
 
 IMPLICIT = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
@@ -799,12 +800,6 @@ def test_free_ring(element):
 
 
 # --- modal procedures ---------------------------------------------------------------------------
-
-
-def without_first_support(model):
-    """A chain whose support is left to the steps."""
-    model.supports = [f for f in model.supports if not (f.dof == 0 and list(f.nodes) == [0])]
-    return model
 
 
 STIFFNESS, MASSES = [100.0, 200.0, 50.0], [1.0, 2.0, 0.5]

@@ -101,3 +101,9 @@ def linear_motion(k, m, c, load, end, breaks, start=None):
         return np.r_[z[n:], np.linalg.solve(m, load(t) - k @ z[:n] - c @ z[n:])]
 
     return integrate(rate, np.zeros(2 * n) if start is None else start, end, breaks)
+
+
+def without_first_support(model):
+    """A chain whose support is left to the steps."""
+    model.supports = [f for f in model.supports if not (f.dof == 0 and list(f.nodes) == [0])]
+    return model

@@ -122,7 +122,7 @@ class HarmonicStepper:
         response = self.answer(w, load, move)
         state.u = lin.u + response.real
         state.v, state.a = (1j * w * response).real, -(w**2) * response.real
-        z = lin.restrict(response)
+        z = lin.pressed(lin.restrict(response))
         forces = (lin.stiffness - w**2 * lin.mass) @ z + 1j * w * (lin.damping(step.rayleigh) @ z)
         state.at = supported(lin, forces.real, lin.at.external + load.real)
         state.step_time = f

@@ -211,7 +211,7 @@ def linear_evaluation(
     """Forces of the linear response; supports carry what is left, and nothing else does."""
     lin, step = model.lin, model.step
     forces = (
-        lin.stiffness @ lin.restrict(change)
+        lin.stiffness @ lin.pressed(lin.restrict(change))
         + lin.damping(step.rayleigh) @ lin.restrict(v)
         + lin.mass @ lin.restrict(a)
     )

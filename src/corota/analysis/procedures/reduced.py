@@ -125,12 +125,14 @@ class Reduced:
         self.lin, self.state, self.step = lin, state, step
         self.omega = np.hypot(2.0 * math.pi * modes.factors, modes.growth)
         real = np.array([system.from_nodes(shape) for shape in modes.shapes]).T
-        basis = lin.restrict(real)[lin.active]
+        basis = lin.pressed(lin.restrict(real))[lin.active]
         complex_ones = modes.imaginary is not None
         self._mass = mass = lin.sub(lin.mass)
         if modes.imaginary is not None:
             other = np.array([system.from_nodes(shape) for shape in modes.imaginary]).T
-            basis = self._orthonormal(np.hstack([basis, lin.restrict(other)[lin.active]]))
+            basis = self._orthonormal(
+                np.hstack([basis, lin.pressed(lin.restrict(other))[lin.active]])
+            )
         c = lin.damping(step.rayleigh)
         self._factor, self._shift = shifted_factor(lin)
         constrained = lin.restrict(moves)
