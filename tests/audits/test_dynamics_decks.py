@@ -257,8 +257,8 @@ def test_files_hold_velocity_and_acceleration(tmp_path):
 
 @pytest.mark.parametrize("card", ["*DYNAMIC, DIRECT\n0.03, 0.3", "*DYNAMIC\n0.03, 0.3"])
 def test_resumed_steps_of_motion(card, tmp_path):
-    # Static stretch, motion, motion under another load: resumed after each step the end is the
-    # same to the bit.
+    # Static stretch, motion, motion under another load: resumed after the second step the
+    # end is the same to the bit.
     deck = (
         CHAIN
         + HELD
@@ -270,11 +270,10 @@ def test_resumed_steps_of_motion(card, tmp_path):
     )
     results, _, _ = run(deck, tmp_path)
     last = results.frames[-1]
-    for number in (1, 2):
-        again = ct.resume(str(tmp_path / f"job.step-{number}.ckpt")).frames[-1]
-        assert np.array_equal(again.U, last.U)
-        assert np.array_equal(again.V, last.V)
-        assert again.scalars["ETOTAL"] == last.scalars["ETOTAL"]
+    again = ct.resume(str(tmp_path / "job.step-2.ckpt")).frames[-1]
+    assert np.array_equal(again.U, last.U)
+    assert np.array_equal(again.V, last.V)
+    assert again.scalars["ETOTAL"] == last.scalars["ETOTAL"]
 
 
 # --- beside CalculiX -----------------------------------------------------------------------------

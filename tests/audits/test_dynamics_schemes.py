@@ -324,7 +324,7 @@ def test_ladder_between_a_floor_and_a_springy_wall(scheme):
         assert abs(found[4]) < 1e-7
 
 
-@pytest.mark.parametrize("scheme", IMPLICIT[:3])
+@pytest.mark.parametrize("scheme", IMPLICIT)
 def test_spin_dies_by_a_dashpot_on_the_rotation(scheme):
     # J w' = -c w: w0 exp(-c t / J), with the reference node off the center and pinned there; the
     # dashpot takes all energy that goes.
@@ -349,7 +349,10 @@ def test_spin_dies_by_a_dashpot_on_the_rotation(scheme):
     now = spin * math.exp(-c * end / total)
     kinetic = 0.5 * total * np.array([spin**2, now**2])
     exact = [(spin - now) * total / c, now, kinetic[0] - kinetic[1], kinetic[1], total * now]
-    np.testing.assert_allclose(found, exact, rtol=3e-4)
+    # What the conserving step carries on swings a little: its energies are of that.
+    rest = 8e-3 if scheme == "energy_momentum" else 3e-4
+    np.testing.assert_allclose(found, exact, rtol=rest)
+    np.testing.assert_allclose(found[[0, 1, 4]], np.array(exact)[[0, 1, 4]], rtol=5e-4)
 
 
 @pytest.mark.parametrize("scheme", [*IMPLICIT, "central_difference"])

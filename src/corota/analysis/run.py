@@ -297,7 +297,7 @@ class Analysis:
             system.conditions.end_time = loop["factor"] * system.conditions.period
         assert state.energies is not None
         if state.energies.scheme == "energy_momentum" and state.v is not None:
-            state.carried = (state.u, state.v)
+            state.carried = (state.u, state.v, loop["now"].v)
         state.reaction = None
         if kind != "static":
             state.at = system.evaluate(state.u, system.conditions.end_time)

@@ -61,8 +61,9 @@ class State:
     v, a : ndarray, shape (n_dofs,), or None
         Velocity and acceleration; None before any motion.
     carried : tuple of ndarray or None
-        The very arrays `u` and `v` that a step of the energy-momentum scheme ended with: the
-        elements still carry the rates that their momenta are made of.
+        The very arrays `u` and `v` that a step of the energy-momentum scheme ended with, and the
+        velocities of its mid-point relations: the elements still carry the rates that their momenta
+        are made of.
     critical : list of CriticalPoint
     modes : list of Modes
         Found so far.
@@ -90,7 +91,7 @@ class State:
     counters: dict[str, int] = field(default_factory=dict)
     v: Floats | None = None
     a: Floats | None = None
-    carried: tuple[Floats, Floats] | None = None
+    carried: tuple[Floats, Floats, Floats] | None = None
     critical: list[CriticalPoint] = field(default_factory=list)
     modes: list[Modes] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)

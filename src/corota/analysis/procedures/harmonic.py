@@ -119,10 +119,15 @@ class HarmonicStepper:
         f, load, move = (x[self.taken] for x in (self.frequencies, self.loads, self.moves))
         self.taken += 1
         w = 2.0 * math.pi * f
+<<<<<<< HEAD
         response = self.answer(w, load, move)
+=======
+        load, move = loads[i - 1], moves[i - 1]
+        z = answer(w, load, move)
+        response = lin.expand(z)
+>>>>>>> a640126 (Velocities of the conserving scheme fulfil constraints; modal response sees pressure laws and passes contact forces on to held nodes)
         state.u = lin.u + response.real
         state.v, state.a = (1j * w * response).real, -(w**2) * response.real
-        z = lin.pressed(lin.restrict(response))
         forces = (lin.stiffness - w**2 * lin.mass) @ z + 1j * w * (lin.damping(step.rayleigh) @ z)
         state.at = supported(lin, forces.real, lin.at.external + load.real)
         state.step_time = f
@@ -191,7 +196,7 @@ def _by_modes(
             q = np.linalg.solve(matrix, rhs)
         except np.linalg.LinAlgError:
             raise _resonance(step, number, w) from None
-        found: Complex = model.displacement(q, s)
+        found: Complex = model.unknowns(q, s)
         return found
 
     return answer
@@ -212,7 +217,7 @@ def _direct(lin: LinearMotion, step: SteadyState, number: int) -> Answer:
 
     def answer(w: float, load: Complex, move: Complex) -> Complex:
         h = lin.restrict(move)
-        z = h.copy()
+        z: Complex = h.copy()
         dynamic = lin.stiffness - w**2 * lin.mass
         rhs = _complex_gather(lin, load) - (dynamic @ h + 1j * w * (c @ h))[lin.active]
         a = k - w**2 * m
@@ -231,8 +236,7 @@ def _direct(lin: LinearMotion, step: SteadyState, number: int) -> Answer:
         except SingularError:
             raise _resonance(step, number, w) from None
         z[lin.active] = x
-        found: Complex = lin.expand(z)
-        return found
+        return z
 
     return answer
 

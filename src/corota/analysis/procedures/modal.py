@@ -116,12 +116,13 @@ class ModalStepper:
         rate, bend = self.rates[i], self.bends[i]
         q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
         a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
-        change = model.displacement(q, s[i])
+        z = model.unknowns(q, s[i])
+        change = lin.expand(z)
         state.u = lin.u + change
         state.v = model.displacement(q_rate, rate)
         state.a = model.displacement(a - model.carried @ bend, bend)
         external = system.conditions.external(i * dt, lin.u)[0]
-        state.at = linear_evaluation(model, change, state.v, state.a, external)
+        state.at = linear_evaluation(model, z, state.v, state.a, external)
         state.step_time = i * dt
         state.recover = lambda: self.fields.at(change)
         strain = 0.5 * float(q @ (model.stiffness @ q))
@@ -206,12 +207,18 @@ def _advance(model: Reduced, dt: float) -> Floats:
 
 
 def linear_evaluation(
-    model: Reduced, change: Floats, v: Floats, a: Floats, external: Floats
+    model: Reduced, z: Floats, v: Floats, a: Floats, external: Floats
 ) -> Evaluation:
-    """Forces of the linear response; supports carry what is left, and nothing else does."""
+    """Forces of the linear response; supports carry what is left, and nothing else does.
+
+    Parameters
+    ----------
+    z : ndarray, shape (n_unknowns,)
+        Change of the dofs, with the multipliers of contact and ties.
+    """
     lin, step = model.lin, model.step
     forces = (
-        lin.stiffness @ lin.pressed(lin.restrict(change))
+        lin.stiffness @ z
         + lin.damping(step.rayleigh) @ lin.restrict(v)
         + lin.mass @ lin.restrict(a)
     )
@@ -231,6 +238,8 @@ def supported(lin: LinearMotion, forces: Floats, external: Floats) -> Evaluation
     base = lin.at.internal - external
     reaction = np.array(lin.link.gather(base))
     reaction[lin.free] += forces[: lin.nf]
+    # Closed surfaces and ties pass on what reaches them.
+    reaction[lin.free] += lin.tractions(reaction[lin.free])
     internal = external + np.where(system.conditions.constrained, reaction, 0.0)
     return Evaluation(internal, external, np.abs(internal), system.pattern.zeros())
 

@@ -216,8 +216,12 @@ class Reduced:
 
     def displacement(self, q: Any, s: Any) -> Any:
         """Change of all dofs for coordinates of modes and supports, shape (n_dofs,)."""
-        z = self.lin.from_active(self.shapes @ q)
-        return self.lin.expand(z + self.static @ s)
+        return self.lin.expand(self.unknowns(q, s))
+
+    def unknowns(self, q: Any, s: Any) -> Any:
+        """The same for all unknowns, with the multipliers of contact and ties."""
+        found = self.lin.from_active(self.shapes @ q)
+        return found + self.static @ s
 
     def project(self, change: Floats) -> Floats:
         """Coordinates p of a change of all dofs, shape (m,)."""
