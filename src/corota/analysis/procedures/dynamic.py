@@ -23,6 +23,7 @@ from corota.analysis.procedures.motion import (
 )
 from corota.analysis.procedures.motion_output import EndForces
 from corota.analysis.procedures.motion_start import (
+    admissible_velocity,
     check_density,
     damping_at,
     resting,
@@ -84,9 +85,10 @@ def dynamic_step(
         explicit_step(loop, step, stops)
         return
     warn_of_long_increments(system, step, state)
-    loop.run(DynamicStepper(loop, step, stops))
+    stepper = DynamicStepper(loop, step, stops)
+    loop.run(stepper)
     if step.scheme == "energy_momentum" and state.v is not None:
-        state.carried = (state.u, state.v)
+        state.carried = (state.u, state.v, stepper.now.v)
     state.reaction = None
     # A static step that follows needs the static equation at this displacement.
     state.at = system.evaluate(state.u, step.period)
@@ -208,27 +210,14 @@ class DynamicStepper(NewtonStepper):
         assert contact is not None
         dt = target - control.time
         system.commit()
-<<<<<<< HEAD
         self.inertia.settle(self.now, motion.end, dt)
         state.notes += contact.accept(outcome.u, target)
         self.book.accept(motion, contact.force)
         now = self.now = motion.end
         self.ends.find(motion, contact.force, target)
         state.u, state.v, state.a = now.u + self.turned, now.v, now.a
-=======
-        inertia.settle(now, motion.end, target - control.time)
-        contact = None
-        if system.contact_term is not None:
-            contact_term.accept(outcome.u, target)
-            assert contact_term.contact_state is not None
-            contact = contact_term.contact_state.force
-        book.accept(motion, contact)
-        now = motion.end
-        ends.find(motion, contact, target)
-        state.u, state.v, state.a = now.u + turned, now.v, now.a
         if step.scheme == "energy_momentum":
-            state.v = admissible_velocity(system, step, inertia, now.u, now.v, target)
->>>>>>> a640126 (Velocities of the conserving scheme fulfil constraints; modal response sees pressure laws and passes contact forces on to held nodes)
+            state.v = admissible_velocity(system, step, self.inertia, now, target)
         if (more := _whole_turns(system, now.u)) is not None:
             now.u = now.u - more
             self.turned = self.turned + more
@@ -246,30 +235,8 @@ class DynamicStepper(NewtonStepper):
             "residual": outcome.sizes[-1],
             "external work": self.book.external,
         }
-<<<<<<< HEAD
         self.book.add_to(scalars)
         return Accepted(control.number, target / step.period, scalars)
-=======
-        book.add_to(scalars)
-        state.loop = {
-            "kind": "dynamic",
-            "control": control,
-            "book": book,
-            "ends": ends,
-            "now": now,
-            "turned": turned,
-        }
-        save(state, control.number, target / step.period, scalars)
-        if observers.stop_requested:
-            raise Interrupted(
-                f"stopped at step {number}, step time {target:g}; everything up to there is kept"
-            )
-    if step.scheme == "energy_momentum" and state.v is not None:
-        state.carried = (state.u, state.v, now.v)
-    state.reaction = None
-    # A static step that follows needs the static equation at this displacement.
-    state.at = system.evaluate(state.u, step.period)
->>>>>>> a640126 (Velocities of the conserving scheme fulfil constraints; modal response sees pressure laws and passes contact forces on to held nodes)
 
 
 def _whole_turns(system: System, u: Floats) -> Floats | None:
@@ -340,167 +307,6 @@ def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) 
     return target
 
 
-<<<<<<< HEAD
-=======
-def start_motion(
-    system: System, step: Dynamic, state: State, inertia: Inertia, viscous: ViscousElements
-) -> MotionState:
-    """Velocities and accelerations at the start of a step."""
-    zero = np.zeros(system.n_dofs)
-    if state.v is None:
-        state.v = initial_velocity(system, state.u)
-    support_a = _start_supports(system, step, state)
-    at = system.evaluate(state.u, 0.0)
-    u, v = state.u, state.v
-    last = state.carried
-    goes_on = last is not None and last[0] is u and last[1] is v
-    goes_on = goes_on and step.scheme == "energy_momentum"
-    if goes_on and last is not None:
-        held = system.conditions.constrained
-        v = np.where(held, v, last[2])
-    # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
-    # they keep their own velocities, which are those of its mid-point relations.
-    system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
-    force = inertia.force(u, v, zero)
-    rayleigh = _damping(system, step, u, viscous)
-    resting = np.zeros_like(zero)
-    if system.contact_term is not None:
-        # Bodies may rest on each other from a step before.
-        contact_term = system.contact_term
-        resting = contact_term.evaluate(u, contact_term.committed, 0.0, at.values).force
-    damping = inertia.damping(at, u, v, 0.0, rayleigh)
-    internal, external = at.internal, at.external
-    # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
-    _weigh_as_mass(system, step, inertia, at, u)
-    at.internal = internal + force + damping - resting
-    link = at.link
-    at.link = link.linear()
-    # Dependent dofs have their centripetal accelerations besides.
-    a = zero + system.predict(at, support_a)[0]
-    # What nodes without mass need for their balance is no acceleration; drilling rotations near
-    # them follow it.
-    if inertia.massless.any():
-        a[(inertia.massless | system.is_rotation) & ~system.conditions.constrained] = 0.0
-    state.a = a
-    if not goes_on:
-        system.core.start_motion(system.in_space(u), system.in_space(v))
-    return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
-
-
-def admissible_velocity(
-    system: System, step: Dynamic, inertia: Inertia, u: Floats, v: Floats, step_time: float
-) -> Floats:
-    """The velocity that constraints allow and that has the momenta of `v`.
-
-    The mid-point rule holds constraints over increments; the velocities that it carries on swing
-    about those at their ends, by as much as speeds change within an increment. What they have in
-    the motions that constraints leave free is exact: ``G^T M G w = G^T M v``.
-    """
-    if not len(system.constraints.eliminated):
-        return v
-    found: Floats = v.copy()
-    zero = np.zeros_like(v)
-    system.constraints.complete_rates(u, found, zero.copy())
-    if not (found - v).any():
-        return v
-    at = system.evaluate(u, step_time)
-    momentum = inertia.force(u, zero, v - found)
-    _weigh_as_mass(system, step, inertia, at, u)
-    at.internal, at.external = -momentum, zero
-    at.link = at.link.linear()
-    found += system.predict(at, zero)[0]
-    return found
-
-
-def _weigh_as_mass(
-    system: System, step: Dynamic, inertia: Inertia, at: Evaluation, u: Floats
-) -> None:
-    """Put the mass in the place of the tangent, in place.
-
-    The consistent mass of drilling elements has none for a uniform drilling rotation, which
-    follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness decides
-    it.
-    """
-    mass = inertia.tangent(u)
-    if system.is_rotation.any() or inertia.massless.any():
-        trace = step.period if not step.fixed_increments else step.first_increment
-        mass += (TRACE * trace) ** 2 * at.values
-    at.values[:] = mass
-    at.load_stiffness = None
-
-
-def resting(system: System) -> MotionState:
-    """No motion at all."""
-    return MotionState(*np.zeros((7, system.n_dofs)))
-
-
-def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
-    """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
-
-    Both are looked at over the first increment.
-    """
-    assert state.v is not None
-    constrained = system.conditions.constrained
-    whole = not step.fixed_increments and step.first_increment >= step.period
-    window = step.period / 100.0 if whole else step.first_increment
-    v, a = system.conditions.support_rates(0.0, window)
-    state.v[constrained] = v[constrained]
-    for name, time in system.conditions.support_kinks():
-        state.notes.append(
-            f"the amplitude {name!r} of a support changes its velocity at once at step time "
-            f"{time:.4g}: acceleration and reaction are a pulse there, as high as the increment "
-            "is short; round it off if that is not meant"
-        )
-    return a
-
-
-def initial_velocity(system: System, u: Floats | None = None) -> Floats:
-    """The model's initial velocities by dof; a spin is that of the displaced body."""
-    out = np.zeros((len(system.per_node), 3))
-    points = system.model.mesh.points
-    u = np.zeros(system.n_dofs) if u is None else u
-    if system.nlgeom:
-        points = points + system.by_node(u)[:, :2]
-    for item in system.model.velocities:
-        if isinstance(item.nodes, str):
-            everywhere = np.arange(len(points))
-            nodes = system.model.mesh.nodes_of(item.nodes) if item.nodes else everywhere
-        else:
-            nodes = np.asarray(item.nodes, np.int64)
-        if item.dof is not None:
-            out[nodes, item.dof] = item.value[0]
-            continue
-        vx, vy, spin, x0, y0 = (*item.value, 0.0, 0.0, 0.0)[:5]
-        out[nodes, 0] = vx - spin * (points[nodes, 1] - y0)
-        out[nodes, 1] = vy + spin * (points[nodes, 0] - x0)
-        out[nodes, 2] = spin
-    v = system.from_nodes(out)
-    _follow_constraints(system, u, v)
-    return v
-
-
-def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
-    """Give dependent dofs the velocity that follows from the others, in place.
-
-    Raises
-    ------
-    ModelError
-        If another one was given.
-    """
-    given = v.copy()
-    system.constraints.complete_rates(u, v)
-    off = (given != 0.0) & (np.abs(given - v) > UNEQUAL * np.abs(v).max(initial=0.0))
-    if off.any():
-        dof = int(np.flatnonzero(off)[0])
-        raise ModelError(
-            f"the initial velocity of {system.describe(dof)}, {given[dof]:g}, breaks the "
-            f"constraint that determines it, which gives {v[dof]:g}: give the velocity to the "
-            "nodes it depends on too (a reference node has a rotation, dof 6 in decks)",
-            next((item.where for item in system.model.velocities if item.where), None),
-        )
-
-
->>>>>>> a640126 (Velocities of the conserving scheme fulfil constraints; modal response sees pressure laws and passes contact forces on to held nodes)
 def _motion(
     system: System,
     step: Dynamic,

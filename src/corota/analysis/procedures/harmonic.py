@@ -119,13 +119,8 @@ class HarmonicStepper:
         f, load, move = (x[self.taken] for x in (self.frequencies, self.loads, self.moves))
         self.taken += 1
         w = 2.0 * math.pi * f
-<<<<<<< HEAD
-        response = self.answer(w, load, move)
-=======
-        load, move = loads[i - 1], moves[i - 1]
-        z = answer(w, load, move)
+        z = self.answer(w, load, move)
         response = lin.expand(z)
->>>>>>> a640126 (Velocities of the conserving scheme fulfil constraints; modal response sees pressure laws and passes contact forces on to held nodes)
         state.u = lin.u + response.real
         state.v, state.a = (1j * w * response).real, -(w**2) * response.real
         forces = (lin.stiffness - w**2 * lin.mass) @ z + 1j * w * (lin.damping(step.rayleigh) @ z)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.state import State
     from corota.analysis.terms.viscous import ViscousElements
     from corota.model.steps import Dynamic
@@ -53,6 +54,8 @@ def start_motion(
     last = state.carried
     goes_on = last is not None and last[0] is u and last[1] is v
     goes_on = goes_on and step.scheme == "energy_momentum"
+    if goes_on and last is not None:
+        v = np.where(system.conditions.constrained, v, last[2])
     # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
     # they keep their own velocities, which are those of its mid-point relations.
     system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
@@ -64,15 +67,8 @@ def start_motion(
     damping = inertia.damping(at, u, v, 0.0, rayleigh)
     internal, external = at.internal, at.external
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
-    # The consistent mass of drilling elements has none for a uniform drilling rotation, which
-    # follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness
-    # decides it.
-    mass = inertia.tangent(u)
-    if system.is_rotation.any() or inertia.massless.any():
-        trace = step.period if not step.fixed_increments else step.first_increment
-        mass += (TRACE * trace) ** 2 * at.values
-    at.values[:] = mass
-    at.internal, at.load_stiffness = internal + force + damping - resting, None
+    _weigh_as_mass(system, step, inertia, at, u)
+    at.internal = internal + force + damping - resting
     link = at.link
     at.link = link.linear()
     # Dependent dofs have their centripetal accelerations besides.
@@ -85,6 +81,49 @@ def start_motion(
     if not goes_on:
         system.core.start_motion(system.in_space(u), system.in_space(v))
     return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+
+
+def admissible_velocity(
+    system: System, step: Dynamic, inertia: Inertia, now: MotionState, step_time: float
+) -> Floats:
+    """The velocity that constraints allow and that has the momenta of the one given.
+
+    The mid-point rule holds constraints over increments; the velocities that it carries on swing
+    about those at their ends, by as much as speeds change within an increment. What they have in
+    the motions that constraints leave free is exact: ``G^T M G w = G^T M v``.
+    """
+    u, v = now.u, now.v
+    if not len(system.constraints.eliminated):
+        return v
+    found: Floats = v.copy()
+    zero = np.zeros_like(v)
+    system.constraints.complete_rates(u, found, zero.copy())
+    if not (found - v).any():
+        return v
+    at = system.evaluate(u, step_time)
+    momentum = inertia.force(u, zero, v - found)
+    _weigh_as_mass(system, step, inertia, at, u)
+    at.internal, at.external = -momentum, zero
+    at.link = at.link.linear()
+    found += system.predict(at, zero)[0]
+    return found
+
+
+def _weigh_as_mass(
+    system: System, step: Dynamic, inertia: Inertia, at: Evaluation, u: Floats
+) -> None:
+    """Put the mass in the place of the tangent, in place.
+
+    The consistent mass of drilling elements has none for a uniform drilling rotation, which
+    follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness decides
+    it.
+    """
+    mass = inertia.tangent(u)
+    if system.is_rotation.any() or inertia.massless.any():
+        trace = step.period if not step.fixed_increments else step.first_increment
+        mass += (TRACE * trace) ** 2 * at.values
+    at.values[:] = mass
+    at.load_stiffness = None
 
 
 def resting(system: System) -> MotionState:

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 from corota.analysis.linear.factor import Factor
 from corota.analysis.linear.triplets import Triplets
 from corota.analysis.procedures.motion import Inertia
 from corota.analysis.terms.attachments import Attachments
-from corota.analysis.terms.contact.linear import linearized_contact
+from corota.analysis.terms.contact.linear import COMPLIANCE, linearized_contact
 from corota.analysis.terms.damping import damping_matrix
 from corota.errors import SingularError, UnsupportedError
 
@@ -74,6 +75,11 @@ class Linearized:
         if multipliers is not None:
             self.multipliers = multipliers
         self._load = load
+        laws = [p.first + np.arange(p.n) for p in system.contact_term.pairs if p.law is not None]
+        self._laws = np.concatenate([np.zeros(0, np.int64), *laws])
+        self._pressures: Any = None
+        self._hard: Any = None
+        self._normal: Any = None
         with system.conditions.as_reached():
             self.at, coupling, self.states = linearized_contact(system, u, self.multipliers, states)
         self.link = self.at.link
@@ -106,6 +112,11 @@ class Linearized:
         border = coupling.rows
         side = sp.coo_array((border.values, (border.rows, border.columns)), shape=shape).tocsc()
         side = self.link.reduce_columns(side)
+        # A law p = h(-gap) is a row with the compliance of the layer: its pressure follows.
+        scale = sp.diags_array(-1.0 / coupling.diagonal[self._laws])
+        self._pressures = (scale @ side.T.tocsr()[self._laws]).tocsr()
+        hard = np.setdiff1d(np.flatnonzero(np.diff(side.indptr)), self._laws)
+        self._hard = side[:, hard].tocsc()
         return sp.block_array(
             [[k, side], [side.T, sp.diags_array(coupling.diagonal)]], format="csc"
         )
@@ -168,6 +179,37 @@ class Linearized:
     def restrict(self, u: Any) -> Any:
         """Changes of all dofs as those of all unknowns; multipliers stay."""
         return np.concatenate([u[self.free], np.zeros((self.n_multipliers, *u.shape[1:]))])
+
+    def pressed(self, z: Any) -> Any:
+        """Changes of all unknowns with the pressures of contact laws that follow from the dofs."""
+        if not len(self._laws):
+            return z
+        out = z.copy()
+        out[self.nf + self._laws] = self._pressures @ z[: self.nf]
+        return out
+
+    def tractions(self, force: Floats) -> Floats:
+        """Forces of closed surfaces and ties where they leave least of a force at free dofs.
+
+        Parameters
+        ----------
+        force : ndarray, shape (nf,)
+            What stiffness, inertia and loads of a response leave at the independent dofs.
+
+        Returns
+        -------
+        ndarray, shape (nf,)
+        """
+        if self._hard is None or not self._hard.shape[1]:
+            return np.zeros_like(force)
+        loose = self.active[self.active < self.nf]
+        rows = self._hard[loose]
+        if self._normal is None:
+            normal = (rows.T @ rows).tocsc()
+            trace = COMPLIANCE * normal.diagonal().max()
+            self._normal = splu(normal + trace * sp.eye_array(normal.shape[0], format="csc"))
+        out: Floats = self._hard @ self._normal.solve(-(rows.T @ force[loose]))
+        return out
 
     def expand(self, z: Any) -> Any:
         """Changes of all dofs from those of all unknowns; complex ones too."""

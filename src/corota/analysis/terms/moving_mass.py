@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from corota.model.steps import Dynamic
+from corota.model.steps import Dynamic, Frequency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,14 +40,16 @@ class MovingMass:
 def mass_of_step(steps: Sequence[Step], number: int) -> MovingMass:
     """Mass of the dynamic step that is next from step `number`, 1 for the first.
 
-    Where none follows it is that of the last one before; where there is none at all, consistent.
+    Where none follows it is that of the last one before. Where there is none at all it is that of
+    the next frequency step, so that its modes are about a state of equilibrium, or consistent.
     """
     later = [step for step in steps[number - 1 :] if isinstance(step, Dynamic)]
     before = [step for step in steps[: number - 1] if isinstance(step, Dynamic)]
     for step in later[:1] or before[-1:]:
         explicit = step.scheme == "central_difference"
         return MovingMass("lumped" if explicit else step.mass, step.redistribute)
-    return MovingMass()
+    modes = [step for step in steps[number - 1 :] if isinstance(step, Frequency)]
+    return MovingMass(modes[0].mass) if modes else MovingMass()
 
 
 def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
