@@ -157,8 +157,8 @@ def test_momenta_from_the_first_increment(element, mass):
     end = 2e-3
     step = ct.Dynamic(period=end, increments=2, scheme="newmark", mass=mass)
     scalars = ct.solve(model, step).frames[-1].scalars
-    turning = element in ("OPT", "Q4D") and mass == "consistent"  # mass that turns with the frame
-    tolerance = 1e-5 if turning else 1e-9
+    coupled = element in ("OPT", "Q4D") and mass == "consistent"  # mass that turns with the frame
+    tolerance = 1e-5 if coupled else 1e-9
     np.testing.assert_allclose(scalars["momentum x"], end * (3.0 + 6.0), rtol=tolerance)
     np.testing.assert_allclose(scalars["momentum y"], -end * 6.0, rtol=tolerance)
     moment = 3.0 * (1.0 * -2.0 - 0.5 * 1.0) - 6.0 * 0.5
