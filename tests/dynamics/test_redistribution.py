@@ -10,8 +10,8 @@ import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.procedures import dynamic as dynamics
-from corota.analysis.procedures.motion import Inertia
 from corota.analysis.procedures.motion_start import initial_velocity
+from corota.analysis.terms.inertia import Inertia
 
 CELLS = {"OPT": "tri3", "T3": "tri3", "Q8": "quad8", "Q9": "quad9"}
 SIDES = (4.0, 1.0)

@@ -19,12 +19,8 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.procedures.motion import (
-        ConservingMotion,
-        Inertia,
-        MotionState,
-        NewmarkMotion,
-    )
+    from corota.analysis.procedures.motion import ConservingMotion, NewmarkMotion
+    from corota.analysis.terms.inertia import Inertia, MotionState
     from corota.model.steps import Dynamic, Step
 
     Floats = NDArray[np.float64]

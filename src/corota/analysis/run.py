@@ -19,11 +19,11 @@ from corota.analysis.linear.solvers import make_solver
 from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
 from corota.analysis.procedures.localization import localised
-from corota.analysis.procedures.motion import add_kinetic
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.output import output as contact_output
+from corota.analysis.terms.inertia import add_kinetic
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, UnsupportedError
 from corota.model.local_strain import ADVICE, LARGE_STRAIN

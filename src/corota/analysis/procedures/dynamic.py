@@ -14,13 +14,7 @@ from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, New
 from corota.analysis.increments import CUT, SAME, Increments
 from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
-from corota.analysis.procedures.motion import (
-    ConservingMotion,
-    Driven,
-    Inertia,
-    MotionState,
-    NewmarkMotion,
-)
+from corota.analysis.procedures.motion import ConservingMotion, Driven, NewmarkMotion
 from corota.analysis.procedures.motion_output import EndForces
 from corota.analysis.procedures.motion_start import (
     admissible_velocity,
@@ -31,6 +25,7 @@ from corota.analysis.procedures.motion_start import (
 )
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.terms.contact.newton import solve_increment
+from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
 from corota.model import elements

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.increment_loop import Accepted, IncrementLoop
-from corota.analysis.procedures.motion import Inertia
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.terms.damping import material_pairs
+from corota.analysis.terms.inertia import Inertia
 from corota.errors import ConvergenceError, InputError, ModelError, UnsupportedError
 
 if TYPE_CHECKING:

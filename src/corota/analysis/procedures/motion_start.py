@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.procedures.motion import Damping, Inertia, MotionState
 from corota.analysis.terms.damping import mass_damping
+from corota.analysis.terms.inertia import Damping, Inertia, MotionState
 from corota.errors import ModelError
 from corota.model import elements
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
+from corota.model import elements
 from corota.model.loads import Amplitude, NodalForce
 from corota.model.materials import Elastic
 from corota.model.model import Model
@@ -32,7 +33,7 @@ CASES = [("BEAM", "newmark"), ("BEAM", "modal"), ("Q8", "newmark"), ("Q8", "moda
 def beam(element: str, speed: float) -> tuple[Model, int]:
     """The beam; with the node in its middle."""
     material = Elastic(E=YOUNG, nu=0.0, rho=DENSITY)
-    if element == "BEAM":
+    if elements.find(element).line:
         points = np.linspace([0.0, 0.0], [LENGTH, 0.0], 41)
         model = Model(polyline(points))
         inertia = WIDTH * DEPTH**3 / 12.0

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from corota.model import elements
 from corota.model.steps import Static
 from corota.verification.catalogue import Picture, Problem, Study, Value
 from corota.verification.models import cook, linear, run
@@ -60,7 +61,7 @@ def study() -> Study:
         for n in (2, 4, 8, 16, 32):
             model, node = cook(element, n)
             frame = linear(model)
-            dofs.append(frame.U.size + (len(frame.UR) if element in ("OPT", "Q4D") else 0))
+            dofs.append(frame.U.size + (len(frame.UR) if elements.find(element).drilling else 0))
             errors.append(abs(float(frame.U[node, 1]) / CONVERGED - 1.0))
         series[element] = (dofs, errors)
     return Study("error of the tip displacement", series)

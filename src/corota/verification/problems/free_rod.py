@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from corota import mesh as meshes
+from corota.model import elements
 from corota.model.loads import NodalForce
 from corota.model.materials import Elastic
 from corota.model.model import Model
@@ -32,7 +33,7 @@ DEPTH = float(np.sqrt(12.0 * 100.0 / 1e4))
 
 def rod(element: str) -> tuple[Model, int]:
     """The rod; with the node at its lower end that is pushed."""
-    if element == "BEAM":
+    if elements.find(element).line:
         model = Model(polyline(np.linspace([6.0, 0.0], [0.0, 8.0], CELLS + 1)))
         material = Elastic(E=1e4, nu=0.0, rho=1.0)
         model.beam(np.arange(CELLS), material=material, area=1.0, inertia=0.01)
@@ -45,7 +46,7 @@ def rod(element: str) -> tuple[Model, int]:
     material = Elastic(E=1e4 / DEPTH, nu=0.0, rho=1.0 / DEPTH)
     model.section("all", element=element, material=material)
     pushed = int(np.argmin(np.hypot(*(mesh.points - [6.0, 0.0]).T)))
-    if element not in ("Q4D", "OPT"):
+    if not elements.find(element).drilling:
         model.rigid(np.setdiff1d(mesh.nodes_of("left"), pushed), pushed)
     return model, pushed
 
