@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.procedures.motion import ConservingMotion, MotionState, NewmarkMotion
+    from corota.analysis.procedures.motion import ConservingMotion, NewmarkMotion
+    from corota.analysis.terms.inertia import MotionState
 
     Floats = NDArray[np.float64]
 
