@@ -50,7 +50,7 @@ def run(path: Path, text: str, **options: Any) -> Any:
     """Run a deck and leave its files beside it."""
     path.write_text(text)
     model = ct.read(path, **options)
-    files = ct.JobFiles(path.parent, path.stem)
+    files = ct.JobFiles(path.parent, path.stem, points=True)
     return ct.solve(model, observers=[files], threads=1)
 
 
@@ -2275,7 +2275,7 @@ def test_formats_hold_the_same_displacements(tmp_path: Path) -> None:
     model.fix("left")
     model.force("right", y=0.3, per_node=True)
     results = ct.solve(model, ct.Static(increments=3), threads=1)
-    with ct.read_results(results.write(tmp_path / "a.vtkhdf")) as stored:
+    with ct.read_results(results.write(tmp_path / "a.vtkhdf", points=True)) as stored:
         assert np.allclose(stored.frame(2).U, results.frames[2].U, rtol=1e-14)
         assert np.allclose(stored.nodal("MISES"), results.nodal("MISES"), rtol=1e-10)
     archive = np.load(results.write(tmp_path / "a.npz"))

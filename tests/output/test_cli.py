@@ -73,7 +73,7 @@ def test_json_lines_tell_the_whole_run(tmp_path, here):
 
 
 def test_element_type_is_replaced(tmp_path, here):
-    done = here("run", DECK, "-o", tmp_path, "--element", "CPS4=Q4I", "-q")
+    done = here("run", DECK, "-o", tmp_path, "--element", "CPS4=Q4I", "-q", "--points")
     assert done.returncode == 0, done.stderr
     with read_results(tmp_path / "deck.vtkhdf") as results:
         assert results.frames[-1].fields[0].element == "Q4I"

@@ -11,7 +11,7 @@ import pytest
 import corota as ct
 from corota import cli, plots
 from corota.io.result_reader import read_results
-from corota.plots.rigid import moved, rigid_lines
+from corota.results.rigid import moved, rigid_lines
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -61,7 +61,7 @@ def test_vtkhdf_is_a_temporal_grid_with_one_topology(results, tmp_path):
 
 
 def test_vtkhdf_reads_back_what_was_written(results, tmp_path):
-    path = results.write(tmp_path / "a.vtkhdf")
+    path = results.write(tmp_path / "a.vtkhdf", points=True)
     with read_results(path) as back:
         assert len(back.frames) == 5
         assert back.times.tolist() == TIMES

@@ -48,7 +48,9 @@ def test_beams_are_in_files_and_pictures(tmp_path: Path) -> None:
     model, node = lee_frame(5)
     model.name = "lee"
     path = ct.ArcLength(displacement=(node, "y", -20.0))
-    results = ct.solve(model, ct.Static(path=path), observers=[ct.JobFiles(tmp_path)], threads=1)
+    results = ct.solve(
+        model, ct.Static(path=path), observers=[ct.JobFiles(tmp_path, points=True)], threads=1
+    )
     with h5py.File(tmp_path / "lee.vtkhdf") as file:
         assert file["VTKHDF/Types"][:].tolist() == [3] * 10
     with ct.read_results(tmp_path / "lee.vtkhdf") as again:

@@ -10,8 +10,8 @@ from corota.model.summary import joint_lines, material_lines, model_lines
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
-    from corota.io.result_reader import FileResults
     from corota.model.model import Model
+    from corota.results.results import Results
 
 
 def run(args: Any, terminal: Terminal) -> int:
@@ -67,7 +67,7 @@ def model_record(model: Model) -> dict[str, Any]:
     }
 
 
-def result_lines(results: FileResults) -> list[str]:
+def result_lines(results: Results) -> list[str]:
     """Frames, times, variables and ranges of results."""
     frames = results.frames
     if not frames:

@@ -57,7 +57,7 @@ def make_parser() -> Parser:
         "--format",
         dest="formats",
         action="append",
-        choices=("vtkhdf", "pvd", "npz", "vtu"),
+        choices=("vtkhdf", "pvd", "frd", "frd-binary", "npz", "vtu"),
         help="result format, repeatable; else vtkhdf",
     )
     run.add_argument(
@@ -69,7 +69,27 @@ def make_parser() -> Parser:
         help="column of the CSV file, such as U2@TIP or RF1@17, repeatable",
     )
     run.add_argument(
-        "--no-points", action="store_true", help="leave values at quadrature points out of the file"
+        "--frd",
+        nargs="?",
+        const="frd",
+        choices=("frd", "frd-binary"),
+        help="JOB.frd for cgx, PrePoMax, FreeCAD beside the result file; frd-binary: smaller",
+    )
+    run.add_argument(
+        "--points", action="store_true", help="values at quadrature points in the result file too"
+    )
+    run.add_argument(
+        "--single", action="store_true", help="fields of the result file in 4 bytes a number"
+    )
+    run.add_argument(
+        "--fields",
+        type=_fields,
+        default="all",
+        metavar="LIST",
+        help="fields of the result file, such as U,S,PEEQ; or requested: as *NODE FILE, *EL FILE",
+    )
+    run.add_argument(
+        "--compression", type=int, default=1, metavar="0-9", help="of the result file; else 1"
     )
     _reading(run)
 
@@ -278,6 +298,12 @@ def _values(text: str) -> tuple[str, list[float]]:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not of the form NAME=FIRST:LAST:COUNT or NAME=VALUE,VALUE,..."
         ) from None
+
+
+def _fields(text: str) -> str | tuple[str, ...]:
+    if text in ("all", "requested"):
+        return text
+    return tuple(part.strip() for part in text.split(",") if part.strip())
 
 
 def _whole(text: str) -> int:

@@ -11,7 +11,7 @@ from corota.errors import FileError
 from corota.model.model import Model
 
 #: Endings of result files that the commands can open again.
-RESULTS = (".vtkhdf", ".hdf")
+RESULTS = (".vtkhdf", ".hdf", ".frd", ".pvd", ".vtu")
 
 
 def read_input(name: str, args: Any) -> Model:

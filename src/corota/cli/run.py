@@ -111,6 +111,7 @@ def run(args: Any, terminal: Terminal) -> int:
     from corota import __version__
     from corota.io.job import CHECKPOINT_SECONDS, JobFiles
     from corota.io.provenance import place_of, write_provenance
+    from corota.io.writers import STREAMS
 
     begin = time.perf_counter()
     terminal.line(terminal.color(f"Corota {__version__}", "bold") + f"  {args.deck}")
@@ -129,12 +130,16 @@ def run(args: Any, terminal: Terminal) -> int:
     if args.provenance:
         write_provenance(Path(args.output), model.name, args.deck)
     every = args.checkpoint_every
+    streams = [f for f in args.formats or ["vtkhdf"] if f in STREAMS]
     files = JobFiles(
         args.output,
         model.name,
-        formats=[f for f in args.formats or ["vtkhdf"] if f in ("vtkhdf", "pvd")],
+        formats=[*streams, *([args.frd] if args.frd and args.frd not in streams else [])],
         histories=args.histories,
-        points=not args.no_points,
+        points=args.points,
+        single=args.single,
+        fields=args.fields,
+        compression=args.compression,
         profile={"read": read},
         checkpoint_every=every or 0,
         checkpoint_seconds=CHECKPOINT_SECONDS if every is None else 0.0,

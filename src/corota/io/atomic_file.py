@@ -188,7 +188,7 @@ class TextFile:
         except OSError as error:
             raise full(error, path) from None
 
-    def append(self, text: str) -> None:
+    def append(self, text: str | bytes) -> None:
         """Write a piece and hand it to the system at once.
 
         Raises
@@ -196,7 +196,7 @@ class TextFile:
         FileError
             If the disk refuses.
         """
-        data = memoryview(text.encode())
+        data = memoryview(text.encode() if isinstance(text, str) else text)
         start = self._file.tell()
         try:
             while data:

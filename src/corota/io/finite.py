@@ -23,7 +23,7 @@ def check_frame(frame: Frame) -> None:
     """
     for name in ("U", "UR", "RF", "F", "V", "A", "C"):
         values = getattr(frame, name)
-        if values is not None:
+        if values is not None and name not in frame.absent:
             check(frame, name, values)
     for block in frame.fields:
         for name, values in block.values.items():

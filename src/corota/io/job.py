@@ -19,6 +19,7 @@ from corota.io.atomic_file import TextFile, full
 from corota.io.checkpoint import ENDINGS as CHECKPOINTS
 from corota.io.checkpoint import store
 from corota.io.events import Events, json_line
+from corota.io.file_options import LEVEL, FileOptions
 from corota.io.finite import check_frame
 from corota.io.folder_lock import FolderLock
 from corota.io.provenance import place_of
@@ -28,6 +29,8 @@ from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.dat import check_requests, dat_blocks
 from corota.io.tables.dat_modes import buckling_table, eigenvalue_tables
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
+from corota.io.writers import STREAMS, Job
+from corota.names import choose
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
@@ -37,8 +40,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.checkpoint import Checkpoint
     from corota.io.checkpoint import Saved
-    from corota.io.vtk.vtkhdf import VtkhdfWriter
-    from corota.io.vtk.vtu import PvdWriter
+    from corota.io.writers import Stream
     from corota.model.model import Model
     from corota.model.steps import Output, Step
     from corota.results.observer import Iteration
@@ -69,11 +71,17 @@ class JobFiles(BaseObserver):
         Made if it does not exist; files of an earlier run of the same job are replaced.
     name : str
         Stem of the file names; the model's name by default.
-    formats : sequence of {"vtkhdf", "pvd"}
+    formats : sequence of {"vtkhdf", "pvd", "frd", "frd-binary"}
     histories : sequence of str
         Extra columns of the CSV file: ``VARIABLE@SET`` or ``VARIABLE@NODE``.
     points : bool
-        Store values at the quadrature points in the result file.
+        Store values at the quadrature points in the result file; several times the size.
+    single : bool
+        Store fields in 4 bytes a number.
+    fields : {"all", "requested"} or sequence of str
+        Fields of the result file; see :class:`corota.io.file_options.FileOptions`.
+    compression : int
+        Level of gzip, 0 for none.
     profile : dict of str to float, optional
         Seconds of phases before the analysis, such as ``read``.
     checkpoint_every : int
@@ -114,7 +122,10 @@ class JobFiles(BaseObserver):
         *,
         formats: Sequence[str] = ("vtkhdf",),
         histories: Sequence[str] = (),
-        points: bool = True,
+        points: bool = False,
+        single: bool = False,
+        fields: str | Sequence[str] = "all",
+        compression: int = LEVEL,
         profile: dict[str, float] | None = None,
         checkpoint_every: int = 0,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
@@ -125,7 +136,10 @@ class JobFiles(BaseObserver):
         self.paths: list[Path] = []
         self.error: Exception | None = None
         self.seconds = 0.0
-        self._formats, self._extra, self._points = formats, histories, points
+        self._formats = [choose(form, STREAMS, "result format") for form in formats]
+        self._extra = histories
+        chosen = fields if isinstance(fields, str) else tuple(fields)
+        self._form = FileOptions(points, single, chosen, compression)
         self._profile = profile or {}
         self._tasks: deque[tuple[Callable[[], None], int]] = deque()
         self._waiting = 0
@@ -234,8 +248,8 @@ class JobFiles(BaseObserver):
             self._text["cvg"].append(CVG_HEAD)
         else:
             self._take_up(resumed)
-        self._big: list[VtkhdfWriter | PvdWriter] = []
-        big = [(ending, self._path(name, ending)) for ending in self._formats]
+        self._big: list[Stream] = []
+        big = [(form, self._path(name, form.partition("-")[0])) for form in self._formats]
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
         self._thread.start()
@@ -255,7 +269,7 @@ class JobFiles(BaseObserver):
         gone = [f"{name}.{ending}" for ending in endings]
         gone += [path.name for path in self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")]
         try:
-            for old in [*gone, f"{name}.dat", f"{name}.csv"]:
+            for old in [*gone, f"{name}.dat", f"{name}.csv", f"{name}.frd"]:
                 (self.folder / old).unlink(missing_ok=True)
             for ending in ("vtkhdf", "pvd"):
                 path = self.folder / f"{name}.{ending}"
@@ -287,18 +301,9 @@ class JobFiles(BaseObserver):
 
     def _open(self, big: list[tuple[str, Path]]) -> None:
         """Make the writers of the result files."""
-        for ending, path in big:
-            if ending == "pvd":
-                from corota.io.vtk.vtu import PvdWriter
-
-                self._big.append(PvdWriter(path, self.model, self._state_of(ending)))
-            else:
-                from corota.io.vtk.vtkhdf import VtkhdfWriter
-
-                state = self._state_of(ending)
-                self._big.append(
-                    VtkhdfWriter(path, self.model, self._points, self.run, state, self.steps)
-                )
+        for name, path in big:
+            job = Job(self.model, self.steps, self._form, self.run, self._state_of(name))
+            self._big.append(STREAMS[name](path, job))
 
     def _state_of(self, ending: str) -> dict[str, Any] | None:
         """Where a checkpoint left a result file; None for a new one."""
@@ -356,8 +361,11 @@ class JobFiles(BaseObserver):
         """Bring the files to the disk, then the checkpoint that refers to them."""
         for big in self._big:
             big.commit()
-        for file in [*self._text.values(), self._csv, *self._big]:
-            file.sync()
+        for text in self._text.values():
+            text.sync()
+        self._csv.sync()
+        for big in self._big:
+            big.sync()
         newest = None
         writer = Writer({})
         if self._newest is not None:
@@ -395,9 +403,12 @@ class JobFiles(BaseObserver):
     def _options(self) -> dict[str, Any]:
         return {
             "folder": str(self.folder),
-            "formats": list(self._formats),
+            "formats": self._formats,
             "histories": list(self._extra),
-            "points": self._points,
+            "points": self._form.points,
+            "single": self._form.single,
+            "fields": self._form.fields,
+            "compression": self._form.compression,
             "every": self._every,
             "seconds": self._seconds,
             "source": self._place,

@@ -74,7 +74,7 @@ def write_modes(results: Results, path: Path) -> None:
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
     found = as_results(results)
-    writer = VtkhdfWriter(path, found.model, points=False)
+    writer = VtkhdfWriter(path, found.model)
     for frame in found.frames:
         writer.add(frame)
     writer.close(found.info)
@@ -85,7 +85,7 @@ def write_iterate(results: Results, path: Path) -> None:
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
     assert results.last_iterate is not None
-    writer = VtkhdfWriter(path, results.model, points=False)
+    writer = VtkhdfWriter(path, results.model)
     for frame in (results.frames[-1], results.last_iterate):
         writer.add(replace(frame, scalars={}, fields=[], V=None, A=None, C=None))
     writer.close({})

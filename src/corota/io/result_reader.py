@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -15,7 +15,7 @@ import numpy as np
 from corota.errors import FileError, InputError
 from corota.io.contacts import contacts_of_results
 from corota.io.description import description_of_results
-from corota.io.vtk.vtkhdf import VTK_TYPES
+from corota.io.vtk.grid import VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
 from corota.model.model import Model
@@ -24,8 +24,8 @@ from corota.results import variables as vf
 from corota.results.results import Frame, PointFields, Results
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from os import PathLike
-    from types import TracebackType
 
     from numpy.typing import NDArray
 
@@ -43,17 +43,18 @@ _NODAL_ARRAYS = {
 _OWN = ("step", "increment", "time", "step time", "load factor")
 
 
-def read_results(path: str | PathLike[str]) -> FileResults:
-    """Open a result file that Corota wrote.
+def read_results(path: str | PathLike[str]) -> Results:
+    """Open a result file.
 
     Parameters
     ----------
     path : path-like
-        ``<job>.vtkhdf``.
+        ``<job>.vtkhdf`` with everything; ``.frd`` of CalculiX or Corota, ``.pvd`` and ``.vtu`` of
+        Corota with what is in them.
 
     Returns
     -------
-    StoredResults
+    Results
         Same methods as the results of an analysis; a context manager that closes the file.
 
     Raises
@@ -61,9 +62,16 @@ def read_results(path: str | PathLike[str]) -> FileResults:
     FileError
         If the file cannot be opened or is not such a file.
     """
+    name = Path(path)
+    if not name.is_file():
+        raise FileError(f"{name}: no such file")
+    return RESULT_READERS.get(name.suffix.lower(), read_vtkhdf)(name)
+
+
+def read_vtkhdf(name: Path) -> FileResults:
+    """Open a ``.vtkhdf`` file; see :func:`read_results`."""
     import h5py
 
-    name = Path(path)
     if not name.is_file():
         raise FileError(f"{name}: no such file")
     try:
@@ -78,6 +86,28 @@ def read_results(path: str | PathLike[str]) -> FileResults:
     except FileError:
         file.close()
         raise
+
+
+def _read_frd(name: Path) -> Results:
+    from corota.io.frd.reader import read_frd
+
+    return read_frd(name)
+
+
+def _read_vtk_xml(name: Path) -> Results:
+    from corota.io.vtk.vtu_reader import read_vtk_xml
+
+    return read_vtk_xml(name)
+
+
+#: Ending of the file name to its reader.
+RESULT_READERS: dict[str, Callable[[Path], Results]] = {
+    ".vtkhdf": read_vtkhdf,
+    ".hdf": read_vtkhdf,
+    ".frd": _read_frd,
+    ".pvd": _read_vtk_xml,
+    ".vtu": _read_vtk_xml,
+}
 
 
 @contextmanager
@@ -96,23 +126,69 @@ def _whole(good: bool, what: str) -> None:
         raise ValueError(what)
 
 
+class Arrays(Mapping[str, "Floats"]):
+    """Arrays of a file by name; each is read when it is asked for."""
+
+    def __init__(self, names: list[str], read: Callable[[str], Floats]) -> None:
+        self._names, self._read = names, read
+
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._read(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def _of_section(file: Any, group: Any, number: int, count: int) -> Callable[[str], Floats]:
+    """Reads arrays of a section in a frame."""
+
+    def read(name: str) -> Floats:
+        with _damage(file.filename):
+            data = group[name]
+            if name == "nodes":
+                return np.asarray(data[:])
+            rows = len(group["nodes"])
+            _whole(len(data) == rows * count, f"{name} of a section")
+            return np.asarray(data[number * rows : (number + 1) * rows], np.float64)
+
+    return read
+
+
+def _cells_with(blocks: list[Any], n_cells: int) -> dict[str, NDArray[np.bool_]]:
+    """Cells that have a variable at their points."""
+    found: dict[str, NDArray[np.bool_]] = {}
+    for block in blocks:
+        for name in str(block.attrs.get("variables", "")).split():
+            found.setdefault(name, np.zeros(n_cells, dtype=bool))[block["cells"][:]] = True
+    return found
+
+
 class FileFrames(Sequence[Frame]):
     """Frames of a file; each is read when it is asked for, the last one is remembered."""
 
     def __init__(self, file: Any) -> None:
         self._file = file
         self._count = int(file["VTKHDF/Steps"].attrs["NSteps"])
-        self._nodes = len(file["VTKHDF/Points"])
+        self._nodes = len(file["corota/node labels"])
+        self._cells = len(file["corota/cell labels"])
         _whole(self._count >= 0, f"{self._count} frames")
-        self._blocks = [file["corota/points"][k] for k in sorted(file["corota/points"], key=int)]
+        every = [file["corota/points"][k] for k in sorted(file["corota/points"], key=int)]
+        self._blocks = [block for block in every if "reference volume" in block]
+        self._sections = {int(k): g for k, g in file.get("corota/sections", {}).items()}
         self._fixed = [
             (str(b.attrs["element"]), b["cells"][:], b["shape functions"][:]) for b in self._blocks
         ]
-        types = file["VTKHDF/Types"][:]
+        types = file["VTKHDF/Types"][: self._cells]
         run = np.cumsum(np.diff(types, prepend=types[:1]) != 0)
-        for _, cells, _ in self._fixed:
+        for cells in (block["cells"][:] for block in every):
             inside = len(cells) and cells.min() >= 0 and cells.max() < len(types)
             _whole(bool(inside) and len(set(run[cells].tolist())) == 1, "elements of a block")
+        self._cells_with = _cells_with(every, self._cells)
         self._last: tuple[int, Frame] | None = None
 
     def __len__(self) -> int:
@@ -157,23 +233,38 @@ class FileFrames(Sequence[Frame]):
         with _damage(self._file.filename):
             data = self._file["VTKHDF/PointData"][name]
             rows = len(data) // self._count
-            _whole(rows == self._nodes and data.dtype.kind == "f", f"{name} at {rows} nodes")
-            return np.asarray(data[number * rows : (number + 1) * rows])
+            _whole(rows >= self._nodes and data.dtype.kind == "f", f"{name} at {rows} nodes")
+            # Behind the nodes are points of rigid curves.
+            first = number * rows
+            return np.asarray(data[first : first + self._nodes], np.float64)
+
+    def at_cells(self, name: str, number: int) -> Floats:
+        """An array of ``CellData`` in a frame."""
+        with _damage(self._file.filename):
+            data = self._file["VTKHDF/CellData"][name]
+            rows = len(data) // self._count
+            good = rows >= self._cells and data.dtype.kind == "f"
+            _whole(good, f"{name} of {rows} elements")
+            first = number * rows
+            return np.asarray(data[first : first + self._cells], np.float64)
 
     def _read(self, number: int) -> Frame:
         group = self._file["corota/frames"]
         found = {name: float(group[name][number]) for name in group}
         scalars = {name: value for name, value in found.items() if not np.isnan(value)}
-        force, outer = (self.at_points(n, number) for n in ("reaction", "external force"))
-        moment, turn = (self.at_points(n, number) for n in ("reaction moment", "external moment"))
-        moving = {}
+        absent = frozenset(
+            attribute
+            for attribute, name in (("RF", "reaction"), ("F", "external force"))
+            if name not in self._file["VTKHDF/PointData"]
+        )
+        moving: dict[str, Any] = {}
         for attribute, name in (("V", "velocity"), ("A", "acceleration")):
             if name in self._file["VTKHDF/PointData"]:
                 at = self.at_points(name, number)
                 at[:, 2] = self.at_points(f"angular {name}", number)
                 moving[attribute] = at
-        if vf.CONTACT[0] in self._file["VTKHDF/PointData"]:
-            columns = [self.at_points(name, number) for name in vf.CONTACT]
+        if any(name in self._file["VTKHDF/PointData"] for name in vf.CONTACT):
+            columns = [self._or_zero(name, number) for name in vf.CONTACT]
             moving["C"] = np.column_stack(columns)
         fields = [self._fields(block, number) for block in range(len(self._blocks))]
         return Frame(
@@ -184,14 +275,26 @@ class FileFrames(Sequence[Frame]):
             scalars["load factor"],
             self.at_points("displacement", number)[:, :2],
             self.at_points("rotation", number),
-            np.column_stack([force[:, :2], moment]),
-            np.column_stack([outer[:, :2], turn]),
+            self._force("reaction", "reaction moment", number),
+            self._force("external force", "external moment", number),
             fields,
             {k: v for k, v in scalars.items() if k not in _OWN},
             **moving,
             pairs=self._pairs(number),
-            averages={} if fields else self._averages(number),
+            absent=absent,
+            **({} if fields else self._averages(number)),
         )
+
+    def _or_zero(self, name: str, number: int) -> Floats:
+        there = name in self._file["VTKHDF/PointData"]
+        return self.at_points(name, number) if there else np.zeros(self._nodes)
+
+    def _force(self, name: str, moment: str, number: int) -> Floats:
+        """Force and moment at the nodes, not numbers where the file has none."""
+        if name not in self._file["VTKHDF/PointData"]:
+            return np.full((self._nodes, 3), np.nan)
+        force = self.at_points(name, number)
+        return np.column_stack([force[:, :2], self._or_zero(moment, number)])
 
     def _pairs(self, number: int) -> dict[str, Floats]:
         """Contact of each pair, where pairs share nodes."""
@@ -199,18 +302,29 @@ class FileFrames(Sequence[Frame]):
         names = [n.removeprefix(head) for n in self._file["VTKHDF/PointData"] if n.startswith(head)]
         return {
             pair.replace("|", "/"): np.column_stack(
-                [self.at_points(f"{column}: {pair}", number) for column in vf.CONTACT]
+                [self._or_zero(f"{column}: {pair}", number) for column in vf.CONTACT]
             )
             for pair in names
         }
 
-    def _averages(self, number: int) -> dict[str, Floats]:
-        """What the file holds at nodes of values whose points it does not hold."""
+    def _averages(self, number: int) -> dict[str, Any]:
+        """What the file holds of values whose points it does not hold; read when asked for."""
         of_pairs = tuple(f"{column}: " for column in vf.CONTACT)
-        return {
-            name: self.at_points(name, number)
+        at_nodes = [
+            name
             for name in self._file["VTKHDF/PointData"]
             if name not in _NODAL_ARRAYS and not name.startswith(of_pairs)
+        ]
+        still = ("section", "element label")
+        of_cells = [name for name in self._file["VTKHDF/CellData"] if name not in still]
+        return {
+            "averages": Arrays(at_nodes, lambda name: self.at_points(name, number)),
+            "cell_averages": Arrays(of_cells, lambda name: self.at_cells(name, number)),
+            "section_averages": {
+                section: Arrays(list(group), _of_section(self._file, group, number, self._count))
+                for section, group in self._sections.items()
+            },
+            "cells_with": self._cells_with,
         }
 
     def _fields(self, block: int, number: int) -> PointFields:
@@ -264,42 +378,11 @@ class FileResults(Results):
         self.attributes = {n: str(own.attrs[n]) for n in names if n in own.attrs}
         self.path = str(file.filename)
         self._file = file
-        self._section = file["VTKHDF/CellData/section"][:]
+        self._section = file["VTKHDF/CellData/section"][: len(own["cell labels"])]
         self.frames = FileFrames(file)  # type: ignore[assignment]
 
     def sections(self) -> Ints:
         return np.asarray(self._section)
-
-    def variables(self, index: int = -1) -> list[str]:
-        names = super().variables(index)
-        if self.frames and not self.frames[index].fields:
-            names += [n for n in (*vf.COMPONENTS, *vf.INVARIANTS) if self._has(n)]
-        return names
-
-    def _has(self, name: str) -> bool:
-        return self._source(name)[0] in self._file["VTKHDF/PointData"]
-
-    def _source(self, name: str) -> tuple[str, int]:
-        if name in vf.COMPONENTS:
-            tensor, column = vf.COMPONENTS[name]
-            return {"S": "stress", "E": "strain"}.get(tensor, tensor), column
-        if name == "MISES":
-            return "Mises", -1
-        tensor, which = vf.INVARIANTS[name]
-        return f"principal {'stress' if tensor == 'S' else 'strain'}", int(which) - 1
-
-    def nodal(self, name: str, index: int = -1, section: int | None = None) -> Floats:
-        """Values at the nodes; without stored points the averages in the file."""
-        frame = self.frame(index)
-        if frame.fields:
-            return super().nodal(name, index, section)
-        name = vf.match_name(name, self.variables(index))
-        if name in vf.NODAL:
-            return vf.nodal_value(frame, name)
-        assert isinstance(self.frames, FileFrames)
-        source, column = self._source(name)
-        values = self.frames.at_points(source, index % len(self.frames))
-        return values if column < 0 else values[:, column]
 
     def scalar_names(self) -> list[str]:
         """Names of the scalars of the frames."""
@@ -321,27 +404,20 @@ class FileResults(Results):
         assert isinstance(self.frames, FileFrames)
         return self.frames.scalars("time")
 
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-
     def __enter__(self) -> FileResults:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
 
 
 def _mesh(file: Any) -> Mesh:
     """Mesh of a file: its cells, labels and sets."""
     root, own = file["VTKHDF"], file["corota"]
-    types, chain, offsets = root["Types"][:], root["Connectivity"][:], root["Offsets"][:]
-    labels = root["CellData/element label"][:]
+    n_nodes, n_cells = len(own["node labels"]), len(own["cell labels"])
+    types, chain, offsets = root["Types"][:n_cells], root["Connectivity"][:], root["Offsets"][:]
+    labels = root["CellData/element label"][:n_cells]
     cells: list[Cells] = []
     cuts = [0, *(np.flatnonzero(np.diff(types)) + 1).tolist(), len(types)]
     for first, end in pairwise(cuts):
@@ -352,7 +428,7 @@ def _mesh(file: Any) -> Mesh:
             raise InputError(f"cell type {types[first]} is not one of Corota's")
         nodes = chain[offsets[first] : offsets[end]].reshape(-1, N_NODES[kind])
         cells.append(Cells(kind, nodes, labels[first:end]))
-    points = root["Points"][:, :2]
+    points = root["Points"][:n_nodes, :2]
     _whole(bool(np.isfinite(points).all()), "points that are no numbers")
     for block in cells:
         inside = block.nodes.size and block.nodes.min() >= 0 and block.nodes.max() < len(points)

@@ -3,23 +3,35 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import inspect
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from corota.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from os import PathLike
 
+    from corota.io.file_options import FileOptions
     from corota.mesh import Mesh
-    from corota.results.results import Results
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.results import Frame, Results
 
 
-def _vtkhdf(results: Results, path: Path) -> None:
+def _vtkhdf(results: Results, path: Path, **options: Any) -> None:
+    from corota.io.file_options import from_keywords
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
-    writer = VtkhdfWriter(path, results.model, steps=results.steps)
+    writer = VtkhdfWriter(
+        path,
+        results.model,
+        from_keywords(options),
+        sections=results.sections(),
+        steps=results.steps,
+    )
     for frame in results.frames:
         writer.add(frame)
     writer.close(results.info)
@@ -41,6 +53,12 @@ def _npz(results: Results, path: Path) -> None:
     from corota.io.npz import write_npz
 
     write_npz(results, path)
+
+
+def _frd(results: Results, path: Path, binary: bool = False, **options: Any) -> None:
+    from corota.io.frd.writer import write_frd
+
+    write_frd(results, path, binary, **options)
 
 
 def _csv(results: Results, path: Path) -> None:
@@ -81,15 +99,71 @@ def _sta(results: Results, path: Path) -> None:
 
 
 #: Ending of the file name to its writer.
-WRITERS: dict[str, Callable[[Results, Path], None]] = {
+WRITERS: dict[str, Callable[..., None]] = {
     ".vtkhdf": _vtkhdf,
     ".hdf": _vtkhdf,
     ".pvd": _pvd,
     ".vtu": _vtu,
+    ".frd": _frd,
     ".npz": _npz,
     ".csv": _csv,
     ".dat": _dat,
     ".sta": _sta,
+}
+
+
+class Stream(Protocol):
+    """Writes a result file increment by increment, beside the analysis."""
+
+    @property
+    def state(self) -> dict[str, Any]: ...
+    def add(self, frame: Frame) -> None: ...
+    def commit(self) -> None: ...
+    def sync(self) -> None: ...
+    def close(self, info: dict[str, Any] | None = None) -> None: ...
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a stream is made for: model, steps, what goes into the file, where it was left."""
+
+    model: Model
+    steps: Sequence[Step]
+    options: FileOptions
+    run: str = ""
+    resume: dict[str, Any] | None = None
+
+
+def _stream_vtkhdf(path: Path, job: Job) -> Stream:
+    from corota.io.vtk.vtkhdf import VtkhdfWriter
+
+    return VtkhdfWriter(path, job.model, job.options, job.run, job.resume, steps=job.steps)
+
+
+def _stream_pvd(path: Path, job: Job) -> Stream:
+    from corota.io.vtk.vtu import PvdWriter
+
+    return PvdWriter(path, job.model, job.resume)
+
+
+def _stream_frd(path: Path, job: Job) -> Stream:
+    from corota.io.frd.writer import FrdWriter
+
+    return FrdWriter(path, job.model, job.steps, job.options, resume=job.resume)
+
+
+def _stream_frd_binary(path: Path, job: Job) -> Stream:
+    from corota.io.frd.writer import FrdWriter
+
+    return FrdWriter(path, job.model, job.steps, job.options, binary=True, resume=job.resume)
+
+
+#: Format of a run to what writes it; a name is the ending of the file and, behind a dash, a kind.
+STREAMS: dict[str, Callable[[Path, Job], Stream]] = {
+    "vtkhdf": _stream_vtkhdf,
+    "pvd": _stream_pvd,
+    "frd": _stream_frd,
+    "frd-binary": _stream_frd_binary,
 }
 
 
@@ -122,13 +196,20 @@ def write_mesh(mesh: Mesh, path: str | PathLike[str]) -> Path:
     return target
 
 
-def write(results: Results, path: str | PathLike[str]) -> Path:
+def write(results: Results, path: str | PathLike[str], **options: Any) -> Path:
     """Write results in the format that the ending names; return the path.
+
+    Parameters
+    ----------
+    results : Results
+    path : path-like
+    **options
+        Of the format's writer.
 
     Raises
     ------
     InputError
-        If the ending is unknown or there is nothing to write.
+        If the ending or an option is unknown or there is nothing to write.
     FileError
         If the file cannot be written.
     """
@@ -140,5 +221,8 @@ def write(results: Results, path: str | PathLike[str]) -> Path:
         )
     if not results.frames:
         raise InputError(f"{target}: there are no frames to write")
-    writer(results, target)
+    known = inspect.signature(writer).parameters
+    if options and not any(p.kind is p.VAR_KEYWORD or name in options for name, p in known.items()):
+        raise InputError(f"{target}: {target.suffix} has no options; remove {', '.join(options)}")
+    writer(results, target, **options)
     return target

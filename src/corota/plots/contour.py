@@ -100,10 +100,8 @@ class Drawing:
             known = self.results.cells(self.name, frame)
         except InputError:
             return np.asarray(own[cells])
-        for block in self.results.frame(frame).fields:
-            # Stresses and strains, too, are known wherever a block has points.
-            if self.name in block.values or self.name not in LINE_ONLY:
-                own[block.cells] = known[block.cells]
+        has = self.results.cells_with(self.name, frame)
+        own[has] = known[has]
         return np.asarray(own[cells])
 
     def range(self, frame: int) -> tuple[float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.io.modes import as_results
-from corota.io.result_reader import FileResults, read_results
+from corota.io.result_reader import FileResults, read_vtkhdf
 from corota.mesh import EDGES
 from corota.model import elements
 from corota.model.description import describe, rigid_curves
@@ -95,7 +95,7 @@ def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> C
     provenance = _provenance(job)
     if job.results is None:
         return _content(None, records, limit, title or job.name, provenance=provenance)
-    with read_results(job.results) as results:
+    with read_vtkhdf(job.results) as results:
         if not records.rows:
             _rows_of_frames(records, results)
         more: list[tuple[str, FileResults]] = []
@@ -103,7 +103,7 @@ def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> C
             for kind, ending in (("mode", "modes"), ("iterate", "last_iterate")):
                 beside = job.path(f"{ending}.vtkhdf")
                 if beside.is_file():
-                    more.append((kind, read_results(beside)))
+                    more.append((kind, read_vtkhdf(beside)))
             return _content(results, records, limit, title, more, provenance)
         finally:
             for _, other in more:

@@ -13,7 +13,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from corota.errors import CorotaError
-from corota.io.result_reader import read_results
+from corota.io.result_reader import read_vtkhdf
 from corota.io.stop_request import ask_to_stop
 from corota.report.content import BITS, facts_of, frame_chunk, history_chunk, model_chunk
 from corota.report.fields import NodalArrays
@@ -131,7 +131,7 @@ class JobWatch:
         for _ in range(TRIES):
             try:
                 before = os.stat(path).st_ino
-                with read_results(path) as results:
+                with read_vtkhdf(path) as results:
                     found = action(results)
                 if os.stat(path).st_ino == before:
                     return found

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from corota.display import Brief
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -81,9 +83,17 @@ class Frame(Brief):
         supports carry. Static increments of models with constraints only; not stored in files.
     pairs : dict of str to ndarray, shape (n_nodes, 5)
         The same for each contact pair, where there are several.
-    averages : dict of str to ndarray
+    averages : mapping of str to ndarray
         Stress, strain and others at the nodes by the names they have in result files; of frames
         of files that hold no values at quadrature points.
+    cell_averages : mapping of str to ndarray
+        The same at the cells, rows of all cells: ``cell stress``, ``cell N``, ...
+    section_averages : dict of int to mapping
+        The same at the nodes of each section group: ``nodes``, ``S``, ``E``, scalars.
+    cells_with : dict of str to ndarray of bool, shape (n_cells,)
+        Cells that have a variable, where there are no values at points.
+    absent : frozenset of str
+        Attributes that a file does not hold, such as ``RF``; they are not numbers.
     """
 
     step: int
@@ -102,7 +112,11 @@ class Frame(Brief):
     C: Floats | None = None
     constraint_force: Floats | None = None
     pairs: dict[str, Floats] = field(default_factory=dict)
-    averages: dict[str, Floats] = field(default_factory=dict)
+    averages: Mapping[str, Floats] = field(default_factory=dict)
+    cell_averages: Mapping[str, Floats] = field(default_factory=dict)
+    section_averages: dict[int, Mapping[str, Floats]] = field(default_factory=dict)
+    cells_with: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
+    absent: frozenset[str] = frozenset()
 
 
 __all__ = ["Frame", "PointFields"]

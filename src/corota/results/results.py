@@ -114,10 +114,9 @@ class Results(Brief):
 
     def variables(self, index: int = -1) -> list[str]:
         """Names that :meth:`nodal`, :meth:`history` and :meth:`plot` understand."""
-        from corota.results.variables import available, nodal_names
+        from corota.results.variables import names_of
 
-        frame = self.frame(index)
-        return [*nodal_names(frame), *available(frame.fields)]
+        return names_of(self.frame(index))
 
     def nodal(self, name: str, index: int = -1, section: int | None = None) -> Floats:
         """Values at the nodes, shape (n_nodes,).
@@ -139,12 +138,14 @@ class Results(Brief):
         InputError
             If there is no such variable.
         """
-        from corota.results.variables import NODAL, canonical, nodal_value
+        from corota.results.variables import NODAL, canonical, nodal_value, stored_at_nodes
 
         frame = self.frame(index)
         name = canonical(name, frame)
         if name in NODAL:
             return nodal_value(frame, name)
+        if not frame.fields:
+            return stored_at_nodes(frame, name, section)
         chosen = None if section is None else self.sections() == section
         return self.averaging.nodal(frame.fields, name, chosen)
 
@@ -161,10 +162,19 @@ class Results(Brief):
         """
         import numpy as np
 
-        from corota.results.variables import COMPONENTS, INVARIANTS, canonical, cell_mean, invariant
+        from corota.results.variables import (
+            COMPONENTS,
+            INVARIANTS,
+            canonical,
+            cell_mean,
+            invariant,
+            stored_at_cells,
+        )
 
         frame = self.frame(index)
         name = canonical(name, frame)
+        if not frame.fields:
+            return stored_at_cells(frame, name, self.mesh.n_cells)
         tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
         out = np.zeros(self.mesh.n_cells)
         for block in frame.fields:
@@ -174,6 +184,23 @@ class Results(Brief):
             if name in INVARIANTS:
                 mean = invariant(name, mean)
             out[block.cells] = mean[:, column] if column >= 0 else mean
+        return out
+
+    def cells_with(self, name: str, index: int = -1) -> NDArray[np.bool_]:
+        """Whether each cell has a variable at its points, shape (n_cells,)."""
+        import numpy as np
+
+        from corota.results.variables import COMPONENTS, INVARIANTS
+
+        frame = self.frame(index)
+        tensor = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0],))[0]
+        if not frame.fields:
+            none = np.zeros(self.mesh.n_cells, dtype=bool)
+            return frame.cells_with.get(tensor, none)
+        out = np.zeros(self.mesh.n_cells, dtype=bool)
+        for block in frame.fields:
+            if tensor in block.values:
+                out[block.cells] = True
         return out
 
     def history(
@@ -273,6 +300,8 @@ class Results(Brief):
         if name in NODAL and getattr(frame, NODAL[name][0]) is None:
             return float("nan")  # such as a velocity before the first dynamic step
         if at is None and name not in NODAL and combine in ("auto", "max"):
+            if not frame.fields:
+                return float(self.nodal(name, index).max())
             return max(float(point_value(b, name).max()) for b in frame.fields)
         values = self.nodal(name, index)
         if at is not None:
@@ -303,13 +332,16 @@ class Results(Brief):
             name = "MISES" if stressed and self.nodal("MISES").any() else "U"
         return plots.contour(self, name, **options)
 
-    def write(self, path: str | PathLike[str]) -> Path:
+    def write(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write to a file; its ending names the format (:mod:`corota.io.writers`).
 
         Parameters
         ----------
         path : path-like
             ``.vtkhdf``, ``.pvd``, ``.vtu``, ``.npz``, ``.csv``, ``.dat`` or ``.sta``.
+        **options
+            Of ``.vtkhdf``: ``points``, ``single``, ``fields``, ``compression``
+            (:class:`corota.io.file_options.FileOptions`).
 
         Raises
         ------
@@ -320,7 +352,7 @@ class Results(Brief):
         """
         from corota.io.writers import write
 
-        return write(self, path)
+        return write(self, path, **options)
 
     def report(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write a page to look at the results in a browser; see :func:`corota.report.write_report`.
@@ -482,6 +514,15 @@ class Results(Brief):
         from corota.io.vtk.pyvista_bridge import results_grid
 
         return results_grid(self, frame, scale)
+
+    def close(self) -> None:
+        """Close the file that the results are read from, if there is one."""
+
+    def __enter__(self) -> Results:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self.close()
 
     def __repr__(self) -> str:
         frames = len(self.frames)

@@ -12,7 +12,7 @@ from corota.errors import InputError
 from corota.results.derived import DERIVED
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from numpy.typing import NDArray
 
@@ -79,6 +79,9 @@ INVARIANTS: dict[str, tuple[str, str]] = {
     "EP2": ("E", "2"),
     "EP3": ("E", "3"),
 }
+
+#: Tensors by their names in files; other values have their own.
+STORED = {"S": "stress", "E": "strain"}
 
 #: Other spellings that :func:`canonical` understands (compared in lower case).
 ALIASES = {
@@ -206,6 +209,54 @@ def dimension(name: str) -> str:
     return _DIMENSIONS.get(stem, "") if variable.isupper() else ""
 
 
+#: Dimensions of arrays of files.
+_OF_ARRAYS = {
+    "displacement": "length", "rotation": "rad", "reaction": "force", "external force": "force",
+    "reaction moment": "force*length", "external moment": "force*length",
+    "velocity": "length/time", "angular velocity": "rad/time", "acceleration": "length/time^2",
+    "angular acceleration": "rad/time^2", "stress": "force/length^2", "frame rotation": "rad",
+    "principal stress": "force/length^2", "Mises": "force/length^2", "position": "length",
+    "strain": "", "principal strain": "",
+}  # fmt: skip
+
+
+def dimension_of_array(name: str) -> str:
+    """Dimension of an array of a result file, as :func:`dimension` has it."""
+    stem = name.removeprefix("cell ").partition(": ")[0]
+    return _OF_ARRAYS[stem] if stem in _OF_ARRAYS else dimension(stem)
+
+
+def stored_as(name: str) -> tuple[str, int]:
+    """Array of a file that holds a component, invariant or scalar, and its column; -1 for all."""
+    if name in COMPONENTS:
+        tensor, column = COMPONENTS[name]
+        return STORED.get(tensor, tensor), column
+    if name == "MISES":
+        return "Mises", -1
+    if name in INVARIANTS:
+        tensor, which = INVARIANTS[name]
+        return f"principal {STORED[tensor]}", int(which) - 1
+    return name, -1
+
+
+def averaged_names(averages: Mapping[str, Floats]) -> list[str]:
+    """Components, invariants and scalars that arrays of a file hold."""
+    tensors = {*TENSORS, *STORED.values()}
+    found = [n for n in (*COMPONENTS, *INVARIANTS) if stored_as(n)[0] in averages]
+    skip = {"Mises", "principal stress", "principal strain", *tensors}
+    return found + sorted(n for n in averages if n not in skip)
+
+
+def averaged_value(averages: Mapping[str, Floats], name: str) -> Floats:
+    """A component, invariant or scalar from arrays of a file, shape (n,)."""
+    array, column = stored_as(name)
+    if array not in averages and name in INVARIANTS:
+        tensor = STORED[INVARIANTS[name][0]]
+        return invariant(name, averages[tensor][:, :4])
+    values = averages[array]
+    return np.asarray(values if column < 0 else values[:, column], dtype=np.float64)
+
+
 def labelled(name: str, units: Units, of: str = "") -> str:
     """A name with its unit in brackets, where both are known: ``time [s]``.
 
@@ -282,8 +333,17 @@ def canonical(name: str, frame: Frame) -> str:
     InputError
         If there is no such variable; names the nearest and lists all.
     """
-    valid = [*nodal_names(frame), *available(frame.fields)]
-    return match_name(name, valid)
+    return match_name(name, names_of(frame))
+
+
+def names_of(frame: Frame) -> list[str]:
+    """All variables of a frame, from its points or from averages."""
+    if frame.fields or not frame.averages:
+        return [*nodal_names(frame), *available(frame.fields)]
+    of_cells = {n.removeprefix("cell "): v for n, v in frame.cell_averages.items()}
+    found = [*nodal_names(frame), *averaged_names(frame.averages)]
+    rest = [n for n in averaged_names(of_cells) if n not in found and n != "frame rotation"]
+    return [*found, *rest]
 
 
 def match_name(name: str, valid: list[str]) -> str:
@@ -299,7 +359,11 @@ def match_name(name: str, valid: list[str]) -> str:
 
 def nodal_names(frame: Frame) -> list[str]:
     """Names of :data:`NODAL` that a frame has."""
-    return [name for name, (where, _) in NODAL.items() if getattr(frame, where) is not None]
+    return [
+        name
+        for name, (where, _) in NODAL.items()
+        if getattr(frame, where) is not None and where not in frame.absent
+    ]
 
 
 def nodal_value(frame: Frame, name: str) -> Floats:
@@ -407,7 +471,10 @@ class Averaging:
         return nodes
 
     def average(
-        self, fields: list[PointFields], names: list[str], chosen: Ints | None = None
+        self,
+        fields: list[PointFields],
+        names: list[str],
+        chosen: NDArray[np.bool_] | None = None,
     ) -> dict[str, Floats]:
         """Average stored values (tensors and scalars) at nodes.
 
@@ -456,7 +523,9 @@ class Averaging:
         share = 1.0 / np.maximum(count, 1.0)
         return {k: (v.T * share).T for k, v in sums.items()}
 
-    def nodal(self, fields: list[PointFields], name: str, chosen: Ints | None = None) -> Floats:
+    def nodal(
+        self, fields: list[PointFields], name: str, chosen: NDArray[np.bool_] | None = None
+    ) -> Floats:
         """One component, invariant or scalar at the nodes, shape (n_nodes,)."""
         if name in COMPONENTS:
             tensor, column = COMPONENTS[name]
@@ -475,3 +544,42 @@ def cell_mean(block: PointFields, name: str) -> Floats:
     weight = weight / weight.sum(axis=1, keepdims=True)
     values = block.values[name]
     return np.asarray(np.einsum("np,np...->n...", weight, values))
+
+
+def stored_at_nodes(frame: Frame, name: str, section: int | None) -> Floats:
+    """A variable of a frame without values at points, at the nodes; shape (n_nodes,).
+
+    With a section its own averages, where the frame has them, and 0 at other nodes.
+    """
+    own = None if section is None else frame.section_averages.get(section)
+    if own is None:
+        array = stored_as(name)[0]
+        tensor = STORED[INVARIANTS[name][0]] if name in INVARIANTS else array
+        if array not in frame.averages and tensor not in frame.averages:
+            return np.zeros(len(frame.U))  # a variable of line elements only
+        return averaged_value(frame.averages, name)
+    out = np.zeros(len(frame.U))
+    tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+    if tensor in own:
+        values = own[tensor]
+        nodes = np.asarray(own["nodes"], dtype=np.int64)
+        out[nodes] = (
+            invariant(name, values)
+            if name in INVARIANTS
+            else (values if column < 0 else values[:, column])
+        )
+    return out
+
+
+def stored_at_cells(frame: Frame, name: str, n_cells: int) -> Floats:
+    """A variable of a frame without values at points, over the cells; shape (n_cells,)."""
+    of_cells = {n.removeprefix("cell "): n for n in frame.cell_averages}
+    tensor = INVARIANTS[name][0] if name in INVARIANTS else COMPONENTS.get(name, (name,))[0]
+    array = of_cells.get(STORED.get(tensor, tensor))
+    if array is None:
+        return np.zeros(n_cells)
+    values = frame.cell_averages[array]
+    if name in INVARIANTS:
+        return invariant(name, values[:, :4])
+    column = COMPONENTS[name][1] if name in COMPONENTS else -1
+    return np.asarray(values if column < 0 else values[:, column], dtype=np.float64)

@@ -148,7 +148,7 @@ class Histories:
         row["largest U"] = float(nodal_value(frame, "U").max(initial=0.0))
         stressed = [mises(b.values["S"]) for b in frame.fields if "S" in b.values]
         row["largest MISES"] = max((float(m.max(initial=0.0)) for m in stressed), default=0.0)
-        for name, nodes in self._supports.items():
+        for name, nodes in self._supports.items() if "RF" not in frame.absent else ():
             total = frame.RF[nodes].sum(axis=0)
             row[f"RF1 {name}"], row[f"RF2 {name}"] = total[:2].tolist()
             heading, moment = self.moment(frame, nodes)

@@ -154,11 +154,17 @@ def _node_values(model: Model, frame: Frame, name: str) -> Floats:
     elif name == "V":
         values = np.zeros_like(frame.U) if frame.V is None else frame.V[:, :2]
     else:
-        values = (frame.RF + frame.F)[:, :2]
-        if frame.constraint_force is not None:
-            inside = np.unique(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
-            values[inside] += frame.constraint_force[inside, :2]
+        values = internal_force(model, frame)
     return np.column_stack([values, zero])
+
+
+def internal_force(model: Model, frame: Frame) -> Floats:
+    """What CalculiX calls ``RF``: reaction, load and force of constraints; shape (n_nodes, 2)."""
+    values: Floats = (frame.RF + frame.F)[:, :2]
+    if frame.constraint_force is not None:
+        inside = np.unique(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
+        values[inside] += frame.constraint_force[inside, :2]
+    return values
 
 
 def _element_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:

@@ -16,7 +16,8 @@ import numpy as np
 
 from corota.io.atomic_file import full, replace_text, sync
 from corota.io.finite import check_frame
-from corota.io.vtk.vtkhdf import cell_data, point_data, topology
+from corota.io.vtk.grid import Grid
+from corota.io.vtk.vtkhdf import cell_data, point_data
 from corota.results import variables as vf
 
 if TYPE_CHECKING:
@@ -28,7 +29,9 @@ if TYPE_CHECKING:
 _NAMES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 
 
-def vtu_bytes(model: Model, frame: Frame, averaging: vf.Averaging) -> bytes:
+def vtu_bytes(
+    model: Model, frame: Frame, averaging: vf.Averaging, sections: vf.Ints | None = None
+) -> bytes:
     """Bytes of one ``.vtu`` file.
 
     Parameters
@@ -36,10 +39,11 @@ def vtu_bytes(model: Model, frame: Frame, averaging: vf.Averaging) -> bytes:
     model : Model
     frame : Frame
     averaging : Averaging
+    sections : ndarray of int, shape (n_cells,), optional
+        Section group of each cell; those of the model by default.
     """
     check_frame(frame)
-    mesh = model.mesh
-    chain, ends, types, index = topology(mesh)
+    grid = Grid(model, sections)
     blobs: list[bytes] = []
     at = 0
 
@@ -55,23 +59,26 @@ def vtu_bytes(model: Model, frame: Frame, averaging: vf.Averaging) -> bytes:
         at += 8 + len(raw)
         return tag
 
-    points = array("Points", np.column_stack([mesh.points, np.zeros(mesh.n_nodes)]))
+    points = array("Points", grid.points)
     cells = "".join(
-        array(n, v) for n, v in (("connectivity", chain), ("offsets", ends[1:]), ("types", types))
+        array(n, v)
+        for n, v in (
+            ("connectivity", grid.chain),
+            ("offsets", grid.ends[1:]),
+            ("types", grid.types),
+        )
     )
-    at_points = "".join(array(n, v) for n, v in point_data(frame, averaging).items())
-    still = {
-        "section": vf.section_of_cells(model)[index],
-        "element label": mesh.cell_labels[index],
-    }
-    moving = {n: v[index] for n, v in cell_data(frame, mesh.n_cells).items()}
-    at_cells = "".join(array(n, v) for n, v in (still | moving).items())
+    of_nodes = grid.at_points(point_data(frame, averaging), frame)
+    at_points = "".join(array(n, v) for n, v in of_nodes.items())
+    of_cells = dict(grid.still) | grid.at_cells(cell_data(frame, model.mesh.n_cells))
+    at_cells = "".join(array(n, v) for n, v in of_cells.items())
     time = array("TimeValue", np.array([frame.time]))
     head = (
         '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
         'byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n<FieldData>\n'
         + time.replace("NumberOfComponents", 'NumberOfTuples="1" NumberOfComponents')
-        + f'</FieldData>\n<Piece NumberOfPoints="{mesh.n_nodes}" NumberOfCells="{len(index)}">\n'
+        + f'</FieldData>\n<Piece NumberOfPoints="{len(grid.points)}" '
+        f'NumberOfCells="{len(grid.types)}">\n'
         f"<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n"
         f"<PointData>\n{at_points}</PointData>\n<CellData>\n{at_cells}</CellData>\n"
         '</Piece>\n</UnstructuredGrid>\n<AppendedData encoding="raw">\n_'
@@ -99,7 +106,9 @@ def replace_bytes(path: Path, data: bytes) -> None:
 
 def write_vtu(results: Results, path: Path) -> None:
     """Write the last frame as one ``.vtu`` file."""
-    replace_bytes(path, vtu_bytes(results.model, results.frame(), results.averaging))
+    replace_bytes(
+        path, vtu_bytes(results.model, results.frame(), results.averaging, results.sections())
+    )
 
 
 class PvdWriter:
@@ -112,8 +121,14 @@ class PvdWriter:
     model : Model
     """
 
-    def __init__(self, path: Path, model: Model, resume: dict[str, Any] | None = None) -> None:
-        self.path, self.model = path, model
+    def __init__(
+        self,
+        path: Path,
+        model: Model,
+        resume: dict[str, Any] | None = None,
+        sections: vf.Ints | None = None,
+    ) -> None:
+        self.path, self.model, self._sections = path, model, sections
         self._averaging = vf.Averaging(model.mesh)
         self._entries: list[str] = [] if resume is None else list(resume["entries"])
 
@@ -137,7 +152,7 @@ class PvdWriter:
             If the disk refuses.
         """
         piece = self.path.with_name(f"{self.path.stem}_{len(self._entries):04d}.vtu")
-        replace_bytes(piece, vtu_bytes(self.model, frame, self._averaging))
+        replace_bytes(piece, vtu_bytes(self.model, frame, self._averaging, self._sections))
         self._entries.append(f'<DataSet timestep="{frame.time!r}" file="{escape(piece.name)}"/>\n')
         body = "".join(self._entries)
         replace_text(
@@ -155,6 +170,6 @@ class PvdWriter:
 
 def write_pvd(results: Results, path: Path) -> None:
     """Write all frames."""
-    writer = PvdWriter(path, results.model)
+    writer = PvdWriter(path, results.model, sections=results.sections())
     for frame in results.frames:
         writer.add(frame)

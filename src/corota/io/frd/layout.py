@@ -1,0 +1,77 @@
+"""What a ``.frd`` file consists of: element types, names of result blocks, their components.
+
+Source: CalculiX GraphiX manual, "Result Format"; layout checked against files of CalculiX 2.20.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+#: Our kinds: type number in the file, and nodes of it that the type has.
+ELEMENTS = {
+    "tri3": (7, 3),
+    "tri6": (8, 6),
+    "quad4": (9, 4),
+    "quad8": (10, 8),
+    "quad9": (10, 8),  # the format has none with a node in the middle
+    "line2": (11, 2),
+    "line3": (12, 3),
+}
+#: Nodes of each type number.
+NODES = {1: 8, 2: 6, 3: 4, 4: 20, 5: 15, 6: 10, 7: 3, 8: 6, 9: 4, 10: 8, 11: 2, 12: 3}
+#: Type number to our kind.
+KINDS = {7: "tri3", 8: "tri6", 9: "quad4", 10: "quad8", 11: "line2", 12: "line3"}
+
+
+@dataclass(frozen=True)
+class Block:
+    """One result block.
+
+    Parameters
+    ----------
+    name : str
+        As in the file.
+    components : tuple of (str, int, int, int)
+        Name, kind (1 scalar, 2 vector, 4 tensor), row and column.
+    request : str
+        The variable that asks for it in ``*NODE FILE``, ``*EL FILE`` or ``*CONTACT FILE``.
+    size : str
+        Name of the length of a vector that viewers compute; empty for none.
+    """
+
+    name: str
+    components: tuple[tuple[str, int, int, int], ...]
+    request: str
+    size: str = ""
+
+
+def _vector(name: str, letter: str, request: str) -> Block:
+    parts = tuple((f"{letter}{i}", 2, i, 0) for i in (1, 2, 3))
+    return Block(name, parts, request, "ALL")
+
+
+def _tensor(name: str, letter: str, request: str) -> Block:
+    rows = (("XX", 1, 1), ("YY", 2, 2), ("ZZ", 3, 3), ("XY", 1, 2), ("YZ", 2, 3), ("ZX", 3, 1))
+    return Block(name, tuple((letter + part, 4, i, j) for part, i, j in rows), request)
+
+
+def _scalars(name: str, names: tuple[str, ...], request: str) -> Block:
+    return Block(name, tuple((part, 1, 0, 0) for part in names), request)
+
+
+DISP = _vector("DISP", "D", "U")
+VELO = _vector("VELO", "V", "V")
+FORC = _vector("FORC", "F", "RF")
+STRESS = _tensor("STRESS", "S", "S")
+TOSTRAIN = _tensor("TOSTRAIN", "E", "E")
+PE = _scalars("PE", ("PE",), "PEEQ")
+ENER = _scalars("ENER", ("ENER",), "ENER")
+CONTACT = _scalars("CONTACT", ("COPEN", "CSLIP1", "CSLIP2", "CPRESS", "CSHEAR1", "CSHEAR2"), "CSTR")
+#: In the order in which they are written, which is CalculiX's.
+BLOCKS = (DISP, VELO, STRESS, TOSTRAIN, FORC, PE, ENER, CONTACT)
+
+__all__ = [
+    "BLOCKS", "CONTACT", "DISP", "ELEMENTS", "ENER", "FORC", "KINDS", "NODES", "PE", "STRESS",
+    "TOSTRAIN", "VELO", "Block",
+]  # fmt: skip
