@@ -164,7 +164,9 @@ def make_parser() -> Parser:
 
     plot = command("plot", "Draw pictures of results (.vtkhdf), or of a model with --model.")
     plot.add_argument("file", help="result file, or deck or mesh with --model")
-    plot.add_argument("-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4")
+    plot.add_argument(
+        "-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4 .html"
+    )
     plot.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
     plot.add_argument("--frame", type=int, default=-1, help="frame from 0; -1 is the last")
     plot.add_argument("--scale", type=float, default=1.0, help="factor of the displacements")
@@ -186,7 +188,9 @@ def make_parser() -> Parser:
     plot.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
     plot.add_argument("--response", action="store_true", help="steady-state response")
     plot.add_argument("--energies", action="store_true", help="energies of a motion over time")
-    plot.add_argument("--animate", action="store_true", help="all frames as a GIF or MP4")
+    plot.add_argument(
+        "--animate", action="store_true", help="all frames as a GIF, MP4 or HTML page"
+    )
     plot.add_argument(
         "--last-iterate",
         action="store_true",

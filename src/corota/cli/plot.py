@@ -58,7 +58,7 @@ def run(args: Any, terminal: Terminal) -> int:
             return _tell(path, terminal)
         field = args.field or ("MISES" if "MISES" in results.variables() else "U")
         options = {"scale": args.scale, "per_cell": args.per_cell, "edges": args.edges}
-        moving = args.animate or (args.output or "").lower().endswith((".gif", ".mp4"))
+        moving = args.animate or (args.output or "").lower().endswith((".gif", ".mp4", ".html"))
         if moving:
             path = Path(args.output or f"{source.stem}_{field}.gif")
             plots.animate(results, field, path=path, dpi=min(args.dpi, 110), **options)

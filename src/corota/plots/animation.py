@@ -1,4 +1,4 @@
-"""All frames of an analysis as a moving picture."""
+"""An analysis as a moving picture, uniform in time."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -6,26 +6,37 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
-from typing import TYPE_CHECKING, Any
+import subprocess
+from base64 import b64encode
+from io import BytesIO
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from corota.errors import InputError
 from corota.io.atomic_file import full
+from corota.names import choose
 from corota.plots.contour import Drawing, frame_title, label_bar, paint
 from corota.plots.figure import extent_size, look, new_figure, picture_path
 from corota.results import variables as vf
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
     from os import PathLike
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from corota.results.results import Results
 
-#: More frames than this are thinned evenly.
+    Ints = NDArray[np.int64]
+
+#: Pictures of one pass, at most.
 MOST_FRAMES = 120
 #: Even numbers of pixels and colors that every player knows.
 PLAYABLE = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]
+#: Colors of a GIF, which can have 256.
+PALETTE = 128
 
 
 def require_ffmpeg() -> None:
@@ -42,6 +53,28 @@ def require_ffmpeg() -> None:
         )
 
 
+def moments(times: NDArray[np.float64], most: int, spacing: str) -> Ints:
+    """Frames to show, one a picture; a long increment is shown for as long as it takes.
+
+    Examples
+    --------
+    >>> moments(np.array([0.0, 0.1, 0.2, 1.0]), 6, "time").tolist()
+    [0, 2, 2, 2, 2, 3]
+    """
+    count = len(times)
+    even = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
+    steps = np.diff(times)
+    if spacing == "increments" or count < 3 or steps.min() <= 0.0:
+        return np.asarray(even)
+    if np.ptp(steps) <= 1e-6 * steps.max():
+        return np.asarray(even)
+    # As many pictures as resolve the shortest increments, up to the most.
+    wanted = int(min(most, max(count, round((times[-1] - times[0]) / steps.min()) + 1)))
+    at = np.linspace(times[0], times[-1], wanted)
+    after = np.searchsorted(times, at + 1e-9 * (times[-1] - times[0]), side="right") - 1
+    return np.asarray(np.clip(after, 0, count - 1))
+
+
 def animate(
     results: Results,
     name: str = "MISES",
@@ -52,8 +85,11 @@ def animate(
     edges: bool | None = None,
     seconds: float = 4.0,
     dpi: float = 100.0,
+    spacing: Literal["time", "increments"] = "time",
 ) -> Path:
-    """Write all frames as a GIF or MP4, with one color scale and one window for all.
+    """Write an analysis as a moving picture, with one color scale and one window for all.
+
+    Each picture is handed on as soon as it is drawn; a state that is shown longer is drawn once.
 
     Parameters
     ----------
@@ -61,7 +97,8 @@ def animate(
     name : str
         Variable.
     path : path-like
-        Ends with ``.gif``, or ``.mp4`` (needs the program ffmpeg).
+        Ends with ``.gif``, ``.html`` (one page with the pictures in it, to play and to step), or
+        ``.mp4`` (needs the program ffmpeg).
     scale : float
         Factor of the displacements.
     per_cell : bool
@@ -70,64 +107,188 @@ def animate(
     seconds : float
         Length of one pass.
     dpi : float
+    spacing : {"time", "increments"}
+        Uniform in time, or a picture an increment however long it is.
 
     Returns
     -------
     Path
+
+    Raises
+    ------
+    InputError
+        If the ending is unknown, or a program for it is missing.
+    FileError
+        If the disk refuses.
     """
-    target = picture_path(path, (".gif", ".mp4"))
+    target = picture_path(path, tuple(FORMATS))
+    choose(spacing, ("time", "increments"), "spacing")
     if target.suffix.lower() == ".mp4":
         require_ffmpeg()
     name = vf.match_name(name, results.variables())
     drawing = Drawing(results, name, per_cell)
-    count = len(results.frames)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).round().astype(int))
-    ranges = [drawing.range(int(i)) for i in chosen]
+    chosen = moments(results.times, MOST_FRAMES, spacing)
+    shown = np.unique(chosen).tolist()
+    ranges = [drawing.range(i) for i in shown]
     limits = (min(r[0] for r in ranges), max(r[1] for r in ranges))
     points = results.mesh.points
     low, high = points.min(axis=0), points.max(axis=0)
-    for i in chosen:
-        moved = points + scale * results.frame(int(i)).U
+    for i in shown:
+        moved = points + scale * results.frame(i).U
         low, high = np.minimum(low, moved.min(axis=0)), np.maximum(high, moved.max(axis=0))
-    with look() as mpl:
-        from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+    rate = max(2, min(25, round(len(chosen) / seconds)))
 
-        width, height, below = extent_size(low, high)
-        figure = new_figure(width, height, shown=False)
-        ax = figure.add_subplot()
-        pad = 0.04 * float((high - low).max())
+    def pictures() -> Iterator[Any]:
+        """Images of 8-bit colors, shape (height, width, 3), each drawn once."""
+        with look() as mpl:
+            width, height, below = extent_size(low, high)
+            figure = new_figure(width, height, shown=False)
+            figure.set_dpi(dpi)
+            ax = figure.add_subplot()
+            pad = 0.04 * float((high - low).max())
+            last, image, settled = -1, None, False
+            for i in chosen.tolist():
+                if i != last:
+                    ax.clear()
+                    painted = paint(ax, mpl, drawing, i, scale, edges, True, limits)
+                    ax.set_xlim(low[0] - pad, high[0] + pad)
+                    ax.set_ylim(low[1] - pad, high[1] + pad)
+                    ax.set_title(frame_title(results, i, scale), loc="left")
+                    if not settled:
+                        bar = figure.colorbar(
+                            painted,
+                            ax=ax,
+                            location="bottom" if below else "right",
+                            shrink=0.75 if below else 0.8,
+                            aspect=38 if below else 28,
+                            pad=0.04,
+                        )
+                        label_bar(bar, name, per_cell, limits, results.model.unit_system)
+                        figure.canvas.draw()
+                        figure.set_layout_engine("none")  # else the axes move with the titles
+                        settled = True
+                    figure.canvas.draw()
+                    image = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
+                    last = i
+                yield image
 
-        def show(i: int) -> list[Any]:
-            ax.clear()
-            painted = paint(ax, mpl, drawing, i, scale, edges, True, limits)
-            ax.set_xlim(low[0] - pad, high[0] + pad)
-            ax.set_ylim(low[1] - pad, high[1] + pad)
-            ax.set_title(frame_title(results, i, scale), loc="left")
-            return [painted]
-
-        painted = show(int(chosen[0]))[0]
-        bar = figure.colorbar(
-            painted,
-            ax=ax,
-            location="bottom" if below else "right",
-            shrink=0.75 if below else 0.8,
-            aspect=38 if below else 28,
-            pad=0.04,
-        )
-        label_bar(bar, name, per_cell, limits, results.model.unit_system)
-        figure.canvas.draw()
-        figure.set_layout_engine("none")  # else the axes would move with the titles
-        rate = max(2, min(25, round(len(chosen) / seconds)))
-        moving = FuncAnimation(figure, show, frames=[int(i) for i in chosen], blit=False)
-        hidden = target.with_name(f".{target.stem}.next{target.suffix.lower()}")
-        writer: Any = PillowWriter(fps=rate)
-        if hidden.suffix == ".mp4":
-            writer = FFMpegWriter(fps=rate, codec="h264", extra_args=PLAYABLE)
-        try:
-            moving.save(hidden, writer=writer, dpi=dpi)
-            os.replace(hidden, target)
-        except OSError as error:
-            with contextlib.suppress(OSError):
-                hidden.unlink(missing_ok=True)
-            raise full(error, target) from None
+    hidden = target.with_name(f".{target.stem}.next{target.suffix.lower()}")
+    try:
+        FORMATS[target.suffix.lower()](pictures(), hidden, rate)
+        os.replace(hidden, target)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            hidden.unlink(missing_ok=True)
+        raise full(error, target) from None
     return target
+
+
+def _gif(pictures: Iterator[Any], path: Path, rate: int) -> None:
+    """Pictures one after the other; Pillow keeps what differs from the one before."""
+    from PIL import Image
+
+    palette: Any = None
+
+    def reduced() -> Iterator[Any]:
+        nonlocal palette
+        last, held = None, palette
+        for image in pictures:
+            if image is not last:
+                whole = Image.fromarray(image)
+                if palette is None:
+                    palette = whole.quantize(PALETTE)
+                    held = palette
+                else:
+                    held = whole.quantize(palette=palette, dither=Image.Dither.NONE)
+                last = image
+            assert held is not None
+            yield held.copy()
+
+    stream = reduced()
+    first = next(stream)
+    first.save(
+        path,
+        save_all=True,
+        append_images=stream,
+        duration=round(1000 / rate),
+        loop=0,
+        optimize=False,
+    )
+
+
+def _mp4(pictures: Iterator[Any], path: Path, rate: int) -> None:
+    """Raw pictures through a pipe to ffmpeg.
+
+    Raises
+    ------
+    InputError
+        With the last line of ffmpeg's message.
+    """
+    first = next(pictures)
+    height, width = first.shape[:2]
+    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    command += ["-s", f"{width}x{height}", "-r", str(rate), "-i", "-", "-an"]
+    command += ["-vcodec", "h264", *PLAYABLE, str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+        assert run.stdin is not None
+        assert run.stderr is not None
+        with contextlib.suppress(BrokenPipeError):
+            run.stdin.write(first.tobytes())
+            for image in pictures:
+                run.stdin.write(image.tobytes())
+        with contextlib.suppress(BrokenPipeError):
+            run.stdin.close()
+        said = run.stderr.read().decode(errors="replace").strip().splitlines()
+        if run.wait():
+            raise InputError(f"{path.name}: ffmpeg: {said[-1] if said else 'failed'}")
+
+
+_PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Corota</title>
+<style>body{font:14px system-ui,sans-serif;margin:1em;color-scheme:light}
+img{max-width:100%%}input{width:min(100%%,40em)}</style>
+<img id="i" alt="deformed shape"><br>
+<button id="p">Pause</button> <input id="s" type="range" min="0" max="%(last)d" value="0"
+ aria-label="picture">
+<script>const f=[%(data)s],o=[%(order)s];let k=0,t=0;
+const i=document.getElementById("i"),s=document.getElementById("s"),p=document.getElementById("p");
+function show(n){k=n;s.value=n;i.src="data:image/png;base64,"+f[o[n]]}
+function play(){t=setInterval(()=>show((k+1)%%o.length),%(pause)d);p.textContent="Pause"}
+function stop(){clearInterval(t);t=0;p.textContent="Play"}
+p.onclick=()=>t?stop():play();s.oninput=()=>{stop();show(+s.value)};
+document.onkeydown=e=>{if(e.key==="ArrowRight"&&e.target!==s){stop();show((k+1)%%o.length)}
+if(e.key==="ArrowLeft"&&e.target!==s){stop();show((k+o.length-1)%%o.length)}};
+show(0);play();</script></html>
+"""
+
+
+def _html(pictures: Iterator[Any], path: Path, rate: int) -> None:
+    """One page with the pictures in it; needs no network."""
+    from PIL import Image
+
+    data: list[str] = []
+    order: list[int] = []
+    last = None
+    for image in pictures:
+        if image is not last:
+            buffer = BytesIO()
+            Image.fromarray(image).quantize(PALETTE).save(buffer, "png")
+            data.append(b64encode(buffer.getvalue()).decode("ascii"))
+            last = image
+        order.append(len(data) - 1)
+    page = _PAGE % {
+        "data": ",".join(f'"{text}"' for text in data),
+        "order": ",".join(map(str, order)),
+        "last": len(order) - 1,
+        "pause": round(1000 / rate),
+    }
+    path.write_text(page, encoding="utf-8")
+
+
+#: Ending of the file name to what makes a film of pictures, of which it gets one at a time.
+FORMATS: dict[str, Callable[[Iterator[Any], Path, int], None]] = {
+    ".gif": _gif,
+    ".mp4": _mp4,
+    ".html": _html,
+}
+
+__all__ = ["FORMATS", "animate", "moments", "require_ffmpeg"]
