@@ -101,6 +101,14 @@ def test_all_exterior_is_one_surface_that_touches_itself_and_rigid_sides(tmp_pat
     assert push == pytest.approx(float(other.RF[11, 1]), rel=0.02)
 
 
+def test_combined_surfaces_do_not_disturb_general_contact(tmp_path: Path) -> None:
+    named = "*SURFACE, NAME=A\nLOW, S3\n*SURFACE, NAME=B\nLOW, S2\n"
+    named += "*SURFACE, NAME=C, COMBINE=UNION\nA, B\n"
+    model = read(tmp_path, BLOCKS + named + GENERAL + STEP)
+    assert len(model.contacts) == 1
+    assert len(model.mesh.edge_sets["C"]) == 2
+
+
 def test_inclusions_name_pairs(tmp_path: Path) -> None:
     named = "*SURFACE, NAME=A\nLOW, S3\n*SURFACE, NAME=B\nHIGH, S1\n"
     text = BLOCKS + named + "*CONTACT\n*CONTACT INCLUSIONS\nB, A\n" + STEP

@@ -335,8 +335,8 @@ class Sets:
 
     def rigid_sides(self, view: View, surface: Surface) -> list[tuple[SurfaceRow, Ints]]:
         """Rows of a surface that name sides of rigid bodies (R2D2), with their lines."""
-        found = []
-        for row in surface.rows:
+        found: list[tuple[SurfaceRow, Ints]] = []
+        for row in surface.rows if not surface.combine else ():
             elements = self.elements(view, row.target, row.where, surface.card, row.text)
             if elements is not None and len(elements.lines) and not len(elements.cells):
                 lines = [i for i in elements.lines.tolist() if self.line_types[i] == "R2D2"]
