@@ -71,7 +71,7 @@ def keyword_rows(docs: Path) -> dict[str, list[tuple[str, str, str]]]:
     text = (docs / "keywords.md").read_text(encoding="utf-8")
     found: dict[str, list[tuple[str, str, str]]] = {}
     for names, parameters, remarks in ROW.findall(text):
-        for name in re.findall(r"\*([A-Z][A-Z ]*[A-Z])", names):
+        for name in re.findall(r"\*([A-Z][A-Z -]*[A-Z])", names):
             up = re.sub(r"\]\(([a-z-]+\.md)", r"](../../\1", remarks)
             found.setdefault(name.replace(" ", ""), []).append((name, parameters, up))
     return found

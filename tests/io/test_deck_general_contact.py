@@ -109,6 +109,15 @@ def test_combined_surfaces_do_not_disturb_general_contact(tmp_path: Path) -> Non
     assert len(model.mesh.edge_sets["C"]) == 2
 
 
+def test_controls_hold_for_general_contact(tmp_path: Path) -> None:
+    text = (
+        BLOCKS
+        + GENERAL
+        + STEP.replace("*BOUNDARY\nTOP", "*CONTACT CONTROLS, STABILIZE\n*BOUNDARY\nTOP")
+    )
+    assert [pair.stabilise for pair in read(tmp_path, text).contacts] == [True]
+
+
 def test_inclusions_name_pairs(tmp_path: Path) -> None:
     named = "*SURFACE, NAME=A\nLOW, S3\n*SURFACE, NAME=B\nHIGH, S1\n"
     text = BLOCKS + named + "*CONTACT\n*CONTACT INCLUSIONS\nB, A\n" + STEP

@@ -308,6 +308,7 @@ class GeneralDraft:
     every: bool = False
     pairs: list[tuple[Card, Row]] = field(default_factory=list)
     interaction: str = ""
+    stabilise: bool = False
     where: Location | None = None
 
 

@@ -56,7 +56,7 @@ def add_general(deck: Deck, model: Model, sets: Sets) -> None:
         )
     for slave, master, of, row in names:
         pair = PairDraft(of, row, slave, master, interaction=interaction)
-        pair.start = "adjust"
+        pair.start, pair.stabilise = "adjust", draft.stabilise
         deck.pairs.append(pair)
 
 
