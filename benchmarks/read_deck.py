@@ -1,4 +1,7 @@
-"""Time and memory of reading a deck: ``python benchmarks/read_deck.py [nodes]`` (default 1e6).
+"""Time and memory of reading a deck: ``python benchmarks/read_deck.py [nodes] [--before FOLDER]``.
+
+The default is 1e6 nodes. With the folder of an older checkout (with its core) both read the same
+files in turn, three times; the smallest processor times and their ratio are printed.
 
 A square of Q4 elements is written as a deck and as Gmsh 4.1 text, and each is read in a
 process of its own; the peak of the resident memory is that of the whole process.
@@ -8,6 +11,7 @@ process of its own; the peak of the resident memory is that of the whole process
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import sys
 import tempfile
@@ -24,11 +28,11 @@ def peak_kb():
     with open("/proc/self/status") as file:
         return next(int(line.split()[1]) for line in file if line.startswith("VmHWM"))
 base = peak_kb()
-start = time.perf_counter()
+start, begun = time.perf_counter(), time.process_time()
 mesh = ct.mesh.read(sys.argv[1])
-seconds = time.perf_counter() - start
+seconds, cpu = time.perf_counter() - start, time.process_time() - begun
 peak = peak_kb()
-print(mesh.n_nodes, mesh.n_cells, seconds, peak / 1024, base / 1024)
+print(mesh.n_nodes, mesh.n_cells, seconds, peak / 1024, base / 1024, cpu)
 """
 
 
@@ -64,7 +68,17 @@ def write_gmsh(mesh: ct.Mesh, path: Path) -> None:
         file.write("$EndElements\n")
 
 
-def main(nodes: int) -> None:
+def read(path: Path, checkout: Path | None = None) -> list[str]:
+    """Nodes, cells, seconds, peak and start in MB, processor time; in a process of its own."""
+    environment = dict(os.environ)
+    if checkout is not None:
+        environment["PYTHONPATH"] = str(checkout / "src")
+    command = [sys.executable, "-c", CHILD, str(path)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
+    return done.stdout.split()
+
+
+def main(nodes: int, before: Path | None = None) -> None:
     """Print one line a format."""
     side = max(1, round(math.sqrt(nodes)) - 1)
     mesh = ct.mesh.rectangle(1.0, 1.0, side, side)
@@ -73,9 +87,12 @@ def main(nodes: int) -> None:
         for name, write in (("a.inp", write_deck), ("a.msh", write_gmsh)):
             path = Path(folder) / name
             write(mesh, path)
-            command = [sys.executable, "-c", CHILD, str(path)]
-            done = subprocess.run(command, check=True, capture_output=True, text=True)
-            n, m, seconds, peak, base = done.stdout.split()
+            if before is not None:
+                pairs = [[float(read(path, at)[5]) for at in (before, None)] for _ in range(3)]
+                old, new = (min(column) for column in zip(*pairs, strict=True))
+                print(f"{name[2:]}: before {old:.2f} s, now {new:.2f} s, ratio {new / old:.3f}")
+                continue
+            n, m, seconds, peak, base, _ = read(path)
             size = path.stat().st_size / 2**20
             print(
                 f"{name[2:]}: {int(n):,} nodes, {int(m):,} cells, {size:.0f} MB: "
@@ -84,4 +101,9 @@ def main(nodes: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 1_000_000)
+    older = sys.argv.index("--before") if "--before" in sys.argv else 0
+    numbers = [a for i, a in enumerate(sys.argv[1:], 1) if i not in (older, older + 1) or not older]
+    main(
+        int(float(numbers[0])) if numbers else 1_000_000,
+        Path(sys.argv[older + 1]) if older else None,
+    )

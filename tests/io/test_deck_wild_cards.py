@@ -116,6 +116,8 @@ def test_two_ways_to_write_it(
     [
         ("*KINEMATIC COUPLING, REF NODE=9\n", "", "data line is missing"),
         ("*DISTRIBUTING COUPLING, ELSET=NONE\n3, 1.\n", "", "no set named 'NONE'"),
+        ("*DISTRIBUTING COUPLING, ELSET=DC\n", "*CLOAD\n77, 1, 1.\n", "data line is missing"),
+        ("*DISTRIBUTING COUPLING, ELSET=DC\n3, -1.\n", "", "must be > 0"),
         (DISTRIBUTED.format(", INFLUENCE RADIUS=.1", ""), "", "within the radius"),
         (DISTRIBUTED.format("", ", WEIGHTING METHOD=CUBIC"), "", "expected UNIFORM"),
         ("*SURFACE, NAME=S, COMBINE=UNION\nTOP\n", "", "two surfaces are expected"),

@@ -182,9 +182,9 @@ def distributing_coupling(deck: Deck, card: Card) -> None:
             deck.row_error(card, row, 1, f"the weight must be > 0, not {weight:g}")
         elif weight is not None:
             tie.members.append((Draft("node", card, row, row.get(0), (0.0,)), weight))
-    if not tie.members and not deck.n_errors:
+    if not list(card.rows()):
         deck.error(card, card.where, "a data line is missing: node or set, weight")
-    elif name:
+    elif name and tie.members:
         deck.ties.append(tie)
 
 
