@@ -3,11 +3,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import time
+
+import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.restart_cases import DECKS
+from benchmarks.restart_cases import DECKS, MODELS
 from corota.cli import main
+from corota.io import job
+from corota.io.result_reader import read_results
 
 DECK = DECKS["large rotations"]()
 
@@ -82,3 +87,93 @@ def test_an_explicit_step_ends_after_its_increments(tmp_path):
         ct.solve(ct.read(deck), threads=1)
     deck.write_text(DECKS["motion, explicit"]().replace(", INC=2000", ""))
     assert len(ct.solve(ct.read(deck), threads=1).frames) == 60
+
+
+def test_an_explicit_step_that_turns_an_element_inside_out_names_it(tmp_path, capsys):
+    deck = tmp_path / "x.inp"
+    deck.write_text(DECKS["motion, explicit"]().replace("RIGHTA, 2, -.8", "RIGHTA, 1, -9e9"))
+    assert main(["run", str(deck), "-q", "-o", str(tmp_path)]) == 4
+    assert "element" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("size", [1e30, 1e300, 1e308])
+def test_huge_loads_are_no_internal_error(size):
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, 4, 2))
+    model.section("all", element="Q4", material=ct.Elastic(E=1e3, nu=0.3))
+    model.fix("left")
+    model.force("right", x=size)
+    with pytest.raises(ct.ConvergenceError):
+        ct.solve(model, threads=1)
+
+
+def test_any_number_of_instances(tmp_path):
+    """Twenty-five copies of a part beside each other: the same as one by itself."""
+    part = "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n*ELEMENT, TYPE=CPS4, ELSET=E\n1,1,2,3,4\n"
+    part += "*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n*NSET, NSET=L\n1,4\n"
+    tips = []
+    for n in (1, 25):
+        each = [f"I{k}" for k in range(n)]
+        text = f"*PART, NAME=P\n{part}*END PART\n*ASSEMBLY, NAME=A\n"
+        for k, name in enumerate(each):
+            text += f"*INSTANCE, NAME={name}, PART=P\n{2 * k}., 0., 0.\n*END INSTANCE\n"
+        text += "*END ASSEMBLY\n*MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n*BOUNDARY\n"
+        text += "".join(f"{name}.L, 1, 2\n" for name in each) + "*STEP\n*STATIC\n*CLOAD\n"
+        text += "".join(f"{name}.3, 2, 1.\n" for name in each) + "*END STEP\n"
+        (tmp_path / "x.inp").write_text(text)
+        moved = ct.solve(ct.read(tmp_path / "x.inp"), threads=1).frames[-1].U
+        tips.append(moved.reshape(n, 4, 2)[:, 2])
+    assert abs(tips[1] - tips[0]).max() < 1e-12 * abs(tips[0]).max()
+
+
+def test_arrays_that_change_after_they_were_given_change_nothing():
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, 4, 2))
+    model.section("all", element="Q4", material=ct.Elastic(E=1e3, nu=0.3))
+    model.fix("left")
+    nodes = np.array([4])
+    model.force(nodes, x=1.0)
+    nodes[0] = 7
+    found = ct.solve(model, threads=1).frames[-1].F
+    assert np.flatnonzero(found[:, 0]).tolist() == [4]
+
+
+def test_frames_that_wait_for_the_disk_are_bounded(tmp_path, monkeypatch):
+    """The analysis waits for the writer rather than fill the memory."""
+    waiting = []
+
+    def slow(self, frame, attempts):
+        waiting.append(self._waiting)
+        time.sleep(0.005)
+        true(self, frame, attempts)
+
+    true = job.JobFiles._write
+    monkeypatch.setattr(job.JobFiles, "_write", slow)
+    monkeypatch.setattr(job, "MOST_WAITING", 100_000)
+    model = MODELS["central differences"]()
+    results = ct.solve(model, observers=[job.JobFiles(tmp_path)], threads=1)
+    one = max(
+        8 * (f.U.size * 6 + sum(b.volume.size * 24 for b in f.fields)) for f in results.frames
+    )
+    assert max(waiting) <= 100_000 + 2 * one
+    assert len(waiting) == len(results.frames)
+
+
+def test_damaged_frames_are_refused_and_never_read_as_others(tmp_path):
+    """Every chunk of a result file has a checksum."""
+    ct.solve(MODELS["newmark"](), observers=[ct.JobFiles(tmp_path, "job")], threads=1)
+    path = tmp_path / "job.vtkhdf"
+    whole = path.read_bytes()
+    with read_results(path) as results:
+        right = [frame.U.tobytes() for frame in results.frames]
+    rng = np.random.default_rng(3)
+    refused = 0
+    for _ in range(25):
+        data = bytearray(whole)
+        for at in rng.integers(len(data), size=8):
+            data[at] ^= 1 << int(rng.integers(8))
+        path.write_bytes(data)
+        try:
+            with read_results(path) as results:
+                assert [frame.U.tobytes() for frame in results.frames] == right
+        except ct.CorotaError:
+            refused += 1
+    assert refused >= 15

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 
 from corota import _core
+from corota.analysis.linear.forks import unforked
 from corota.analysis.linear.pardiso import Pardiso
 from corota.errors import InputError, SingularError
 
@@ -109,12 +110,14 @@ class Multifrontal:
         after: NDArray[Any] | None = None,
     ) -> None:
         """Order and prepare for a pattern (see `LinearSolver`)."""
-        self._core.analyze(
+        pattern = (
             _index(indptr, np.uintp),
             _index(indices, np.uint32),
             _index(node_of_dof, np.uint32),
             _index(after, np.uint32),
         )
+        with unforked:
+            self._core.analyze(*pattern)
 
     def factorize(self, data: Floats) -> Inertia | None:
         """Factorise values of shape (nnz,); returns the inertia if symmetric."""

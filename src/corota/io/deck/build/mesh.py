@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Largest coordinate; areas and their products stay finite.
 LARGEST = 1e100
+#: Powers of ten that are added to the numbers of instances; then multiples of a smaller one.
+LARGEST_OFFSET = 10**12
 #: Faults of one sort that are listed one by one.
 MAX_LISTED = 20
 
@@ -180,6 +182,9 @@ class MeshBuilder:
         if largest == 0 or view.instance is None:
             return 0
         offset: int = 10 ** len(str(largest))
+        if offset > LARGEST_OFFSET:
+            step = 10 ** len(str(int(labels.max())))
+            offset = (largest // step + 1) * step
         self.deck.note(
             f"instance {view.instance.name}: {offset} is added to the numbers of its {what}"
         )
