@@ -71,10 +71,13 @@ class Draw:
     rng : Generator
     unit : float
         Further factor on lengths, for the same problem in another unit.
+    size : float
+        Factor on numbers of elements along something.
     """
 
     rng: Generator
     unit: float = 1.0
+    size: float = 1.0
 
     def __post_init__(self) -> None:
         rng = self.rng
@@ -131,7 +134,8 @@ class Draw:
 
     def cells(self, coarse: int, fine: int) -> int:
         """Elements along something; fewer quadratic ones."""
-        n = int(self.rng.integers(coarse, fine + 1))
+        n = round(self.size * int(self.rng.integers(coarse, fine + 1)))
+        n = max(n, coarse)  # what is coarser is another problem
         return max(2, n // 2) if self.cell in ("quad8", "tri6") else n
 
 
@@ -145,7 +149,7 @@ def press(d: Draw) -> tuple[ct.Model, list[Step]]:
     face = str(rng.choice(["flat", "round", "wavy"]))
     ratio = float(rng.choice([0.1, 0.3, 1.0, 3.0, 10.0]))
     nx = d.cells(6, 16)
-    mx = int(np.clip(nx * 3 * ratio, 4, 60))
+    mx = int(np.clip(nx * 3 * ratio, 4, round(60 * d.size)))
     gap = float(rng.choice([0.0, 0.0, 0.02, -0.01]))
 
     def bottom(t: float) -> tuple[float, float]:
@@ -415,11 +419,11 @@ FAMILIES: dict[str, Callable[[Draw], tuple[ct.Model, list[Step]]]] = {
 }
 
 
-def problem(number: int, unit: float = 1.0) -> Problem:
-    """The problem of a number; `unit` changes the unit of length, not the problem."""
+def problem(number: int, unit: float = 1.0, size: float = 1.0) -> Problem:
+    """The problem of a number; `unit` changes the unit of length, `size` the meshes."""
     names = list(FAMILIES)
     family = names[number % len(names)]
-    draw = Draw(np.random.default_rng([20261122, number]), unit)
+    draw = Draw(np.random.default_rng([20261122, number]), unit, size)
     model, steps = FAMILIES[family](draw)
     static = all(isinstance(step, ct.Static) for step in steps)
     return Problem(f"{family}-{number}", draw.what, model, steps, static)

@@ -41,9 +41,9 @@ def _stop(*_: object) -> None:
     raise _OverTime
 
 
-def run(number: int, limit: int, unit: float = 1.0) -> dict[str, Any]:
+def run(number: int, limit: int, unit: float = 1.0, size: float = 1.0) -> dict[str, Any]:
     """Outcome of a problem."""
-    given = problem(number, unit)
+    given = problem(number, unit, size)
     out: dict[str, Any] = {"number": number, "name": given.name, "what": given.what}
     begin, results = time.process_time(), None
     signal.signal(signal.SIGPROF, _stop)
@@ -139,11 +139,11 @@ def score(rows: list[dict[str, Any]]) -> str:
     return table(head, lines)
 
 
-def _one(job: tuple[int, int]) -> dict[str, Any]:
-    number, limit = job
-    row = run(number, limit)
+def _one(job: tuple[int, int, float]) -> dict[str, Any]:
+    number, limit, size = job
+    row = run(number, limit, size=size)
     if number % UNITS == 0 and row["end"] == "done":
-        other = run(number, limit, UNIT)
+        other = run(number, limit, UNIT, size)
         row["unit"] = other["end"] == "done" and (
             abs(other["moved"] - row["moved"]) <= AGREE * row["moved"]
         )
@@ -157,13 +157,14 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int, nargs="*")
     parser.add_argument("--limit", type=int, default=60, help="CPU seconds of one")
+    parser.add_argument("--size", type=float, default=1.0, help="factor on numbers of elements")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", type=Path)
     parser.add_argument("--against", type=Path)
     parser.add_argument("--share", type=float, default=0.99)
     args = parser.parse_args()
     numbers = args.only or range(args.first, args.first + args.count)
-    jobs = [(n, args.limit) for n in numbers]
+    jobs = [(n, args.limit, args.size) for n in numbers]
     rows = []
     with multiprocessing.get_context("spawn").Pool(args.jobs, maxtasksperchild=20) as pool:
         for row in pool.imap_unordered(_one, jobs):

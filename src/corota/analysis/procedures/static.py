@@ -150,9 +150,14 @@ class StaticStepper(NewtonStepper):
         """The increment by relaxation, or the rest of the step along the path."""
         control, outcome = self.control, failed.outcome
         early = control.attempt == RESTS and not end
-        if (end or early) and (relaxed := self.relaxed(early)) is not None:
-            return relaxed
+        if end or early:
+            relaxed = self.relaxed(early)
+            if isinstance(relaxed, Attempt):
+                return relaxed
+            outcome.reason += relaxed
         softer = outcome.negative > max(self.state.negative, 0)
+        # A snap under moving supports is for relaxation, once no increment is short enough.
+        softer = softer and not (self.step.at_limit == "stop" and self.may_relax())
         fixed = self.step.fixed_increments and self.step.at_limit == "stop"
         if not fixed and (end or (softer and control.attempt > STALLED)):
             self.path_took_over = self.go_along_path()
@@ -205,19 +210,22 @@ class StaticStepper(NewtonStepper):
 
     # -- where load control ends -------------------------------------------------------
 
-    def relaxed(self, early: bool) -> Attempt | None:
-        """The increment by relaxation, where contact is driven by supports; None where it fails.
+    def may_relax(self) -> bool:
+        """Whether contact is driven by supports alone, so that relaxation may find what follows."""
+        if not (self.system.contact_term.acts and self.control.number):
+            return False
+        return not np.any(self.system.load_rate(self.state.u)[0])
+
+    def relaxed(self, early: bool) -> Attempt | str:
+        """The increment by relaxation, where contact is driven by supports; or why it fails.
 
         Where loads drive, an equilibrium that ends is a limit point, which is for the user to
         judge. While increments may still be cut (`early`), what is far away is not taken.
         """
         system, state, control = self.system, self.state, self.control
-        if not (system.contact_term.acts and control.number):
-            return None
+        if not self.may_relax():
+            return ""
         period = control.step.period
-        force, _ = system.load_rate(state.u)
-        if np.any(force):
-            return None
         sizes = [control.size] if early or control.step.fixed_increments else []
         for size in sizes or [share * period for share in RELAXED]:
             target = min([control.time + size, *(s for s in control.stops if s > control.time)])
@@ -230,7 +238,7 @@ class StaticStepper(NewtonStepper):
                 continue
             if outcome.converged and early and not contact.near(outcome.u):
                 system.contact_term.restore()
-                return None
+                return ""
             if outcome.converged:
                 jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
                 if not contact.near(outcome.u):
@@ -241,7 +249,10 @@ class StaticStepper(NewtonStepper):
                     )
                 control.size = max(target - control.time, control.step.smallest_increment)
                 return Attempt(target, outcome, contact)
-        return None
+        return (
+            "; relaxation from there found no equilibrium near: the bodies snap or fold; Dynamic "
+            "follows the motion"
+        )
 
     def go_along_path(self) -> bool:
         """Go on by arc length from where load control stalls; False where that is no help.

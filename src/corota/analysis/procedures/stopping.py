@@ -40,9 +40,13 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
     if not driven(system, step, state):
         ways.append("prescribe a displacement instead of the load")
     ways.append("compute the jump as dynamics")
+    forces = not driven(system, step, state)
+    yielding = ", with yielding (plastic collapse, unless its shape snaps)" * (
+        forces and _yields(system)
+    )
     return (
-        f"limit point at load factor {factor:.6g} of step {number}: in equilibrium the structure "
-        "carries no more this way. The states up to it are kept; to go on, "
+        f"limit point at load factor {factor:.6g} of step {number}{yielding}: in equilibrium the "
+        "structure carries no more this way. The states up to it are kept; to go on, "
         + (", ".join(ways[:-1]) + f", or {ways[-1]}" if len(ways) > 1 else ways[0])
     )
 
@@ -62,14 +66,17 @@ def collapse(
     if system.contact_term.damped.any():
         return ""  # a body flies away as its damping ends: that is no collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
-    yields = any(isinstance(b.section.material, Mises) for b in system.blocks)
-    if not yields or not (grown > SOFT or (grown > 0.0 and FREE in why)):
+    if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):
         return ""
     how = f", where displacements grow {grown:.0f} times as fast as at first" * (grown > SOFT)
     return (
         f"plastic collapse: the limit load of step {number} is reached at load factor "
         f"{factor:.6g}{how}; yielding makes the structure a mechanism that carries no more"
     )
+
+
+def _yields(system: System) -> bool:
+    return any(isinstance(b.section.material, Mises) for b in system.blocks)
 
 
 def explained(
@@ -90,7 +97,8 @@ def explained(
     """
     period = control.step.period
     moves = driven(system, control.step, state)
-    instead = "" if moves else "; prescribe a displacement instead of the load"
+    instead = "; compute the jump as dynamics" if moves else "; prescribe a displacement instead"
+    instead += "" if moves else " of the load"
     where = (
         f"step {number} stopped at step time {control.time:g} of {period:g} "
         f"(load factor {control.time / period:.6g}): {end}; last attempt: {outcome.reason}"

@@ -73,6 +73,8 @@ class ContactTerm:
         Multipliers of all pairs.
     committed : ndarray, shape (n,)
         Their values in the committed state.
+    nodal : ndarray, shape (n_dofs,)
+        Stiffness of each dof at the start.
     """
 
     def __init__(self, system: NumberedModel) -> None:
@@ -92,9 +94,11 @@ class ContactTerm:
         self.u = np.zeros(system.n_dofs)
         self.at: ContactState | None = None
         self.period, self.number = 1.0, 0
+        #: Time of a static step over which overlaps of the start are pushed out at once.
+        self.first = 0.0
         self.time = 0.0
         self.notes: list[str] = []
-        self.damped = np.zeros(0)
+        self.damped = self.nodal = np.zeros(0)
         #: Whether stabilising damping acts; it does not on paths, whose time is none.
         self.damps, self.persistent = True, False
         self.damping_work = 0.0
@@ -167,6 +171,8 @@ class ContactTerm:
         self.number += 1
         self.period, self.time = step.period, 0.0
         self.damps = step.procedure == "static"
+        stays = self.damps and getattr(step, "path", None) is None
+        self.first = min(step.first_increment, step.period) if stays else 0.0
         self.persistent = getattr(step, "scheme", "") == "energy_momentum"
         if self.number == 1:
             self._start()
@@ -294,13 +300,18 @@ class ContactTerm:
 
     def _ramp(self, pair: Pair, step_time: float) -> None:
         item = pair.item
-        if isinstance(item, ContactPair) and item.start == "ramp" and self.number == 1:
-            pair.core.offset = pair.base + pair.overlap * (1.0 - step_time / self.period)
+        if not isinstance(item, ContactPair) or self.number > 1:
+            return
+        # A first increment that is cut pushes out its share.
+        period = {"ramp": self.period, "keep": self.first}.get(item.start, 0.0)
+        if period > 0.0:
+            left = max(1.0 - step_time / period, 0.0)
+            pair.core.offset = pair.base + pair.overlap * left
 
     def _measure(self, values: Floats) -> None:
         """Pressure per gap of each node: stiffness of the node over its area."""
         system = self.system
-        diagonal = np.abs(values[system.pattern.diagonal])
+        diagonal = self.nodal = np.abs(values[system.pattern.diagonal])
         by_node = np.zeros((len(system.per_node), 3))
         by_node[system.node_of_dof, system.component] = diagonal
         nodal = by_node[:, :2].mean(axis=1)

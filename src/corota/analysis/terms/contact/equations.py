@@ -91,6 +91,10 @@ class ContactEquations:
         self.least, self.waited = np.inf, 0
         self.stage = ""  # how the last correction was found
         self.relaxing = False  # whether the bodies may move to another equilibrium
+        #: Place before in relaxation, from which nothing may have passed through anything.
+        self.since: Floats | None = None
+        #: Stiffness at each dof that holds it at a place, in relaxation.
+        self.brake: tuple[Floats, Floats] | None = None
         self.first_move = 0.0  # of the first correction [length]
         self.loose = ""  # what nothing held until contact was closed for it
         self.slip_directions: dict[
@@ -113,7 +117,12 @@ class ContactEquations:
         if contact_state.damping is not None:
             at.internal += contact_state.damping * (u - self.contact_term.u)
             at.added = contact_state.damping
-            at.values[self.system.pattern.diagonal] += contact_state.damping
+        if self.brake is not None:
+            stiffness, since = self.brake
+            at.internal = at.internal + stiffness * (u - since)
+            at.added = stiffness if at.added is None else at.added + stiffness
+        if at.added is not None:
+            at.values[self.system.pattern.diagonal] += at.added
         return ContactEvaluation(at, contact_state)
 
     def residual_norms(self, at: ContactEvaluation, z: Floats) -> ResidualNorms:
@@ -537,7 +546,7 @@ class ContactEquations:
         if not self.system.nlgeom:
             return ""
         old, new = (
-            self.contact_term.positions(self.contact_term.u),
+            self.contact_term.positions(self.contact_term.u if self.since is None else self.since),
             self.contact_term.positions(z[: self.n]),
         )
         still = self.pivoted and not self.relaxing and self.inner is self.system
@@ -577,9 +586,12 @@ class ContactEquations:
         notes = []
         for number in sorted(self.border.dropped - self.contact_term.told):
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
-            label = self.contact_term.label(pair, (number - pair.first) % pair.n)
+            constraint = (number - pair.first) % pair.n
+            if constraint >= pair.of_nodes:
+                continue  # a facet between two nodes that touch as well
             notes.append(
-                f"contact pair {pair.name!r}: the constraint at node {label} follows from others "
+                f"contact pair {pair.name!r}: the constraint at node "
+                f"{self.contact_term.label(pair, constraint)} follows from others "
                 "(supports, ties or other pairs) and was left out"
             )
         self.contact_term.told |= self.border.dropped

@@ -121,6 +121,10 @@ def solve_increment(
         with contextlib.suppress(ElementFailure):  # which Newton's method reports
             start = problem.evaluate(z, step_time)
             start.at.values[:] = known.values
+            # Of stabilising damping that of this increment.
+            for added, sign in ((known.added, -1.0), (start.at.added, 1.0)):
+                if added is not None:
+                    start.at.values[system.pattern.diagonal] += sign * added
     found = newton(problem, z, target, step_time, more, start, report)
     return problem.settle(found), problem
 

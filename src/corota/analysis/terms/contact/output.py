@@ -62,7 +62,9 @@ def output(
         sums[f"{pair.name}: force y"] = fy
         sums[f"{pair.name}: moment"] = moment
         if not pair.tied:
-            sums[f"{pair.name}: area"] = float(terms.area[state != OPEN].sum())
+            closed = np.zeros(n)
+            np.maximum.at(closed, pair.nodes, np.where(state != OPEN, terms.area, 0.0))
+            sums[f"{pair.name}: area"] = float(closed.sum())
         if pair.friction:
             shear = resultant(pair, terms, np.zeros_like(p), q, x)
             for name, value in zip(("x", "y", "moment"), shear, strict=True):
@@ -79,7 +81,13 @@ def _spread(values: Floats, pair: Pair, rows: Floats, seen: NDArray[np.bool_]) -
     """Add a pair's rows to the nodes; mid-side nodes get the mean of their corners."""
     n = len(values)
     own = np.zeros((n, 5))
-    own[pair.nodes] = rows
+    own[pair.nodes[: pair.of_nodes]] = rows[: pair.of_nodes]
+    # Facets that meet rounds show at their first nodes.
+    facets, more = pair.nodes[pair.of_nodes :], rows[pair.of_nodes :]
+    for column in (0, 1, 3):
+        own[facets, column] += more[:, column]
+    own[facets, 2] = np.minimum(own[facets, 2], more[:, 2])
+    own[facets, 4] = np.maximum(own[facets, 4], more[:, 4])
     given = np.zeros(n, bool)
     given[pair.nodes] = True
     edges = pair.slave.nodes

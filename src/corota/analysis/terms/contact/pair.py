@@ -72,7 +72,9 @@ class Pair:
     n : int
         Constraints.
     nodes : ndarray of int, shape (n,)
-        Their slave nodes.
+        Their slave nodes; of a facet that may meet a round, its first node.
+    of_nodes : int
+        Constraints of nodes; those of facets come behind.
     width : int
         Multipliers of the pair: n, or 2 n with friction and in ties.
     """
@@ -86,6 +88,7 @@ class Pair:
         self.core, self.slave, self.master, self.reach = build(system, item)
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
+        self.of_nodes = len(np.unique(self.nodes))
         self.full = np.asarray(self.core.full_area, float)
         self.two = self.tied or self.friction > 0.0
         self.width = self.n * (2 if self.two else 1)

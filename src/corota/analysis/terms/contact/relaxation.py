@@ -2,23 +2,29 @@
 
 The equilibrium that an increment starts from may end: a node goes round a corner, a hook snaps. The
 bodies then move through states that are not in equilibrium until they rest again. Here they creep:
-a viscous force holds every node back in each correction, and fades as the residual does. It
-is no part of the residual, so the state that is found is an equilibrium of the unregularized
-problem, with the exact cone of friction. Which of several it is, the creep has chosen.
+springs hold every node where the creep has come to, all conditions of contact are met with them,
+the springs are released, and so on with ever softer ones (a proximal point method). The last
+correction has none, so the state that is found is an equilibrium of the unregularized problem, with
+the exact cone of friction. Which of several it is, the creep has chosen.
 
-Source: C. T. Kelley, D. E. Keyes, *Convergence analysis of pseudo-transient continuation*, SIAM J.
-Numer. Anal. 35 (1998).
+Source: R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control
+Optim. 14 (1976).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.newton import ElementFailure, GiveUp, Outcome
-from corota.analysis.terms.contact.equations import ContactEquations
+from corota.analysis.newton import Outcome, newton
+from corota.analysis.terms.contact.equations import (
+    MAX_EXTRA_CONTACT_ITERATIONS,
+    PATIENCE,
+    ContactEquations,
+)
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -33,13 +39,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Most corrections, and those in a row that may fail.
-MOST, FAILURES = 120, 12
-#: Viscous stiffness per stiffness at the start: first, at most, and below which it is none.
-FIRST, LARGEST, NONE = 0.3, 10.0, 1e-3
-#: Residual below which the viscous stiffness fades fast.
-CLOSE = 1e-3
-#: Longest correction, in the shortest edge of a slave surface.
+#: Most corrections, most of them for one place, and residual at which a place is reached.
+MOST, EACH, REACHED = 400, 14, 1e-6
+#: Stiffness of the springs per stiffness of their nodes: first, at most, at least.
+FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
+#: Factors on it after a place that was reached in few corrections, in more, and not at all; few.
+EASED, KEPT, TIGHTENED, FEW = 0.25, 0.5, 8.0, 6
+#: Farthest from place to place, in the shortest edge of a slave surface.
 FARTHEST = 0.5
 
 
@@ -51,96 +57,95 @@ def relax(
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
 ) -> tuple[Outcome[Evaluation], ContactEquations]:
-    """Find an equilibrium by a creep that fades.
+    """Find an equilibrium by a creep.
 
     The parameters and results are those of
-    :func:`corota.analysis.terms.contact.newton.newton_with_contact`.
+    :func:`corota.analysis.terms.contact.newton.solve_increment`.
     """
-    problem = ContactEquations(system, system)
-    problem.pivoting = problem.relaxing = True
-    found = _creep(problem, system, u, prescribed, step_time, settings, report)
-    return problem.settle(found), problem
+    creep = _Creep(system, u, prescribed, step_time, settings, report)
+    return creep.problem.settle(creep.run()), creep.problem
 
 
-def _creep(
-    problem: ContactEquations,
-    system: System,
-    u: Floats,
-    prescribed: Floats,
-    step_time: float,
-    settings: Settings,
-    report: Callable[[int, ResidualNorms, float, str], None] | None,
-) -> Outcome[ContactEvaluation]:
-    z = problem.start(u)
-    out: Outcome[ContactEvaluation] = Outcome(False, z, None)
-    try:
-        at = problem.evaluate(z, step_time)
-    except ElementFailure as error:
-        out.reason = str(error)
+class _Creep:
+    """The places of one relaxation."""
+
+    def __init__(
+        self,
+        system: System,
+        u: Floats,
+        prescribed: Floats,
+        step_time: float,
+        settings: Settings,
+        report: Callable[[int, ResidualNorms, float, str], None] | None,
+    ) -> None:
+        self.system, self.step_time, self.report = system, step_time, report
+        self.problem = ContactEquations(system, system)
+        self.z = self.problem.start(u)
+        self.left = prescribed - u  # that supports have still to move
+        most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
+        self.last = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
+        tolerance = max(REACHED, settings.tolerance)
+        self.each = replace(self.last, tolerance=tolerance, max_iterations=EACH)
+        self.corrections = 0
+        edges = [float(p.slave.length.min()) for p in self.problem.contact_term.pairs]
+        self.farthest = FARTHEST * min(edges)
+        self.stiffness = self.problem.contact_term.nodal
+
+    def run(self) -> Outcome[ContactEvaluation]:
+        share, tries = FIRST, 0
+        while self.corrections < MOST and share <= LARGEST:
+            out = self._place(share)
+            moved = float(np.abs(out.u - self.z)[: self.problem.n][~self.system.is_rotation].max())
+            if out.converged and out.at is not None:
+                out.reason = self.problem.refuse(out.at, out.u)
+            if not out.converged or out.reason or moved > self.farthest:
+                share *= TIGHTENED
+                continue
+            self.z, self.left = out.u, np.zeros_like(self.left)
+            share *= EASED if out.iterations <= FEW else KEPT
+            if share >= LEAST:
+                continue
+            out = self._place(0.0)
+            if out.converged:
+                out.iterations = self.corrections
+                out.note = f"relaxed to rest in {self.corrections} corrections"
+                return out
+            share, tries = LEAST * TIGHTENED**2, tries + 1
+            if tries > 2:
+                break
+        out.converged = False
+        out.iterations = self.corrections
+        out.reason = f"no rest in {self.corrections} corrections of relaxation ({out.reason})"
         return out
-    brake = at.at.values.copy()
-    constrained = np.concatenate([prescribed, z[problem.n :]]) - z
-    edges = [float(p.slave.length.min()) for p in problem.contact_term.pairs]
-    farthest = FARTHEST * min(edges)
-    share, failed, before = FIRST, 0, np.inf
-    out.sizes.append(problem.residual_norms(at, z).size)
-    for iteration in range(1, MOST + 1):
-        plain = at.at.values
-        at.at.values = plain + share * brake
-        try:
-            dz, out.negative = problem.predict(at, constrained)
-        except (SingularError, GiveUp) as error:
-            at.at.values = plain
-            share, failed = max(2.0 * share, FIRST), failed + 1
-            if failed > FAILURES or share > LARGEST:
-                out.reason = f"relaxation met a singular tangent ({error})"
-                return out
-            continue
-        at.at.values = plain
-        largest = float(np.abs(dz[: problem.n][~system.is_rotation]).max(initial=0.0))
-        length = min(1.0, farthest / largest) if largest > 0.0 else 1.0
-        try:
-            there = z + length * dz
-            next_at = problem.evaluate(there, step_time)
-        except ElementFailure as error:
-            share, failed = max(2.0 * share, FIRST), failed + 1
-            farthest *= 0.5
-            if failed > FAILURES:
-                out.reason = f"relaxation: {error}"
-                return out
-            continue
-        failed = 0
-        z, at = there, next_at
-        constrained = (1.0 - length) * constrained
-        norms = problem.residual_norms(at, z)
-        size = norms.size
-        out.u, out.at, out.iterations = z, at, iteration
-        out.sizes.append(size)
-        if report is not None:
-            report(iteration, norms, length * largest, f"relaxation, brake {share:.1g}")
-        if not np.isfinite(size):
-            out.reason = "the residual is not finite"
-            return out
-        if not constrained.any() and (
-            size <= settings.tolerance
-            or (norms.rounding(settings.tolerance) and size >= 0.1 * before)
-        ):
-            out.converged = True
-            out.note = f"relaxed to rest in {iteration} corrections"
-            return out
-        share = _next(share, size, before, length)
-        before = size
-    out.reason = f"no rest in {MOST} corrections of relaxation (residual {out.sizes[-1]:.1e})"
-    return out
 
+    def _place(self, share: float) -> Outcome[ContactEvaluation]:
+        """The next place, with springs of a share of the stiffness of the nodes."""
+        problem, n = self.problem, self.problem.n
+        states = problem.last
+        problem.forget()
+        problem.last, problem.relaxing = states, True
+        problem.since = self.z[:n].copy()
+        if share:
+            problem.brake = (share * self.stiffness, problem.since)
+        target = self.z.copy()
+        target[:n] += self.left
+        settings = self.each if share else self.last
+        before = self.corrections
 
-def _next(share: float, size: float, before: float, length: float) -> float:
-    """Viscous stiffness of the next correction."""
-    if size < CLOSE and size < before and length == 1.0:
-        return 0.1 * share if share > NONE else 0.0
-    if size > max(before, CLOSE):
-        return min(max(1.3 * share, 0.1 * FIRST), FIRST)
-    return 0.8 * share if share > NONE else 0.0
+        def report(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
+            self.corrections = before + iteration
+            if self.report is not None:
+                said = f"relaxation, springs {share:.1g}" if share else "relaxation, no springs"
+                self.report(self.corrections, norms, correction, f"{said}; {note}".strip("; "))
+
+        try:
+            out = newton(problem, self.z, target, self.step_time, settings, None, report)
+        except SingularError as error:
+            out = Outcome(False, self.z, None, reason=f"singular tangent: {error}")
+            self.corrections += 1
+        if not out.converged:
+            problem.last = states
+        return out
 
 
 __all__ = ["relax"]

@@ -12,6 +12,7 @@ from corota.analysis.terms.contact.smoothing import smoothed
 from corota.analysis.terms.contact.surface import Surface
 from corota.errors import ModelError
 from corota.mesh import EDGES
+from corota.mesh.parts import part_of_cells
 from corota.model import elements
 from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness
 
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 #: Distance at which pairs are looked at, in edges, unless the user says otherwise.
 REACH = 4.0
+#: Most slave edges times boundary edges for which the thickness behind a surface is looked for, and
+#: relative lengths that are none.
+MOST_LOOKED_AT, SAME = 20_000_000, 1e-9
 
 
 def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -> Surface:
@@ -133,6 +137,8 @@ def contact_core(
         _check_pair(system, item, slave, master)
     reach = item.reach or REACH * longest
     common: dict[str, Any] = {"method": item.method, "reach": reach, "margin": 0.5 * reach}
+    if not item.itself:
+        common["depth"] = _thickness(system, slave)
     try:
         if item.itself:
             slave = along_contour(slave)
@@ -175,6 +181,33 @@ def contact_core(
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
     return core, slave, master, reach
+
+
+def _thickness(system: NumberedModel, slave: Surface) -> float:
+    """Largest thickness of the body behind a surface, straight inwards: deeper is no contact.
+
+    Infinite where nothing lies behind, and for surfaces too large to look.
+    """
+    mesh = system.model.mesh
+    boundary = mesh.boundary_edges()
+    if len(boundary) * len(slave.nodes) > MOST_LOOKED_AT:
+        return float("inf")
+    part = part_of_cells(mesh)
+    boundary = boundary[np.isin(part[boundary[:, 0]], part[slave.edges[:, 0]])]
+    ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(boundary)])
+    x, inwards = mesh.points, -_normals(mesh.points, slave)
+    start = x[slave.nodes[:, :2]].mean(axis=1)[:, None]
+    first, along = x[ends[:, 0]][None], (x[ends[:, 1]] - x[ends[:, 0]])[None]
+    away, way = first - start, np.broadcast_to(inwards[:, None], (len(inwards), len(ends), 2))
+    det = along[..., 0] * way[..., 1] - along[..., 1] * way[..., 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # start + s way = first + t along
+        s = (along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]) / det
+        t = (way[..., 0] * away[..., 1] - way[..., 1] * away[..., 0]) / det
+    hit = (s > SAME * slave.length[:, None]) & (t > -SAME) & (t < 1.0 + SAME)
+    found = np.where(hit, s, np.inf).min(axis=1)
+    found = found[np.isfinite(found)]
+    return float(found.max()) if len(found) else float("inf")
 
 
 def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, float]:

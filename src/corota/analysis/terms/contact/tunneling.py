@@ -51,7 +51,8 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
     spread = np.hypot(*(drift - mean).T).max()
     nodes = pair.nodes
     eliminated = np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach
-    chosen = np.flatnonzero(eliminated & (state != CLOSED) & (state != SLIPPING))
+    closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
+    chosen = np.flatnonzero(eliminated & ~closed)
     hit = [k for k in chosen if _crosses(first, last, ends, old, new, int(nodes[k]))]
     return np.array(hit, np.int64)
 
