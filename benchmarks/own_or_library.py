@@ -2,7 +2,9 @@
 
 GMRES on the unsymmetric part of frictional contact, block Lanczos on the pencil of linear buckling.
 Both take each other's place inside an analysis, with the same products and factorizations; times
-are of this thread's processor. docs/design.md says what follows from the figures.
+are of this thread's processor. ``--pardiso N`` compares our call of PARDISO with that of pypardiso,
+where both packages are installed (PYPARDISO_MKL_RT names oneMKL's library). docs/design.md says
+what follows from the figures.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -20,7 +22,10 @@ from scipy.sparse.linalg import LinearOperator, eigs, gmres
 import corota as ct
 from benchmarks.before_after_worker import contact
 from benchmarks.common import report
+from corota.analysis.equations import System
 from corota.analysis.linear import saddle_point
+from corota.analysis.linear.solvers import make_solver
+from corota.analysis.linear.system import LinearSystem
 from corota.analysis.procedures import buckling
 
 
@@ -104,12 +109,56 @@ def lanczos_row(ny: int) -> list[object]:
     return row
 
 
+def pardiso_row(ny: int) -> list[object]:
+    """Our call of PARDISO beside pypardiso's: numerical factorization and solution of a strip."""
+    import scipy.sparse as sp
+    from pypardiso.pardiso_wrapper import PyPardisoSolver
+
+    model = ct.Model(ct.mesh.rectangle(4.0 * ny, ny, 4 * ny, ny))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    model.force("right", y=-0.2)
+    step = ct.Static()
+    system = System(model, make_solver("multifrontal"), 1)
+    system.begin(step, 0.0, np.zeros(system.n_dofs), None)
+    at = system.evaluate(np.zeros(system.n_dofs), step.period)
+    pattern, values, b = system.constraints.pattern, at.values.copy(), at.external.copy()
+    pattern.mask(values, system.constrained)
+    b[system.constrained] = 0.0
+    own, library = LinearSystem(make_solver("pardiso")), PyPardisoSolver(mtype=-2)
+    upper = sp.triu(pattern.full(values)).tocsr()
+    upper.sort_indices()
+
+    def phase(number: int) -> Any:
+        library.set_phase(number)
+        return library._call_pardiso(upper, np.asfortranarray(b[:, None]))
+
+    def best(call: Any) -> float:
+        times = []
+        for _ in range(4):
+            begin = time.perf_counter()
+            call()
+            times.append(time.perf_counter() - begin)
+        return 1e3 * min(times[1:])
+
+    phase(11)
+    factorize = best(lambda: own.factorize(pattern, values)), best(lambda: phase(22))
+    solve = best(lambda: own.solve(b)), best(lambda: phase(33))
+    x, y = own.solve(b), phase(33).ravel()
+    return [system.n_dofs, *factorize, *solve, float(np.abs(x - y).max() / np.abs(x).max())]
+
+
 def main() -> int:
     """Print the table."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--contact", nargs="+", type=int, default=[24, 57])
     options.add_argument("--buckling", nargs="+", type=int, default=[4, 12, 24])
+    options.add_argument("--pardiso", nargs="+", type=int, default=[])
     chosen = options.parse_args()
+    if chosen.pardiso:
+        names = ["factorize", "pypardiso", "solve", "pypardiso", "difference"]
+        report("PARDISO [ms]", ["unknowns", *names], [pardiso_row(n) for n in chosen.pardiso])
+        return 0
     warnings.simplefilter("ignore")
     rows = [gmres_row(n) for n in chosen.contact] + [lanczos_row(n) for n in chosen.buckling]
     head = ["method", "unknowns", "systems", "own solves", "SciPy's", "own [ms]", "SciPy [ms]"]
