@@ -217,6 +217,12 @@ def make_parser() -> Parser:
     watch.add_argument("--open", action="store_true", help="open the page in a browser")
     watch.add_argument("--port", type=_port, default=0, metavar="PORT", help="else any free one")
 
+    view = command("view", "Look at results in a window: time, fields, warp (extra `view`).")
+    view.add_argument("file", help="result file")
+    view.add_argument("-o", "--output", metavar="FILE", help="write a .png and open no window")
+    view.add_argument("--field", default="", help="variable: MISES S11 U2 ...")
+    view.add_argument("--scale", type=float, default=1.0, help="factor of the displacements")
+
     info = command("info", "Describe a deck, a mesh or a result file.")
     info.add_argument("file")
     _reading(info)

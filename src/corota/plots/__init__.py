@@ -13,6 +13,7 @@ from corota.plots.curves import curve
 from corota.plots.model import model
 from corota.plots.motion import energies, modes, response
 from corota.plots.sweep import sweep
+from corota.plots.view import view
 
 __all__ = [
     "along",
@@ -26,4 +27,5 @@ __all__ = [
     "response",
     "status",
     "sweep",
+    "view",
 ]

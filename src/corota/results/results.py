@@ -332,6 +332,29 @@ class Results(Brief):
             name = "MISES" if stressed and self.nodal("MISES").any() else "U"
         return plots.contour(self, name, **options)
 
+    def view(
+        self, name: str = "", *, scale: float = 1.0, path: str | PathLike[str] | None = None
+    ) -> Any:
+        """Look at the results in a window of PyVista; see :func:`corota.plots.view`.
+
+        Parameters
+        ----------
+        name : str
+            Variable; ``MISES``, or ``U`` where nothing is stressed, by default.
+        scale : float
+            Factor of the displacements.
+        path : path-like, optional
+            Write a picture there and open no window.
+
+        Raises
+        ------
+        ResourceError
+            If PyVista is not installed (``pip install corota[view]``).
+        """
+        from corota import plots
+
+        return plots.view(self, name, scale=scale, path=path)
+
     def write(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write to a file; its ending names the format (:mod:`corota.io.writers`).
 
