@@ -16,6 +16,8 @@ from corota.mesh.data import Cells, Mesh
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, REVERSED, classify
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import ElementBlock, Instance, NodeBlock, Scope
     from corota.mesh.data import Floats, Ints
@@ -262,13 +264,14 @@ class MeshBuilder:
                         self.line_types.append(block.type)
                     continue
                 kind = ELEMENTS[block.type].kind
-                if kind in ("quad4", "quad8"):
+                twice = _twice(nodes)
+                if kind in ("quad4", "quad8") and twice.any():
                     for part in self._collapsed(view, block, nodes, good, points):
                         placed.append(part)
                         n_turned += int(part.turned.sum())
                     if len(good) and not good.any():
                         continue
-                good &= self._distinct(block, nodes, good)
+                good &= self._distinct(block, nodes, good, twice)
                 shape = np.zeros(len(nodes), np.int64)
                 shape[good] = classify(kind, points[nodes[good]])
                 self._bad_shapes(block, shape)
@@ -401,11 +404,17 @@ class MeshBuilder:
             )
         return found
 
-    def _distinct(self, block: ElementBlock, nodes: Ints, among: Ints | None = None) -> Ints:
-        sorted_ = np.sort(nodes, axis=1)
-        twice = (np.diff(sorted_, axis=1) == 0) & (sorted_[:, 1:] >= 0)
+    def _distinct(
+        self,
+        block: ElementBlock,
+        nodes: Ints,
+        among: Ints | None = None,
+        twice: NDArray[np.bool_] | None = None,
+    ) -> Ints:
+        """Elements without a node that occurs twice; ``twice`` is known or found."""
+        twice = _twice(nodes) if twice is None else twice
         if among is not None:
-            twice &= among[:, None]
+            twice = np.asarray(twice & among.astype(bool)[:, None], bool)
         bad = np.flatnonzero(twice.any(axis=1))
         for at in bad[:MAX_LISTED]:
             labels, counts = np.unique(block.nodes[at], return_counts=True)
@@ -460,6 +469,12 @@ class MeshBuilder:
     def _more(self, count: int, text: str) -> None:
         if count > MAX_LISTED:
             self.deck.error(None, None, f"{count} {text}; the first {MAX_LISTED} are listed")
+
+
+def _twice(nodes: Ints) -> NDArray[np.bool_]:
+    """Where the sorted nodes of an element repeat, shape (n, k - 1)."""
+    in_order = np.sort(nodes, axis=1)
+    return np.asarray((np.diff(in_order, axis=1) == 0) & (in_order[:, 1:] >= 0))
 
 
 def _rotated(keep: list[int], side: int, quadratic: bool) -> list[int]:
