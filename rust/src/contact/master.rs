@@ -7,6 +7,10 @@ use super::curve::{
 use crate::base::Smooth;
 use std::f64::consts::PI;
 
+/// Turn beyond an end [rad] up to which the end is the foremost point of a round: beside a flat
+/// that it touches rounding must not choose.
+const BEYOND: f64 = 0.17;
+
 /// Place and turn of a rigid body.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<T> {
@@ -168,19 +172,30 @@ impl<T: Smooth> Master<T> {
         }
     }
 
-    /// Point of a convex master farthest against a unit normal, on its continuation if need be.
+    /// Point of a convex master farthest against a unit normal: an end if the farthest point of
+    /// its continuation is a little beyond, else on the continuation.
     pub fn foremost(&self, n: Vec2<T>) -> Hit<T> {
         let gap = T::real(0.0);
-        match self {
+        let (r, point, over) = match self {
             Self::Curve(c) => {
                 let r = dot(c.d, n) / dot(c.b, n).scale(2.0);
-                Hit { gap, r, point: c.at(r) }
+                (r, c.at(r), (r.value().abs() - 1.0) * PI)
             }
             Self::Arc(a) => {
                 let point = sub(a.center, n.map(|c| c.scale(a.radius)));
-                Hit { gap, r: a.parameter(point), point }
+                let r = a.parameter(point);
+                (r, point, (r.value().abs() - 1.0) * a.half.abs())
             }
+        };
+        if over > 0.0 && over < BEYOND {
+            let last = r.value() > 0.0;
+            return Hit {
+                gap,
+                r: T::real(if last { 1.0 } else { -1.0 }),
+                point: self.end(usize::from(last)),
+            };
         }
+        Hit { gap, r, point }
     }
 
     /// Outward unit normal at a point found before.

@@ -7,7 +7,8 @@
 //!
 //! A round of the master that is no larger than some facets of the slave would sink between two
 //! nodes and be lifted by each in turn. Its deepest point is therefore measured against the facet
-//! that it faces; the facet's first node carries the constraint.
+//! that it faces, too, by a constraint of the facet: a round that ends in a flat may press on a
+//! facet while both of its nodes lie on the flat.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::curve::{Vec2, add, dot, fixed, outward, sub, times, unit};

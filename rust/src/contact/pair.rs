@@ -20,6 +20,8 @@ pub enum Method {
 
 /// Radius of a master, in facets of the slave, up to which its deepest point counts.
 const ROUND: f64 = 4.0;
+/// Part of a facet beside its ends that is left to its nodes: there both say the same.
+const BESIDE: f64 = 0.01;
 
 /// What the pair is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +67,8 @@ pub struct Contact {
     next: Vec<i64>,
     facet: Vec<f64>,
     radius: Vec<f64>,
+    /// Constraint of the facet behind each slave node, after those of the nodes, where it has one.
+    of_facet: Vec<Option<usize>>,
     /// Whether nobody has asked for the candidates of a tie.
     fresh: bool,
     /// Master of each node: of the last evaluation, and of the last commit.
@@ -123,6 +127,16 @@ impl Contact {
                 }
             }
         }
+        let smallest = radius.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut count = n;
+        let of_facet = (0..n)
+            .map(|k| {
+                (next[k] >= 0 && smallest <= ROUND * facet[k]).then(|| {
+                    count += 1;
+                    count - 1
+                })
+            })
+            .collect();
         let mut pair = Self {
             reference: slave.edges.iter().map(|e| e.place(x)).collect(),
             master,
@@ -130,13 +144,14 @@ impl Contact {
             kind,
             distances,
             depth,
-            offset: vec![0.0; n],
+            offset: vec![0.0; count],
             search: Search::default(),
             first: Vec::new(),
             ties: Vec::new(),
             next,
             facet,
             radius,
+            of_facet,
             fresh: true,
             held: [vec![None; n], vec![None; n]],
             slave,
@@ -150,6 +165,12 @@ impl Contact {
 
     pub fn slave(&self) -> &Slave {
         &self.slave
+    }
+
+    /// Slave node of each constraint, by its place in the slave: nodes, then facets by their first.
+    pub fn places(&self) -> Vec<usize> {
+        let n = self.slave.nodes.len();
+        (0..n).chain((0..n).filter(|&k| self.of_facet[k].is_some())).collect()
     }
 
     pub fn candidates(&self) -> &[Candidate] {
@@ -238,7 +259,11 @@ impl Contact {
         let i = self.search.candidates[pair].0;
         match self.method {
             Method::Mortar => self.slave.constraints[i],
-            Method::NodeToSegment => [i, usize::MAX, usize::MAX],
+            Method::NodeToSegment => {
+                let round = self.is_round(i, self.search.candidates[pair].1);
+                let facet = self.of_facet[i].filter(|_| round);
+                [i, facet.unwrap_or(usize::MAX), usize::MAX]
+            }
         }
     }
 
@@ -255,12 +280,14 @@ impl Contact {
                 let normals = search::nodes(&self.slave, x);
                 let chosen = each(n, |k| self.choose(k, normals[k].1, x));
                 for (held, pair) in self.held[0].iter_mut().zip(&chosen) {
-                    *held = pair.map(|(p, _)| self.search.candidates[p].1);
+                    *held = pair.0.map(|(p, _)| self.search.candidates[p].1);
                 }
-                let pairs: Vec<(usize, bool)> = chosen.into_iter().flatten().collect();
+                let nodes = chosen.iter().filter_map(|c| c.0.map(|p| (p, false)));
+                let facets = chosen.iter().filter_map(|c| c.1.map(|p| ((p, true), true)));
+                let pairs: Vec<((usize, bool), bool)> = nodes.chain(facets).collect();
                 each(pairs.len(), |i| {
-                    let (pair, round) = pairs[i];
-                    if round { self.facet(pair, x, old) } else { self.node(pair, x, old) }
+                    let ((pair, round), besides) = pairs[i];
+                    if round { self.facet(pair, besides, x, old) } else { self.node(pair, x, old) }
                 })
             }
         }
@@ -392,8 +419,14 @@ impl Contact {
         Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }
     }
 
-    /// The pair of a node, and whether it is met by the facet behind the node.
-    fn choose(&self, k: usize, normal: Vec2<f64>, x: &[[f64; 3]]) -> Option<(usize, bool)> {
+    /// The pair of a node and whether it is met by the facet behind the node, and the pair of a
+    /// round that meets this facet besides.
+    fn choose(
+        &self,
+        k: usize,
+        normal: Vec2<f64>,
+        x: &[[f64; 3]],
+    ) -> (Option<(usize, bool)>, Option<usize>) {
         let p = x[self.slave.nodes[k] as usize];
         let pairs = self.first[k]..self.first[k + 1];
         let shapes: Vec<(usize, Master<f64>)> = pairs
@@ -405,8 +438,11 @@ impl Contact {
         });
         let bounds = Bounds { reach: self.distances.reach, depth: self.depth[k] };
         let found = node::choose([p[0], p[1]], normal, &shapes, last, bounds);
-        let at = |pair: usize| &shapes.iter().find(|s| s.0 == pair).expect("a candidate").1;
-        let mut best = found.map(|pair| ((pair, false), at(pair).closest([p[0], p[1]]).gap));
+        let gap_of = |pair: usize| {
+            let shape = &shapes.iter().find(|s| s.0 == pair).expect("a candidate").1;
+            shape.closest([p[0], p[1]]).gap
+        };
+        let mut deepest: Option<(usize, f64, f64)> = None;
         for (pair, shape) in &shapes {
             if !self.is_round(k, self.search.candidates[*pair].1) {
                 continue;
@@ -415,14 +451,27 @@ impl Contact {
             let (gap, t, hit) = node::round_gap([p[0], p[1]], [q[0], q[1]], shape);
             let inside = (0.0..1.0).contains(&t) && hit.r.abs() <= 1.0;
             let near = gap <= bounds.reach && -gap <= bounds.depth;
-            if inside && near && best.is_none_or(|b| gap <= b.1) {
-                best = Some(((*pair, true), gap));
+            if inside && near && deepest.is_none_or(|b| gap <= b.1) {
+                deepest = Some((*pair, gap, t));
             }
         }
-        best.map(|b| b.0)
+        let Some((round, gap, t)) = deepest else {
+            return (found.map(|pair| (pair, false)), None);
+        };
+        match found {
+            // The node may lie on a flat beside the round: both hold.
+            Some(own) if !self.is_round(k, self.search.candidates[own].1) => {
+                let beside = (BESIDE..1.0 - BESIDE).contains(&t);
+                (Some((own, false)), beside.then_some(round))
+            }
+            Some(own) if gap_of(own) < gap => (Some((own, false)), None),
+            // What meets the round says the same of node and facet.
+            _ => (Some((round, true)), None),
+        }
     }
 
-    fn facet(&self, pair: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Terms {
+    /// A facet that meets a round, by the constraint of its first node or its own (`besides`).
+    fn facet(&self, pair: usize, besides: bool, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Terms {
         let (k, j) = self.search.candidates[pair];
         let variables = self.variables(pair);
         let v = lifted::<WIDTH>(&variables, x);
@@ -437,21 +486,22 @@ impl Contact {
         let before = old.map(|o| (ends(o), self.master.place(j, o)));
         let before = before.as_ref().map(|(ends, m)| (*ends, m));
         let (gap, slip) = node::round_gap_and_slip([[v[0], v[1]], [v[2], v[3]]], &master, before);
-        self.of_node(pair, k, variables, &gap, slip.as_ref())
+        let own = if besides { self.of_facet[k].expect("a facet of a round") } else { k };
+        self.share(pair, own, variables, &gap, slip.as_ref())
     }
 
-    fn of_node<const D: usize>(
+    fn share<const D: usize>(
         &self,
         pair: usize,
-        k: usize,
+        constraint: usize,
         variables: [i64; WIDTH],
         gap: &Hyper<D>,
         slip: Option<&Hyper<D>>,
     ) -> Terms {
-        let area = self.slave.area[k];
+        let area = self.slave.area[self.search.candidates[pair].0];
         let share = Share {
-            constraint: k,
-            gap: (&node::open(*gap, self.offset[k], area)).into(),
+            constraint,
+            gap: (&node::open(*gap, self.offset[constraint], area)).into(),
             slip: slip.map_or_else(Function::none, |s| (&node::open(*s, 0.0, area)).into()),
             area,
         };
@@ -471,7 +521,7 @@ impl Contact {
         });
         let before = before.as_ref().map(|(p, m)| (*p, m));
         let (gap, slip) = node::gap_and_slip([v[0], v[1]], &master, before);
-        self.of_node(pair, k, variables, &gap, slip.as_ref())
+        self.share(pair, k, variables, &gap, slip.as_ref())
     }
 
     fn tied(&self, pair: usize, x: &[[f64; 3]]) -> Terms {

@@ -235,17 +235,20 @@ impl Contact {
         Self::wrap(x, slave, Some(Surface::Rigid(rigid)), self::method(method)?, false, distances)
     }
 
-    /// Mesh node of each constraint.
+    /// Mesh node of each constraint: those of nodes, then those of facets by their first node.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        let nodes: Vec<i64> = self.pair.slave().nodes.iter().map(|&n| n.into()).collect();
+        let nodes = &self.pair.slave().nodes;
+        let nodes: Vec<i64> = self.pair.places().iter().map(|&k| nodes[k].into()).collect();
         nodes.into_pyarray(py)
     }
 
     /// Reference area of each constraint over all its edges.
     #[getter]
     fn full_area<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.pair.slave().area)
+        let area = &self.pair.slave().area;
+        let area: Vec<f64> = self.pair.places().iter().map(|&k| area[k]).collect();
+        area.into_pyarray(py)
     }
 
     /// Distance taken off the gap at each constraint.
@@ -325,7 +328,7 @@ impl Contact {
         q: Floats<'py>,
     ) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (p, q) = (p.as_slice()?, q.as_slice()?);
-        let n = self.pair.slave().nodes.len();
+        let n = self.pair.offset.len();
         if p.len() != n || q.len() != n {
             return Err(bad(format!("p and q are {n} numbers each")));
         }
@@ -390,7 +393,7 @@ impl Contact {
 
 impl Contact {
     fn collect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let n = self.pair.slave().nodes.len();
+        let n = self.pair.offset.len();
         let mut order: Vec<(usize, usize, usize)> = Vec::new();
         for (t, terms) in self.terms.iter().enumerate() {
             for (s, share) in terms.shares.iter().enumerate() {
