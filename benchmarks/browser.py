@@ -73,7 +73,7 @@ class Browser:
             "--headless=new", "--no-sandbox", "--disable-gpu-sandbox", "--mute-audio",
             "--no-first-run", "--disable-extensions", "--disable-background-networking",
             "--disable-component-update", "--hide-scrollbars", "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader", "--remote-debugging-pipe",
+            "--enable-unsafe-swiftshader", "--disable-gpu-watchdog", "--remote-debugging-pipe",
             f"--user-data-dir={self._folder}", f"--window-size={width},{height}", "about:blank",
         ]  # fmt: skip
         self._process = subprocess.Popen(

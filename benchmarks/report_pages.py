@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import corota as ct
-from benchmarks.browser import Browser, find_browser
+from benchmarks.browser import Browser, BrowserError, find_browser
 from corota.report import report_job, write_report
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
@@ -145,7 +145,10 @@ def plays_frames(browser: Browser) -> bool:
     state = f"[{PAGE}.scene.index, {PAGE}.scene.phase].join()"
     before = browser.run(state)
     press(browser, "#play")
-    browser.wait(f"{state} !== '{before}'", 20.0)
+    try:
+        browser.wait(f"{state} !== '{before}'", 60.0)
+    except BrowserError:
+        return False
     if browser.run(f"{PAGE}.player.playing"):
         press(browser, "#play")
     browser.key("Home", 36)

@@ -89,6 +89,10 @@ class GlPainter {
   }
 }
 
+/** Colors of the plain canvas, and triangles that it fills at once. */
+const PLAIN_BANDS = 48;
+const AT_ONCE = 300;
+
 class PlainPainter {
   constructor(canvas) {
     this.canvas = canvas;
@@ -114,18 +118,26 @@ class PlainPainter {
     const ratio = canvas.width / camera.width;
     const x = (i) => ratio * camera.toX(p[2 * i]);
     const y = (i) => ratio * camera.toY(p[2 * i + 1]);
+    // Triangles of a color go by paths of some hundred: one each takes long, and so does one path.
+    const count = bands || PLAIN_BANDS;
+    const paths = Array.from({ length: count }, () => ({ path: new Path2D(), held: 0 }));
+    const flush = (i) => {
+      context.fillStyle = color(this.table, (i + 0.5) / count);
+      context.fill(paths[i].path);
+      paths[i] = { path: new Path2D(), held: 0 };
+    };
     for (let i = 0; i < t.length; i += 3) {
       const [a, b, c] = [t[i], t[i + 1], t[i + 2]];
-      const ink = color(this.table, share((v[a] + v[b] + v[c]) / 3, range, bands));
-      context.beginPath();
-      context.moveTo(x(a), y(a));
-      context.lineTo(x(b), y(b));
-      context.lineTo(x(c), y(c));
-      context.closePath();
-      context.fillStyle = context.strokeStyle = ink;
-      context.fill();
-      context.stroke();
+      const place = Math.floor(share((v[a] + v[b] + v[c]) / 3, range) * count);
+      const number = Math.min(place, count - 1);
+      const { path } = paths[number];
+      path.moveTo(x(a), y(a));
+      path.lineTo(x(b), y(b));
+      path.lineTo(x(c), y(c));
+      path.closePath();
+      if (++paths[number].held === AT_ONCE) flush(number);
     }
+    for (let i = 0; i < count; i++) if (paths[i].held) flush(i);
     if (!mesh) return;
     const [r, g, b, alpha] = meshInk;
     context.strokeStyle = `rgba(${255 * r},${255 * g},${255 * b},${alpha})`;

@@ -61,6 +61,13 @@ export class Player {
     this.overlayCanvas = byId("overlay");
     this.painter = makePainter(this.surfaceCanvas);
     this.painter.topology(this.model.surface);
+    // The system may take the graphics memory away, and give it back.
+    this.surfaceCanvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.surfaceCanvas.addEventListener("webglcontextrestored", () => {
+      this.painter = makePainter(this.surfaceCanvas);
+      this.painter.topology(this.model.surface);
+      this.draw();
+    });
     this.overlay = new Overlay(this.overlayCanvas);
     this.view = "results";
     this.playing = false;
