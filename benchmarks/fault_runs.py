@@ -149,6 +149,10 @@ def sound_results(folder: Path, name: str) -> str:
                 for what, values in block.values.items():
                     if not np.isfinite(values).all():
                         return f"NaN behind exit 0: {what}"
+            for averages in (frame.averages, frame.cell_averages):
+                for what, values in averages.items():
+                    if not np.isfinite(values).all():
+                        return f"NaN behind exit 0: {what}"
     for ending in ("dat", "csv", "sta"):
         file = folder / f"{name}.{ending}"
         if file.exists():

@@ -248,4 +248,7 @@ def _digest(folder: Path) -> str:
             for block in frame.fields:
                 for name in sorted(block.values):
                     digest.update(np.ascontiguousarray(block.values[name]).tobytes())
+            for averages in (frame.averages, frame.cell_averages):
+                for name in sorted(averages):
+                    digest.update(np.ascontiguousarray(averages[name]).tobytes())
     return digest.hexdigest()
