@@ -490,7 +490,6 @@ class VtkhdfWriter:
                 like.dtype,
                 maxshape=(None, *rest),
                 chunks=(max(1, size), *rest),
-                fletcher32=True,  # a damaged chunk is an error where it is read
                 fillvalue=_missing(place, name),
                 **(packed if level and rows * row >= SMALL else {}),
             )
