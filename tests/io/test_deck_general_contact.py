@@ -179,3 +179,9 @@ def test_only_the_nodes_of_a_set_are_adjusted(tmp_path: Path) -> None:
     assert "no node set named 'FOOTS'" in fault(
         tmp_path, BLOCKS + named + pair.format(", ADJUST=FOOTS") + held
     )
+
+
+def test_a_pair_in_a_part_without_instances_is_refused(tmp_path: Path) -> None:
+    text = BLOCKS + "*PART, NAME=P\n*SURFACE INTERACTION, NAME=I\n"
+    text += "*CONTACT PAIR, INTERACTION=I, TYPE=MORTAR\nA, B\n*END PART\n" + STEP
+    assert "no surface named" in fault(tmp_path, text)

@@ -120,7 +120,7 @@ class _Builder:
         """Nodes of ``ADJUST=set``."""
         if not pair.adjust_set:
             return None
-        view = views_in(self.sets.views, self.deck, pair.card.scope)[0]
+        view = self._view(pair.card)
         name = self.sets.mesh_name(self.model.mesh.node_sets, view, pair.adjust_set)
         if not name:
             self.deck.error(
@@ -183,9 +183,13 @@ class _Builder:
             return None
         return edges if surface.nodes else full
 
+    def _view(self, card: Card) -> View:
+        """Where a card stands; the assembly for one of a part without instances."""
+        return (views_in(self.sets.views, self.deck, card.scope) or self.sets.views)[0]
+
     def _full(self, card: Card, name: str) -> str:
         """Key of a surface that a card names."""
-        view = views_in(self.sets.views, self.deck, card.scope)[0]
+        view = self._view(card)
         return self.sets.full_name(self.sets.surfaces, view, name)
 
     def _curve(self, name: str, surface: Surface) -> RigidCurve | None:
