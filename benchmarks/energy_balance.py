@@ -15,10 +15,12 @@ catalogue, or examples by their path (``examples/motion/pendulum.py``).
 from __future__ import annotations
 
 import copy
+import io
 import math
 import runpy
 import sys
 import warnings
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -136,7 +138,9 @@ def forget() -> None:
 def play(name: str) -> str:
     """Run a problem or an example; name what stopped it."""
     forget()
-    with warnings.catch_warnings():
+    given = sys.argv
+    sys.argv = [name]  # an example reads its own arguments
+    with warnings.catch_warnings(), redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")
         try:
             if name.endswith(".py"):
@@ -144,7 +148,10 @@ def play(name: str) -> str:
             else:
                 runner.measure(name)
         except (Exception, SystemExit) as error:  # a row says what an example stopped at
-            return f" {type(error).__name__}"
+            if getattr(error, "code", 1):
+                return f" {type(error).__name__}"
+        finally:
+            sys.argv = given
     return ""
 
 
