@@ -174,13 +174,17 @@ class Scales:
         # Where nothing is loaded yet, and where all surfaces part, forces of rounding size are
         # the measure.
         force = max(self.force, self.nothing)
-        norms.force = max(norms.force, min(_ratio(complementarity, force), 1.0))
+        ratio = _ratio(complementarity, force)
+        norms.force = max(norms.force, min(ratio, 1.0))
         least, moment = norms.honest
         norms.honest = (max(least, _ratio(complementarity, max(self.whole, self.nothing))), moment)
         if norms.force > self.tolerance:
             # The stiffness by which gaps become forces is that of the nodes.
             rounding = min(self._noise, self._most / FLOOR)
             norms.floor = max(norms.floor, _ratio(rounding, force))
+            if ratio > 1.0:
+                # The residual is told as 1, whatever it is: so is its rounding.
+                norms.floor = min(norms.floor / ratio, _ratio(rounding, complementarity))
 
     def senseless(self, u: Floats) -> str:
         """Why a static displacement makes no sense, or nothing.
