@@ -24,6 +24,7 @@ from typing import Any
 
 import corota as ct
 from benchmarks.browser import Browser, BrowserError, find_browser
+from corota.analysis.run import Analysis
 from corota.report import report_job, write_report
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
@@ -43,19 +44,19 @@ def names() -> list[str]:
 
 @contextlib.contextmanager
 def caught(results: list[ct.Results]) -> Iterator[None]:
-    """Collect what :func:`corota.solve` returns."""
-    before = ct.solve
+    """Collect the results of all analyses, by whatever name they were started."""
+    before = Analysis.run
 
-    def solve(*args: Any, **options: Any) -> ct.Results:
-        found = before(*args, **options)
+    def run(analysis: Analysis) -> ct.Results:
+        found = before(analysis)
         results.append(found)
         return found
 
-    ct.solve = solve
+    Analysis.run = run  # type: ignore[method-assign]
     try:
         yield
     finally:
-        ct.solve = before
+        Analysis.run = before  # type: ignore[method-assign]
 
 
 @contextlib.contextmanager
@@ -78,6 +79,7 @@ def solve_example(name: str, folder: Path) -> ct.Results:
     module = importlib.util.module_from_spec(spec)
     results: list[ct.Results] = []
     arguments, sys.argv = sys.argv, [str(path)]
+    sys.path.insert(0, str(path.parent))  # some use the models of their neighbors
     try:
         with (
             caught(results),
@@ -91,6 +93,7 @@ def solve_example(name: str, folder: Path) -> ct.Results:
             module.main()
     finally:
         sys.argv = arguments
+        sys.path.remove(str(path.parent))
     if not results:
         raise RuntimeError(f"{name}: solved nothing")
     return max(results, key=lambda found: len(found.frames))
