@@ -199,7 +199,8 @@ def follows_curve(browser: Browser) -> bool | None:
       scene.show(0);
       chart.root.scrollIntoView({{ block: "center" }});
       const {{ x, y }} = chart.lines[0];
-      const i = x.length - 1;
+      // The middle: a curve may end where it begins.
+      const i = x.length >> 1;
       const box = chart.plot.over.getBoundingClientRect();
       return [box.x + chart.plot.valToPos(x[i], "x"), box.y + chart.plot.valToPos(y[i], "y")];
     }})()"""
