@@ -133,7 +133,8 @@ def test_histories_of_files_are_those_of_memory(tmp_path: Path, element: str) ->
     Sums of reactions, the moment about the named point, friction, energies, contact at nodes.
     """
     model, mesh, steps = part(element, angle=20.0, plane="stress")
-    files = ct.JobFiles(tmp_path, "job", histories=["U1@right", "RF1@left", "U2@3"])
+    wanted = ["U1@right", "RF1@left", "U2@3"]
+    files = ct.JobFiles(tmp_path, "job", histories=wanted, points=True)
     results = ct.solve(model, steps, observers=[files], threads=1)
     rows = rows_of(tmp_path / "job.csv")
     frames = results.frames

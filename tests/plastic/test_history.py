@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.procedures import static
+from corota.analysis.terms.contact import newton as increment
 from corota.verification.plastic_models import cantilever, find, perforated_strip
 from support.newton import ROUNDING, Residuals
 
@@ -39,7 +39,7 @@ def test_cut_backs_leave_no_trace(
         return ct.solve(model, steps, **SETTINGS)
 
     plain = run()
-    true = static.newton
+    true = increment.newton
     calls = {"n": 0}
 
     def failing(system: Any, u: Any, prescribed: Any, *rest: Any) -> Any:
@@ -49,7 +49,7 @@ def test_cut_backs_leave_no_trace(
         true(system, u, further, *rest[:2], None, None)
         return true(system, u, prescribed, *rest)
 
-    monkeypatch.setattr(static, "newton", failing)
+    monkeypatch.setattr(increment, "newton", failing)
     disturbed = run()
     assert calls["n"] >= len(plain.frames) - 1
     for one, two in zip(state_of(plain), state_of(disturbed), strict=True):
