@@ -75,7 +75,7 @@ def beam(element: str, n: int, measure: str) -> tuple[float, str, float]:
 
 PROBLEMS: tuple[tuple[str, Any, tuple[int, int], str], ...] = (
     ("Perforated strip: force at an elongation of 0.3", strip, (5, 10), "cells per eighth"),
-    ("Cook's panel: tip displacement at a force of 1.8", panel, (8, 16), "cells a side"),
+    ("Cook's panel: tip displacement at a force of 1.8", panel, (8, 16), "elements per side"),
     ("Cantilever: force over the beam's limit load", beam, (4, 8), "cells in the height"),
 )
 
