@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -341,3 +342,45 @@ def test_a_checkpoint_may_be_used_twice():
     )
     for a, b in zip(first.frames, again.frames, strict=True):
         assert not frame_differences(a, b)
+
+
+def test_costly_checkpoints_are_taken_seldom(tmp_path, monkeypatch):
+    """Whatever one costs, checkpoints by time take at most a hundredth of the run.
+
+    A clock that counts increments of ten seconds: one checkpoint a minute while they are cheap;
+    when storing one takes five seconds, the next one waits for five hundred.
+    """
+    from corota.io import job
+
+    now, cost, taken = 0.0, 0.0, []
+
+    def store(*arguments, **options):
+        nonlocal now
+        taken.append(now)
+        now += cost
+
+    class Files(ct.JobFiles):
+        def increment(self, frame):
+            nonlocal now
+            super().increment(frame)
+            now += 10.0
+
+        def _put(self, task, size=200):
+            task()  # at once, so that the clock counts it
+
+    def read():
+        return now
+
+    clock = SimpleNamespace(**vars(time) | {"monotonic": read, "perf_counter": read})
+    monkeypatch.setattr(job, "time", clock)
+    monkeypatch.setattr(os, "fsync", lambda file: None)
+    monkeypatch.setattr(job, "store", store)
+    model = beam([ct.Static(increments=30)])
+    ct.solve(model, observers=[Files(tmp_path / "cheap", formats=[])])
+    assert len(taken) == 5
+    taken.clear()
+    cost = 5.0
+    model = beam([ct.Static(increments=120)])
+    ct.solve(model, observers=[Files(tmp_path / "dear", formats=[])])
+    assert len(taken) > 1
+    assert np.all(np.diff(taken) >= 500.0)

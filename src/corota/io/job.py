@@ -57,6 +57,8 @@ ENDINGS = (
 )
 #: Seconds between checkpoints, unless other intervals are asked for.
 CHECKPOINT_SECONDS = 60.0
+#: Least time between checkpoints over the cost of one: they take at most a hundredth of a run.
+CHECKPOINT_WAIT = 100.0
 
 
 class JobFiles(BaseObserver):
@@ -87,7 +89,8 @@ class JobFiles(BaseObserver):
     checkpoint_every : int
         Increments between checkpoints; 0 for none by count.
     checkpoint_seconds : float
-        Seconds between checkpoints; 0 for none by time.
+        Least time between checkpoints [s]; 0 for none by time. Where one checkpoint costs more than
+        a hundredth of it, a hundred times that cost, so that large models do not wait for them.
     source : dict of str to str, optional
         What the model was read from, for checkpoints: ``deck`` and its ``sha256``.
     resume : Saved, optional
@@ -161,6 +164,8 @@ class JobFiles(BaseObserver):
         self.asked = False
         #: The newest checkpoint of this run.
         self.checkpointed: Checkpoint | None = None
+        #: What the last checkpoint cost: copying the state, writing it [s].
+        self._cost, self._due = [0.0, 0.0], 0.0
         self._known_cuts: dict[tuple[int, int], int] = {}
         self._held: FolderLock | None = None
         self._end_request: StopRequest | None = None
@@ -335,8 +340,12 @@ class JobFiles(BaseObserver):
         step = self.steps[self._step - 1]
         every = step.restart or self._every
         by_count = every > 0 and self._increment % every == 0
-        late = time.monotonic() - self._last_checkpoint >= self._seconds > 0.0
-        return self.asked or by_count or late
+        wait = max(self._seconds, CHECKPOINT_WAIT * sum(self._cost))
+        late = self._seconds > 0.0 and time.monotonic() - self._last_checkpoint >= wait
+        due = self.asked or by_count or late
+        if due:
+            self._due = time.perf_counter()
+        return due
 
     def checkpoint(self, checkpoint: Checkpoint, keep: str = "") -> None:
         """Take the state of the analysis; it is written behind all that came before.
@@ -347,6 +356,7 @@ class JobFiles(BaseObserver):
             Ending of a file of its own that is not replaced, such as ``step-1.ckpt``.
         """
         self.asked, self._last_checkpoint = False, time.monotonic()
+        self._cost[0] = time.perf_counter() - self._due
         self.checkpointed = checkpoint
         known = {
             "cuts": [[*where, n] for where, n in self._cuts.items()],
@@ -359,6 +369,7 @@ class JobFiles(BaseObserver):
 
     def _checkpoint(self, checkpoint: Checkpoint, known: dict[str, Any], keep: str) -> None:
         """Bring the files to the disk, then the checkpoint that refers to them."""
+        begin = time.perf_counter()
         for big in self._big:
             big.commit()
         for text in self._text.values():
@@ -393,6 +404,7 @@ class JobFiles(BaseObserver):
             self._options(),
             self._stored or None,
         )
+        self._cost[1] = time.perf_counter() - begin
 
     def _model_tree(self) -> tuple[Any, list[Any], str] | tuple[()]:
         try:
