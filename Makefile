@@ -12,6 +12,8 @@ CORE := $(VENV)/.stamp-core
 CORE_SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -type f 2>/dev/null)
 # One profile and one target folder for wheel, tests and clippy: dependencies build once.
 CARGO := --release --locked
+# The tests run in seconds; optimized, they would build for minutes. Unoptimized frames are large.
+UNOPTIMIZED := --config 'profile.release.package.corota.opt-level=0'
 WITH_PYTHON := --features python,pyo3/extension-module
 
 export VIRTUAL_ENV := $(abspath $(VENV))
@@ -47,7 +49,7 @@ demo: $(CORE) ## Run the compliant gripper: progress, files and a picture
 test: test-rust test-python ## Set up everything and run all tests
 
 test-rust: $(CORE)
-	cargo test --quiet $(CARGO) --jobs $(JOBS)
+	RUST_MIN_STACK=33554432 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
 
 test-python: $(CORE) test-rust
 	$(BIN)/python -m pytest -n $(JOBS)
