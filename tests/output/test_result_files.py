@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import zlib
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -21,6 +22,7 @@ from corota.errors import CorotaError, FileError, InputError
 from corota.io.atomic_file import AtomicFile, TextFile
 from corota.io.job import JobFiles
 from corota.io.result_reader import read_results
+from corota.io.vtk.packing import packed
 from corota.io.writers import WRITERS
 
 HERE = Path(__file__).parent
@@ -349,3 +351,15 @@ def test_truncated_result_file_is_refused(results, tmp_path):
         path.write_bytes(data[: int(share * len(data))])
         with pytest.raises(FileError, match="damaged"):
             read_results(path)
+
+
+@pytest.mark.parametrize("level", [1, 6])
+@pytest.mark.parametrize("size", [0, 1, 5000, 200_000])
+def test_packed_planes_are_one_stream_that_zlib_reads(size, level):
+    """Planes that pack, planes of noise and empty ones give back their bytes, and zeros pack."""
+    noise = np.random.default_rng(1).bytes(size)
+    planes = [bytes(size), noise, b"ab" * (size // 2), noise[::-1]]
+    found = packed(planes, level)
+    assert zlib.decompress(found) == b"".join(planes)
+    if size > 100_000:
+        assert len(found) < 2.2 * size

@@ -7,7 +7,6 @@ Source: VTK file formats, "VTKHDF file format", version 2.0 (UnstructuredGrid, `
 from __future__ import annotations
 
 import json
-import zlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from corota.io.description import store_description
 from corota.io.file_options import FileOptions, wanted
 from corota.io.finite import check, check_frame
 from corota.io.vtk.grid import Grid
+from corota.io.vtk.packing import packed
 from corota.results import variables as vf
 
 if TYPE_CHECKING:
@@ -516,19 +516,9 @@ class VtkhdfWriter:
             if not values.any() and not np.isnan(series.fillvalue):
                 continue  # what is not written is 0
             data = np.ascontiguousarray(values, series.dtype)
-            sorted_bytes = data.view(np.uint8).reshape(-1, data.itemsize).T.tobytes()
-            series.id.write_direct_chunk((number * rows, *rest), self._packed(sorted_bytes))
-
-    def _packed(self, data: bytes) -> bytes:
-        """Bytes as gzip's filter of HDF5 reads them.
-
-        Level 1 looks for runs only: digits of floating-point numbers have nothing else, and it
-        takes half the time.
-        """
-        level = self._options.compression
-        how = zlib.Z_RLE if level == 1 else zlib.Z_DEFAULT_STRATEGY
-        packer = zlib.compressobj(level, zlib.DEFLATED, zlib.MAX_WBITS, zlib.DEF_MEM_LEVEL, how)
-        return packer.compress(data) + packer.flush()
+            planes = data.view(np.uint8).reshape(-1, data.itemsize).T
+            chunk = packed([plane.tobytes() for plane in planes], self._options.compression)
+            series.id.write_direct_chunk((number * rows, *rest), chunk)
 
     def commit(self) -> None:
         """Make all frames so far visible on disk, at once or not at all.
