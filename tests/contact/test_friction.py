@@ -33,6 +33,7 @@ def test_block_that_slides_is_said_to():
     with pytest.raises(ct.ConvergenceError, match="friction does not hold the bodies") as found:
         ct.solve(incline(0.57), ct.Static(smallest_increment=0.1), threads=1)
     assert "slope" in str(found.value)
+    assert "contact state (open, stick or slip) kept changing at node" in str(found.value)
 
 
 def dragged(element, cell, method, there_and_back=False, law=None):

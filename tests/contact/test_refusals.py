@@ -44,7 +44,7 @@ def test_common_edges():
 def test_common_nodes():
     model = model_of(shared=True)
     model.contact("top", "right")
-    refused(model, r"share node \d+, so they cannot part there")
+    refused(model, r"share node \d+, so they cannot separate there")
 
 
 def test_surfaces_that_look_away():

@@ -243,15 +243,15 @@ class StaticStepper(NewtonStepper):
                 jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
                 if not contact.near(outcome.u):
                     state.notes.append(
-                        f"step time {target:.6g}: the equilibrium before ended and the bodies "
-                        f"moved on to another, by up to {jump:.3g} ({outcome.note}); statics has "
-                        "no path between, and there may be others: Dynamic follows the motion"
+                        f"step time {target:.6g}: the equilibrium ended (a snap, or a node past "
+                        f"a corner) and the bodies moved on to another, by up to {jump:.3g} "
+                        f"({outcome.note}); it may be one of several: Dynamic follows the motion"
                     )
                 control.size = max(target - control.time, control.step.smallest_increment)
                 return Attempt(target, outcome, contact)
         return (
-            "; relaxation from there found no equilibrium near: the bodies snap or fold; Dynamic "
-            "follows the motion"
+            "; relaxation from the last converged state found no equilibrium nearby: the bodies "
+            "snap or fold, which Dynamic follows"
         )
 
     def go_along_path(self) -> bool:

@@ -213,8 +213,8 @@ class ContactTerm:
             longest = float(pair.slave.length.max())
             if gap[deepest] < -1e-9 * longest:
                 how = {
-                    "keep": "is pushed out in the first increment (start='ramp' or 'adjust' "
-                    "would spread it over the step, or take it as no strain)",
+                    "keep": "is pushed out in the first increment (start='ramp' spreads "
+                    "it over the step, start='adjust' takes it as touching without strain)",
                     "adjust": "counts as touching, without strain",
                     "ramp": "is pushed out over the first step",
                 }["keep" if adjusted and not moved[deepest] else item.start]

@@ -178,7 +178,7 @@ class ContactEquations:
                 return self._moved(z), -1
         before = self.single
         z, negative = self._columns(at, right_sides, self._choose(at.contact_state))
-        self.stage = "single change of contact" if self.single > before else ""
+        self.stage = "contact state changed at one node" if self.single > before else ""
         return self._moved(z[:, 0]), negative
 
     def _moved(self, z: Floats) -> Floats:
@@ -400,7 +400,10 @@ class ContactEquations:
                 key = b"".join(s.tobytes() for s in wanted)
                 self.seen[key] = self.seen.get(key, 0) + 1
                 if self.seen[key] > MAX_REPEATS_BEFORE_CUTBACK:
-                    raise GiveUp("the contact states go round in a circle")
+                    raise GiveUp(
+                        "the contact states cycle: the same nodes open, stick and slip as in "
+                        f"{self.seen[key] - 1} earlier iterations"
+                    )
                 self.cautious = self.cautious or self.seen[key] > MAX_STATE_REPEATS
                 self.pivoting = self.pivoting or self.cautious
                 if self.cautious:
@@ -528,7 +531,10 @@ class ContactEquations:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
             self.contact_term.restore()
         elif self.single:
-            settled.note = f"{outcome.note}; {self.single} single changes of contact".strip("; ")
+            settled.note = (
+                f"{outcome.note}; contact state changed at one node at a time in {self.single} "
+                "iterations"
+            ).strip("; ")
         if outcome.converged and self.pivoted:
             said = f"contact states by pivoting in {self.pivoted} iterations"
             settled.note = f"{settled.note}; {said}".strip("; ")
@@ -551,13 +557,16 @@ class ContactEquations:
         )
         still = self.pivoted and not self.relaxing and self.inner is self.system
         if still and not self.near(z[: self.n]):
-            return "the equilibrium that was found is far from the one before"
+            return (
+                "the equilibrium found lies far from the last one: the bodies would jump in this "
+                "increment"
+            )
         for pair, terms, (p, q) in self._pairs(at.contact_state):
             found = passed(pair, old, new, pair.states(terms, p, q))
             if len(found):
                 return (
-                    f"node {self.contact_term.label(pair, int(found[0]))} went through the other "
-                    f"side of contact pair {pair.name!r} in one increment"
+                    f"node {self.contact_term.label(pair, int(found[0]))} passed through the "
+                    f"opposite surface of contact pair {pair.name!r} in one increment"
                 )
         return ""
 
@@ -591,8 +600,8 @@ class ContactEquations:
                 continue  # a facet between two nodes that touch as well
             notes.append(
                 f"contact pair {pair.name!r}: the constraint at node "
-                f"{self.contact_term.label(pair, constraint)} follows from others "
-                "(supports, ties or other pairs) and was left out"
+                f"{self.contact_term.label(pair, constraint)} is redundant "
+                "(supports, ties or other pairs impose it already) and was left out"
             )
         self.contact_term.told |= self.border.dropped
         return notes

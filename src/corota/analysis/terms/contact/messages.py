@@ -29,26 +29,30 @@ def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
             f"; contact pair {pair.name!r}: worst at node {problem.contact_term.label(pair, i)} "
             f"(gap {gap}, pressure {p:.3g})"
         )
-    nlgeom = [
+    flipping = [
         (int(f[j]), pair, int(j))
         for pair, f in zip(problem.contact_term.pairs, problem.flips, strict=True)
         for j in np.flatnonzero(f > OFTEN)
     ]
-    nlgeom.sort(key=lambda item: -item[0])
-    if nlgeom:
-        names = ", ".join(str(problem.contact_term.label(q, j)) for _, q, j in nlgeom[:5])
+    flipping.sort(key=lambda item: -item[0])
+    if flipping:
+        names = ", ".join(str(problem.contact_term.label(q, j)) for _, q, j in flipping[:5])
         said += (
-            f"; the contact state kept changing at node{'s' if len(nlgeom) > 1 else ''} "
-            f"{names}{', ...' if len(nlgeom) > 5 else ''} of pair {nlgeom[0][1].name!r}"
+            "; the contact state (open, stick or slip) kept changing at "
+            f"node{'s' if len(flipping) > 1 else ''} {names}"
+            f"{', ...' if len(flipping) > 5 else ''} of pair {flipping[0][1].name!r}"
         )
         if problem.sliding > OFTEN:
             said += "; friction does not hold the bodies: they slide"
         if problem.single:
-            said += f"; {problem.single} single changes were tried"
+            said += f"; {problem.single} iterations changed the state of one node at a time"
     if problem.loose:
-        said += f"; where contact does not press, {problem.loose}"
+        said += f"; without contact pressure, {problem.loose}"
     if problem.pivoted:
-        said += f"; {problem.pivoted} corrections took states from the whole linearised problem"
+        said += (
+            f"; {problem.pivoted} iterations chose the states of all contact nodes together "
+            "(by pivoting), which did not converge either"
+        )
     return said
 
 

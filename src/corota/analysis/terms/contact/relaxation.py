@@ -108,14 +108,16 @@ class _Creep:
             out = self._place(0.0)
             if out.converged:
                 out.iterations = self.corrections
-                out.note = f"relaxed to rest in {self.corrections} corrections"
+                out.note = f"found by relaxation in {self.corrections} iterations"
                 return out
             share, tries = LEAST * TIGHTENED**2, tries + 1
             if tries > 2:
                 break
         out.converged = False
         out.iterations = self.corrections
-        out.reason = f"no rest in {self.corrections} corrections of relaxation ({out.reason})"
+        out.reason = (
+            f"relaxation found no equilibrium in {self.corrections} iterations ({out.reason})"
+        )
         return out
 
     def _place(self, share: float) -> Outcome[ContactEvaluation]:

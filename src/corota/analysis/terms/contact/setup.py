@@ -256,7 +256,7 @@ def _check_pair(
     if len(shared):
         raise ModelError(
             f"contact pair {item.name!r}: surfaces {slave.name!r} and {master.name!r} share node "
-            f"{mesh.node_labels[shared[0]]}, so they cannot part there; leave its edges out of "
+            f"{mesh.node_labels[shared[0]]}, so they cannot separate there; leave its edges out of "
             "one of them, give the bodies their own nodes, or use contact of one surface with "
             "itself",
             item.where,
@@ -269,7 +269,7 @@ def _check_pair(
         raise ModelError(
             f"contact pair {item.name!r}: no edge of {slave.name!r} faces any edge of "
             f"{master.name!r} (their outward normals point away from each other); name the sides "
-            "that look at each other",
+            "that face each other",
             item.where,
         )
 

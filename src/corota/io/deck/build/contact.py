@@ -177,7 +177,7 @@ class _Builder:
                     pair.card,
                     pair.row,
                     index,
-                    f"surface {name} cannot touch: {what}",
+                    f"surface {name} cannot be used for contact: {what}",
                     "contact acts on edges: give the surface by elements and faces",
                 )
             return None

@@ -50,7 +50,7 @@ def add_general(deck: Deck, model: Model, sets: Sets) -> None:
         ]
         names += [(EXTERIOR, name, card, row) for name in rigid]
         deck.note(
-            f"{card.where}: general contact: all outer edges touch each other and themselves"
+            f"{card.where}: general contact: all outer edges, each body with itself included"
             + (f", and {', '.join(rigid)}" if rigid else "")
             + "; mortar, finite sliding"
         )
