@@ -48,3 +48,27 @@ def test_a_hook_that_snaps_is_relaxed_to_rest_and_said():
     said = [note for note in results.notes if "moved on to another" in note]
     assert said
     assert "Dynamic follows the motion" in said[0]
+
+
+def test_a_body_that_only_friction_will_hold_finds_its_first_equilibrium():
+    # Round on plane: at the start the weighted gaps are open and nothing holds the ring.
+    row = run(235, limit=60, size=0.5)
+    assert row["end"] == "done", row["why"]
+    assert row["residual"] < 1e-8
+    assert row["balance"] < 1e-8
+
+
+def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():
+    body = ct.mesh.rectangle(1.0, 1.0, 2, 2, "quad4", origin=(0.0, 0.1))
+    top = ct.mesh.add_node(body, 0.5, 2.0, "plate")
+    model = ct.Model(body)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+    floor = ct.RigidCurve.line((-3.0, 0.0), (3.0, 0.0))
+    roof = ct.RigidCurve.line((3.0, 1.5), (-3.0, 1.5), top)
+    model.contact("bottom", floor, name="floor", friction=0.3)
+    model.contact("top", roof, name="roof", friction=0.3)
+    model.fix("plate", x=0.0, y=-0.2, rotation=True)  # the roof stays 0.2 above the body
+    results = ct.solve(model, ct.Static(), threads=1)
+    assert results.frames[-1].scalars["floor: force y"] == pytest.approx(0.0, abs=1e-9)
+    said = [note for note in results.notes if "where that body rests is arbitrary" in note]
+    assert len(said) == 1

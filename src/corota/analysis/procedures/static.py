@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 STALLED = 3
 #: Increments that are tried by relaxation where none that is shorter is found, of the period.
 RELAXED = (1e-3, 1e-2)
+#: And first increments, in which bodies that only contact will hold come to be held.
+FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.3)
 #: Attempt from which an increment is tried by relaxation before it is cut further.
 RESTS = 4
 
@@ -212,7 +214,7 @@ class StaticStepper(NewtonStepper):
 
     def may_relax(self) -> bool:
         """Whether contact is driven by supports alone, so that relaxation may find what follows."""
-        if not (self.system.contact_term.acts and self.control.number):
+        if not self.system.contact_term.acts:
             return False
         return not np.any(self.system.load_rate(self.state.u)[0])
 
@@ -225,9 +227,10 @@ class StaticStepper(NewtonStepper):
         system, state, control = self.system, self.state, self.control
         if not self.may_relax():
             return ""
+        first = self.loop.number == 1 and not control.number
         period = control.step.period
         sizes = [control.size] if early or control.step.fixed_increments else []
-        for size in sizes or [share * period for share in RELAXED]:
+        for size in sizes or [s * period for s in (FIRST_RELAXED if first else RELAXED)]:
             target = min([control.time + size, *(s for s in control.stops if s > control.time)])
             prescribed = system.conditions.prescribed(target, state.u)
             try:
@@ -236,10 +239,20 @@ class StaticStepper(NewtonStepper):
                 )
             except SingularError:
                 continue
+            if outcome.converged and first and not contact.presses:
+                # Bodies that nothing holds float where they were: that is no first equilibrium.
+                system.contact_term.restore()
+                outcome.reason = "no contact has come to bear"
+                continue
             if outcome.converged and early and not contact.near(outcome.u):
                 system.contact_term.restore()
                 return ""
-            if outcome.converged:
+            if outcome.converged and first:
+                state.notes.append(
+                    f"step time {target:.6g}: at the start only contact holds the bodies, and it "
+                    f"did not press yet; this is the first equilibrium ({outcome.note})"
+                )
+            elif outcome.converged:
                 jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
                 if not contact.near(outcome.u):
                     state.notes.append(
@@ -247,6 +260,7 @@ class StaticStepper(NewtonStepper):
                         f"a corner) and the bodies moved on to another, by up to {jump:.3g} "
                         f"({outcome.note}); it may be one of several: Dynamic follows the motion"
                     )
+            if outcome.converged:
                 control.size = max(target - control.time, control.step.smallest_increment)
                 return Attempt(target, outcome, contact)
         return (

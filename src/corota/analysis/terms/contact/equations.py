@@ -60,6 +60,9 @@ FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
 
+#: In place of a constraint, among the remarks that were made: a body floats.
+FLOATS = -1
+
 
 class ContactEquations:
     """A system with contact, for one increment.
@@ -570,6 +573,16 @@ class ContactEquations:
                 )
         return ""
 
+    @property
+    def presses(self) -> bool:
+        """Whether any contact bears a pressure, above rounding, at the end of the increment."""
+        assert self.contact_state is not None
+        none = self.system.scales.nothing
+        return any(
+            not pair.tied and bool((p * terms.area > none).any())
+            for pair, terms, (p, _) in self._pairs(self.contact_state)
+        )
+
     def near(self, u: Floats) -> bool:
         """Whether an equilibrium is near the committed one, as far as its first correction says."""
         moved = float(np.abs((u - self.contact_term.u)[~self.system.is_rotation]).max())
@@ -593,6 +606,12 @@ class ContactEquations:
         assert self.contact_state is not None
         self.contact_term.commit(u, self.contact_state, step_time)
         notes = []
+        if self.loose and not self.presses and FLOATS not in self.contact_term.told:
+            self.contact_term.told.add(FLOATS)
+            notes.append(
+                f"no contact presses, and {self.loose}: where that body rests is arbitrary until "
+                "contact or a support holds it"
+            )
         for number in sorted(self.border.dropped - self.contact_term.told):
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
             constraint = (number - pair.first) % pair.n
