@@ -2,27 +2,33 @@
 
 ``python -m benchmarks.contact_cases`` runs the jobs of :mod:`benchmarks.contact_case_models`, with
 names as arguments those whose name holds one of them (``drop``, ``"ring Q8R"``), and prints a line
-for each and a table by family. ``--quick`` takes three of each family. The exit status is 1 where
-one does not end as it must.
+for each and a table by family. ``--quick`` takes three of each family. ``--keep FILE`` keeps a line
+of JSON for each and does not run again what is there, so that long campaigns go in parts;
+``--write`` puts the tables of all that was run into docs/contact.md and, for the drop tests, into
+docs/impact.md. The exit status is 1 where one does not end as it must.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 import argparse
+import json
 import multiprocessing
 import signal
 import statistics
 import sys
 import time
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import corota as ct
-from benchmarks.common import machine, table
+from benchmarks.common import machine, table, write_between
 from benchmarks.contact_case_models import Case, all_cases
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
 
 
 class _OverTime(Exception):
@@ -62,7 +68,11 @@ def run(case: Case, limit: int) -> dict[str, Any]:
     force = np.array(results.history(case.force))
     out["force"] = float(np.abs(force).max())
     out["balance"] = _balance(model, steps, results)
-    out["energy"] = _energy(results)
+    error = [float(f.scalars.get("energy balance error", 0.0)) for f in results.frames]
+    out["gained"], out["lost"] = max(0.0, *error), max(0.0, *(-e for e in error))
+    out["energy"] = max(out["gained"], out["lost"])
+    if isinstance(steps[0], ct.Dynamic):
+        out["of scheme"] = {**case.options, "last": error[-1]}
     return out
 
 
@@ -92,20 +102,6 @@ def _loads(frame: Any, own: Any) -> Any:
     """Loads at nodes; zeros where frames have none."""
     loads = getattr(frame, "F", None)
     return np.zeros((1, 2)) if loads is None else np.asarray(loads)[own][:, :2]
-
-
-def _energy(results: Any) -> float:
-    """Energy balance over the largest energy, at the worst instant."""
-    values = [abs(f.scalars.get("energy balance", 0.0)) for f in results.frames]
-    largest = max(
-        (
-            abs(f.scalars.get(k, 0.0))
-            for f in results.frames
-            for k in ("kinetic energy", "external work")
-        ),
-        default=0.0,
-    )
-    return max(values) / largest if largest > 0.0 else 0.0
 
 
 def line(row: dict[str, Any]) -> list[str]:
@@ -158,6 +154,45 @@ def summary(rows: list[dict[str, Any]]) -> str:
     return table(head, out)
 
 
+def drops(rows: list[dict[str, Any]]) -> str:
+    """Energy of the drop tests by element, scheme, weight and friction; rows over all periods."""
+    out = []
+    groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
+    for row in rows:
+        if row["name"].startswith("drop "):
+            o = row.get("of scheme") or {}
+            key = (o.get("element"), o.get("scheme"), o.get("weight"), o.get("mu"))
+            groups.setdefault(key, []).append(row)
+    for (element, scheme, weight, mu), mine in groups.items():
+        last = [r.get("of scheme", {}).get("last", 0.0) for r in mine]
+        out.append(
+            [
+                str(element),
+                str(scheme),
+                "yes" if weight else "no",
+                f"{mu:g}",
+                f"{sum(r['ok'] for r in mine)} of {len(mine)}",
+                f"{100.0 * max(r.get('gained', 0.0) for r in mine):.2f}",
+                f"{100.0 * max(r.get('lost', 0.0) for r in mine):.2f}",
+                f"{100.0 * min(last):+.2f} to {100.0 * max(last):+.2f}",
+                f"{statistics.median(r.get('increments', 0) for r in mine):.0f}",
+                f"{statistics.median(r.get('iterations', 0.0) for r in mine):.1f}",
+                str(sum(r.get("cut-backs", 0) for r in mine)),
+            ]
+        )
+    head = ["element", "scheme", "gravity", "friction", "finish", "gained [%]", "lost [%]"]
+    head += ["at the end [%]", "increments", "iterations", "cut-backs"]
+    return table(head, out)
+
+
+def write(rows: list[dict[str, Any]]) -> None:
+    """Put the tables into the docs."""
+    command = f"`python -m benchmarks.contact_cases --write`, {machine()}"
+    write_between(DOCS / "contact.md", "cases", f"{command}\n\n{summary(rows)}")
+    if any(r["name"].startswith("drop ") for r in rows):
+        write_between(DOCS / "impact.md", "drops", f"{command}\n\n{drops(rows)}")
+
+
 def _one(job: tuple[Case, int]) -> dict[str, Any]:
     return run(*job)
 
@@ -170,6 +205,8 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="names only")
     parser.add_argument("--limit", type=int, default=120, help="CPU seconds of one")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--keep", type=Path, help="JSON lines of what was run")
+    parser.add_argument("--write", action="store_true", help="put the tables into the docs")
     args = parser.parse_args()
     chosen = [
         case
@@ -179,17 +216,28 @@ def main() -> int:
     if args.list:
         sys.stdout.write("".join(f"{case.name}\n" for case in chosen))
         return 0
-    rows = []
-    jobs = [(case, args.limit) for case in chosen]
+    kept: list[dict[str, Any]] = []
+    if args.keep and args.keep.exists():
+        kept = [json.loads(text) for text in args.keep.read_text(encoding="utf-8").splitlines()]
+    there = {row["name"] for row in kept}
+    rows = list(kept)
+    jobs = [(case, args.limit) for case in chosen if case.name not in there]
     with multiprocessing.get_context("spawn").Pool(args.jobs, maxtasksperchild=40) as pool:
         for row in pool.imap(_one, jobs):
             rows.append(row)
+            if args.keep:
+                with args.keep.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(row) + "\n")
             sys.stdout.write("  ".join(line(row)) + "\n")
             if not row["ok"]:
                 sys.stdout.write(f"    {row['why'] or 'finished'}\n")
             sys.stdout.flush()
+    order = {case.name: i for i, case in enumerate(all_cases(quick=False))}
+    rows.sort(key=lambda row: order.get(row["name"], len(order)))
     sys.stdout.write(f"\n{machine()}\n\n{table(HEAD, [line(r) for r in rows])}\n")
     sys.stdout.write(f"\n{summary(rows)}\n")
+    if args.write:
+        write(rows)
     return int(not all(r["ok"] for r in rows))
 
 
