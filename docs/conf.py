@@ -23,7 +23,7 @@ extensions = [
     "sphinx_design",
     "sphinx-mathjax-offline",  # equations without a network
 ]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "decks/syntax.md"]
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence"]
 myst_heading_anchors = 4
 autosummary_generate = False
@@ -32,8 +32,11 @@ autodoc_member_order = "bysource"
 napoleon_google_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
+highlight_language = "none"
 html_theme = "pydata_sphinx_theme"
 html_title = "Corota"
+html_static_path = ["generated/static"]
+html_css_files = ["figures.css"]
 html_show_sourcelink = False
 html_theme_options = {
     "show_prev_next": True,

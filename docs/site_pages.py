@@ -8,10 +8,14 @@ import inspect
 import re
 from pathlib import Path
 
-import corota as ct
-from corota.io.deck.keywords import KEYWORDS
+import element_pages
+import keyword_pages
+from svg import STYLE
 
-ROOT = Path(__file__).resolve().parents[1]
+import corota as ct
+
+DOCS = Path(__file__).resolve().parent
+ROOT = DOCS.parent
 #: Sections of the reference, and what of the public names stands in each.
 REFERENCE = {
     "Model": "Model Section Findings Amplitude Output Mesh Cells",
@@ -29,17 +33,25 @@ REFERENCE = {
     "Errors": "CorotaError InputError DeckError ModelError UnsupportedError SingularError "
     "ConvergenceError ResourceError FileError Interrupted Diagnostic",
 }
+#: Pictures of cards have one height.
+CARDS = (
+    ".sd-card-img-top{height:11rem;object-fit:contain;background:#fff;padding:.4rem}"
+    ".bd-article figure{margin:1rem 0}"
+)
 #: Modules of the reference.
 MODULES = ("corota.mesh", "corota.plots", "corota.examples")
-ROW = re.compile(r"^\| (`\*[^|]*?) \| ((?:[^|]|\\\|)*?) ?\| ((?:[^|]|\\\|)*?) ?\|$", re.MULTILINE)
+FIGURE = re.compile(r"!\[([^\]]*)\]\((?:\.\./)*figures/([a-z0-9_]+)\.svg\)")
 
 
 def write(docs: Path) -> None:
     """Write all generated pages below ``docs/generated``."""
     folder = docs / "generated"
-    for part in ("keywords", "gallery", "reference"):
+    for part in ("keywords", "elements", "gallery", "reference", "static"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    _keywords(docs, folder / "keywords")
+    _put(folder / "static" / "figures.css", STYLE + CARDS)
+    for part, pages in (("keywords", keyword_pages.pages), ("elements", element_pages.pages)):
+        for name, text in pages(docs).items():
+            _put(folder / part / name, text)
     _gallery(folder / "gallery")
     _reference(folder / "reference")
     for name in ("CHANGELOG", "CONTRIBUTING"):
@@ -61,59 +73,17 @@ def mend_links(app: object, name: str, source: list[str]) -> None:
     text = re.sub(r"\[([^\]]*)\]\((?:\.\./)+(?:benchmarks|tests|src|rust)[^)]*\)", r"\1", text)
     if name.startswith("generated/"):
         text = re.sub(r"\[([^\]]*)\]\((?!http)[^)]*(?:rust|src|tests)/[^)]*\)", r"\1", text)
+    text = FIGURE.sub(inline_figure, text)
     if name == "verification/index":
         text += "\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
     source[0] = text
 
 
-def keyword_rows(docs: Path) -> dict[str, list[tuple[str, str, str]]]:
-    """Rows of the page of keywords by keyword: names, parameters, remarks."""
-    text = (docs / "keywords.md").read_text(encoding="utf-8")
-    found: dict[str, list[tuple[str, str, str]]] = {}
-    for names, parameters, remarks in ROW.findall(text):
-        for name in re.findall(r"\*([A-Z][A-Z -]*[A-Z])", names):
-            up = re.sub(r"\]\(([a-z-]+\.md)", r"](../../\1", remarks)
-            found.setdefault(name.replace(" ", ""), []).append((name, parameters, up))
-    return found
-
-
-def _keywords(docs: Path, folder: Path) -> None:
-    rows = keyword_rows(docs)
-    decks = {p: p.read_text(encoding="utf-8") for p in sorted((docs / "decks").glob("*.inp"))}
-    pages = []
-    for key, known in KEYWORDS.items():
-        mine = rows.get(key, [])
-        name = mine[0][0] if mine else key
-        page = [f"# *{name}", ""]
-        place = {"model": "before the first step", "step": "in a step", "any": "anywhere"}
-        page += [f"Stands {place[known.place]}.", ""]
-        for _, parameters, remarks in mine:
-            page += [f"**Parameters**: {parameters or 'none'}", "", f"{remarks}.", ""]
-        if not mine:
-            page += ["See [the page of all keywords](../../keywords.md).", ""]
-        if known.ignored:
-            page += [
-                "Accepted without effect, each with a note: "
-                + ", ".join(f"`{w}`" for w in known.ignored.split())
-                + " (written without blanks).",
-                "",
-            ]
-        page += ["What CalculiX and Abaqus do otherwise is said above and in"]
-        page += ["[the rules of all decks](../../keywords.md#rules).", ""]
-        pattern = re.compile(rf"^\*{' ?'.join(name)}\s*(,|$)".replace("  ?", " ?"), re.MULTILINE)
-        for path, text in decks.items():
-            if pattern.search(text):
-                page += ["## A deck that runs", "", f"```\n{text.rstrip()}\n```", ""]
-                page += [f"`corota run {path.name}`", ""]
-                break
-        _put(folder / f"{key.lower()}.md", "\n".join(page))
-        pages.append((name, key.lower()))
-    toc = "\n".join(f"{k}" for _, k in sorted(pages))
-    _put(
-        folder / "index.md",
-        "# Keywords, a page each\n\nThe [rules of all decks](../../keywords.md) have one page.\n\n"
-        f"```{{toctree}}\n:maxdepth: 1\n\n{toc}\n```\n",
-    )
+def inline_figure(match: re.Match[str]) -> str:
+    """A figure as part of the page, so that it follows the page's light or dark colors."""
+    figure = (DOCS / "figures" / f"{match.group(2)}.svg").read_text(encoding="utf-8")
+    figure = re.sub(r"<style>.*?</style>\n", "", figure, flags=re.DOTALL)
+    return f"```{{raw}} html\n<figure>\n{figure}</figure>\n```"
 
 
 def _gallery(folder: Path) -> None:

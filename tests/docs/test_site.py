@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import re
 import sys
 from pathlib import Path
@@ -14,6 +14,7 @@ import pytest
 import corota as ct
 from corota.cli import main
 from corota.io.deck.keywords import KEYWORDS
+from corota.model import elements
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 DECKS = sorted((DOCS / "decks").glob("*.inp"))
@@ -21,13 +22,14 @@ DECKS = sorted((DOCS / "decks").glob("*.inp"))
 
 @pytest.fixture(scope="module")
 def site() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("site_pages", DOCS / "site_pages.py")
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["site_pages"] = module
-    spec.loader.exec_module(module)
-    return module
+    return script("site_pages")
+
+
+def script(name: str) -> ModuleType:
+    """Import a module of the folder of documents."""
+    if str(DOCS) not in sys.path:
+        sys.path.insert(0, str(DOCS))
+    return importlib.import_module(name)
 
 
 def test_every_public_name_is_in_the_reference(site: ModuleType) -> None:
@@ -37,12 +39,38 @@ def test_every_public_name_is_in_the_reference(site: ModuleType) -> None:
     assert {*listed, *modules, "LOCAL_STRAINS"} == set(ct.__all__)
 
 
-def test_every_keyword_has_its_page(site: ModuleType, tmp_path: Path) -> None:
-    site._keywords(DOCS, tmp_path)
-    assert {p.stem for p in tmp_path.glob("*.md")} == {"index", *(k.lower() for k in KEYWORDS)}
-    static = (tmp_path / "static.md").read_text(encoding="utf-8")
-    assert "**Parameters**" in static
-    assert "corota run" in static
+def test_every_keyword_has_its_page() -> None:
+    found = script("keyword_pages").pages(DOCS)
+    assert set(found) == {"index.md", *(f"{k.lower()}.md" for k in KEYWORDS)}
+
+
+@pytest.mark.parametrize("key", KEYWORDS)
+def test_page_of_a_keyword_is_whole(key: str) -> None:
+    pages = script("keyword_pages")
+    name, syntax, difference = pages.notes(DOCS)[key]
+    text = pages.page(key, DOCS)
+    assert f"\n*{name}" in syntax
+    assert difference
+    assert pages.rows(DOCS)[key]
+    assert "## A deck that runs" in text
+    told = re.sub(r"[^A-Z0-9-]", "", text.split("## What differs")[0])
+    for parameter in KEYWORDS[key].parameters.split():
+        assert parameter in told, f"*{name} does not tell of its parameter {parameter}"
+
+
+def test_notes_are_of_known_keywords() -> None:
+    assert set(script("keyword_pages").notes(DOCS)) == set(KEYWORDS)
+
+
+@pytest.mark.parametrize("name", elements.names())
+def test_deck_of_an_element_gives_the_stress_it_says(name: str, tmp_path: Path) -> None:
+    pages = script("element_pages")
+    assert pages.theory_rows(DOCS)[name][0]
+    deck = tmp_path / "part.inp"
+    deck.write_text(pages.deck(name), encoding="utf-8")
+    stress = ct.solve(ct.read(deck)).frames[-1].fields[0].values["S"]
+    assert stress[..., 0] == pytest.approx(100.0, rel=1e-12)
+    assert stress[..., 1:] == pytest.approx(0.0, abs=1e-10)
 
 
 @pytest.mark.parametrize("deck", DECKS, ids=lambda p: p.name)
@@ -56,10 +84,13 @@ def test_links_of_the_repository_lead_into_the_site(site: ModuleType) -> None:
     assert text[0] == "[x](generated/gallery/gripper.md) [y](generated/contributing.md#z) w"
 
 
-def test_every_page_is_in_the_index() -> None:
-    index = (DOCS / "index.md").read_text(encoding="utf-8")
-    fenced = {
-        w for block in re.findall(r"```{toctree}(.*?)```", index, re.DOTALL) for w in block.split()
-    }
-    for page in DOCS.glob("*.md"):
-        assert page.stem in fenced or page.stem == "index", page.name
+def test_every_page_is_in_the_contents() -> None:
+    listed = set()
+    for page in ("index", "begin", "howto/index", "topics", "reference"):
+        path = DOCS / f"{page}.md"
+        for block in re.findall(
+            r"```{toctree}(.*?)```", path.read_text(encoding="utf-8"), re.DOTALL
+        ):
+            listed |= {(path.parent / word).resolve() for word in block.split() if word[0] != ":"}
+    for page in [*DOCS.glob("*.md"), *DOCS.glob("howto/*.md")]:
+        assert page.with_suffix("") in listed or page == DOCS / "index.md", page.name

@@ -87,6 +87,8 @@ CASES = [
     ("*STEP, NLGEOM\n", "", 19, 1, "between *STEP and *END STEP"),
     ("*CLOAD", "*NODE\n9, 0., 0.\n*CLOAD", 22, 1, "inside a step"),
     ("*CLOAD", "*NODE PRINT, NSET=nal\nU\n*CLOAD", 22, 1, "no node set named 'nal'"),
+    ("*CLOAD", "*NODE PRINT, ELSET=eall\nU\n*CLOAD", 22, 14, "unknown parameter ELSET"),
+    ("*CLOAD", "*EL PRINT, NSET=nall\nS\n*CLOAD", 22, 12, "unknown parameter NSET"),
 ]
 
 

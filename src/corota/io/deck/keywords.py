@@ -62,8 +62,8 @@ def parameter(deck: Deck, card: Card) -> None:
     """``*PARAMETER``: its values are in the text already."""
 
 
-_PRINT = "NSET ELSET TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
-_FILE = "NSET ELSET FREQUENCY FREQUENCYF TIMEPOINTS"
+_PRINT = "TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
+_FILE = "FREQUENCY FREQUENCYF TIMEPOINTS"
 _FILE_IGNORED = (
     "GLOBAL OUTPUT LASTITERATIONS CONTACTELEMENTS OUTPUTALL POSITION DIRECTIONS SECTIONFORCES "
     "VARIABLE SUMMARY"
@@ -232,13 +232,11 @@ KEYWORDS: dict[str, Keyword] = {
         "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
         "SUMMARY NSET",
     ),
-    "CONTACTFILE": Keyword(
-        output.contact_file, "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER", "NSET"
-    ),
+    "CONTACTFILE": Keyword(output.contact_file, _FILE, "NSET SLAVE MASTER"),
     "CONTACTOUTPUT": Keyword(
         output.contact_file,
-        "FREQUENCY FREQUENCYF TIMEPOINTS SLAVE MASTER",
-        "NSET VARIABLE CPSET SURFACE",
+        _FILE,
+        "NSET SLAVE MASTER VARIABLE CPSET SURFACE",
     ),
     "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"),
     "CLOAD": Keyword(step.cload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
@@ -247,12 +245,12 @@ KEYWORDS: dict[str, Keyword] = {
         step.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
     ),
     "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
-    "NODEPRINT": Keyword(output.node_print, f"{_PRINT} GLOBAL", "SUMMARY"),
-    "ELPRINT": Keyword(output.el_print, _PRINT, "GLOBAL POSITION SUMMARY"),
-    "NODEFILE": Keyword(output.node_file, _FILE, _FILE_IGNORED),
-    "NODEOUTPUT": Keyword(output.node_file, _FILE, _FILE_IGNORED),
-    "ELFILE": Keyword(output.el_file, _FILE, _FILE_IGNORED),
-    "ELEMENTOUTPUT": Keyword(output.el_file, _FILE, _FILE_IGNORED),
+    "NODEPRINT": Keyword(output.node_print, f"NSET {_PRINT} GLOBAL", "SUMMARY"),
+    "ELPRINT": Keyword(output.el_print, f"ELSET {_PRINT}", "GLOBAL POSITION SUMMARY"),
+    "NODEFILE": Keyword(output.node_file, f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
+    "NODEOUTPUT": Keyword(output.node_file, f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
+    "ELFILE": Keyword(output.el_file, f"NSET ELSET {_FILE}", _FILE_IGNORED),
+    "ELEMENTOUTPUT": Keyword(output.el_file, f"NSET ELSET {_FILE}", _FILE_IGNORED),
     "RESTART": Keyword(output.restart, "WRITE READ FREQUENCY STEP INC ENDSTEP JOB", "OVERLAY"),
     "OUTPUT": Keyword(
         output.output,
