@@ -10,6 +10,7 @@ is accepted: a cut-back forgets the attempt.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
@@ -65,7 +66,7 @@ OTHER_CONTROL = 6
 LEFT = 0.05
 
 
-class PathTracer:
+class PathTracer(ABC):
     """A path from a starting point; iterate to get its increments.
 
     Parameters
@@ -148,9 +149,9 @@ class PathTracer:
             if found.last:
                 return
 
+    @abstractmethod
     def take_branch(self, critical: Critical) -> Increment:
         """The first increment on another branch."""
-        raise NotImplementedError
 
     def next(self) -> Increment:
         """The next increment; the one before was not the last."""
