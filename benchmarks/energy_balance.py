@@ -191,6 +191,7 @@ def main(names: list[str]) -> None:
         note = play(name)
         runs = [(abs(run.error), i) for i, run in enumerate(watch.found) if run is not None]
         if not runs:
+            print(row.format(name, 0, "", "", note, "solves no step of its own"), flush=True)
             continue
         worst, number = max(runs)
         above = sum(error > SMALL for error, _ in runs)
