@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 
+import h5py
 import numpy as np
 import pytest
 
@@ -12,6 +13,8 @@ import corota as ct
 from benchmarks.restart_cases import DECKS, MODELS
 from corota.cli import main
 from corota.io import job
+from corota.io.checksum import fletcher32
+from corota.io.result_reader import read_results
 
 DECK = DECKS["large rotations"]()
 
@@ -154,3 +157,47 @@ def test_frames_that_wait_for_the_disk_are_bounded(tmp_path, monkeypatch):
     )
     assert max(waiting) <= 100_000 + 2 * one
     assert len(waiting) == len(results.frames)
+
+
+def numbers(path):
+    """All numbers of a result file as bytes."""
+    with read_results(path) as results:
+        found = [results.mesh.points.tobytes(), results.mesh.node_labels.tobytes()]
+        for frame in results.frames:
+            found += [frame.U.tobytes(), frame.RF.tobytes(), str(frame.scalars).encode()]
+            found += [values.tobytes() for values in frame.averages.values()]
+    return found
+
+
+@pytest.mark.parametrize("name", ["newmark", "bump"])
+def test_damaged_frames_are_refused_and_never_read_as_others(tmp_path, name):
+    """Every chunk and every header has a checksum; arrays of `bump` are chunks of their own."""
+    ct.solve(MODELS[name](), observers=[ct.JobFiles(tmp_path, "job")], threads=1)
+    path = tmp_path / "job.vtkhdf"
+    whole = path.read_bytes()
+    right = numbers(path)
+    rng = np.random.default_rng(3)
+    refused = 0
+    for _ in range(15):
+        data = bytearray(whole)
+        for at in rng.integers(len(data), size=8):
+            data[at] ^= 1 << int(rng.integers(8))
+        path.write_bytes(data)
+        try:
+            assert numbers(path) == right
+        except ct.CorotaError:
+            refused += 1
+    assert refused >= 8
+
+
+@pytest.mark.parametrize("length", [1, 2, 511, 512, 514, 100_001, 2 * 65535])
+@pytest.mark.parametrize("fill", [None, 0, 255])
+def test_checksums_are_those_of_hdf5(tmp_path, length, fill):
+    rng = np.random.default_rng(length)
+    data = rng.integers(256, size=length) if fill is None else np.full(length, fill)
+    with h5py.File(tmp_path / "x.h5", "w") as file:
+        chunk = {"chunks": (length,), "fletcher32": True}
+        made = file.create_dataset("x", data=data.astype(np.uint8), **chunk)
+        file.flush()
+        _, raw = made.id.read_direct_chunk((0,))
+    assert fletcher32(raw[:-4]) == int.from_bytes(raw[-4:], "little")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.io.checksum import store
 from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:
@@ -19,13 +20,15 @@ def store_contacts(group: Any, model: Model) -> None:
         own = group.create_group(str(number))
         own.attrs["name"] = pair.name
         sets = model.mesh.edge_sets
-        own["slave"] = sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
+        slave = sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
+        store(own, "slave", slave)
         if isinstance(pair.master, RigidCurve):
-            own["segments"] = pair.master.segments
+            store(own, "segments", pair.master.segments)
             if isinstance(pair.master.reference, int | np.integer):
                 own.attrs["reference"] = int(pair.master.reference)
         else:
-            own["master"] = sets[pair.master] if isinstance(pair.master, str) else pair.master
+            master = sets[pair.master] if isinstance(pair.master, str) else pair.master
+            store(own, "master", master)
 
 
 def contacts_of_results(file: Any) -> list[ContactPair]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.io.checksum import store
 from corota.model.description import describe
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ def store_description(group: Any, model: Model, steps: Sequence[Step]) -> None:
     """Write :func:`corota.model.description.describe` as JSON into an HDF5 group."""
     text = json.dumps(describe(model, steps), separators=(",", ":"))
     data = np.frombuffer(text.encode(), np.uint8)
-    group.create_dataset(NAME, data=data, compression="gzip")
+    store(group, NAME, data, level=4)
 
 
 def description_of_results(group: Any) -> dict[str, Any]:

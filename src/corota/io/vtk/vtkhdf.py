@@ -13,6 +13,7 @@ import numpy as np
 
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
+from corota.io.checksum import fletcher32, store
 from corota.io.contacts import store_contacts
 from corota.io.description import store_description
 from corota.io.file_options import FileOptions, wanted
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 SMALL = 4096
 #: Bytes of a chunk, at most; up to here a chunk is one array of one frame.
 LARGEST = 1 << 30
+#: Versions of the file format: headers with checksums, and no mark in files that are being written.
+FORMAT = ("v108", "v108")
 _REACTION = ("reaction", "reaction moment")
 _EXTERNAL = ("external force", "external moment")
 #: The array that other programs need to turn components back into the frames of elements.
@@ -203,7 +206,7 @@ class VtkhdfWriter:
         try:
             # A small chunk cache: every chunk is written once and never read back.
             mode = "w" if resume is None else "r+"
-            self._file = h5py.File(self._twin, mode, rdcc_nbytes=1 << 20)
+            self._file = h5py.File(self._twin, mode, rdcc_nbytes=1 << 20, libver=FORMAT)
         except OSError as error:
             raise FileError(f"{path}: cannot write: {error}") from None
         self._taken: list[tuple[float, dict[str, dict[str, Floats]]]] = []
@@ -285,10 +288,10 @@ class VtkhdfWriter:
         mesh, root, grid = self.model.mesh, self._root, self._grid
         root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
         root.attrs["Type"] = np.bytes_("UnstructuredGrid")
-        root["NumberOfPoints"] = np.array([len(grid.points)])
-        root["NumberOfCells"] = np.array([len(grid.types)])
-        root["NumberOfConnectivityIds"] = np.array([len(grid.chain)])
         static = {
+            "NumberOfPoints": np.array([len(grid.points)]),
+            "NumberOfCells": np.array([len(grid.types)]),
+            "NumberOfConnectivityIds": np.array([len(grid.chain)]),
             "Points": grid.points,
             "Connectivity": grid.chain,
             "Offsets": grid.ends,
@@ -302,9 +305,9 @@ class VtkhdfWriter:
         steps.attrs["NSteps"] = 0
         for name in ("Values", "PartOffsets", "NumberOfParts", "PointOffsets"):
             number = "f8" if name == "Values" else "i8"
-            steps.create_dataset(name, (0,), number, maxshape=(None,), chunks=(64,))
+            self._growing(steps, name, number)
         for name in ("CellOffsets", "ConnectivityIdOffsets"):
-            steps.create_dataset(name, (0, 1), np.int64, maxshape=(None, 1), chunks=(64, 1))
+            self._growing(steps, name, "i8", (1,))
         for name in ("PointDataOffsets", "CellDataOffsets"):
             steps.create_group(name)
         own = self._file.create_group("corota")
@@ -314,12 +317,12 @@ class VtkhdfWriter:
         own.attrs["units"] = str(self.model.unit_system)
         own.attrs["averaging"] = vf.AVERAGING
         own.attrs["tensors"] = "order xx yy zz xy yz xz; shear strain is the angle (engineering)"
-        own["node labels"] = mesh.node_labels
-        own["cell labels"] = mesh.cell_labels
+        store(own, "node labels", mesh.node_labels)
+        store(own, "cell labels", mesh.cell_labels)
         for kind in ("node", "cell", "edge"):
             group = own.create_group(f"{kind} sets")
             for name, members in getattr(mesh, f"{kind}_sets").items():
-                group[name.replace("/", "|")] = members
+                store(group, name.replace("/", "|"), members)
         store_contacts(own.create_group("contacts"), self.model)
         store_description(own, self.model, self._steps)
         own.create_group("frames")
@@ -332,12 +335,12 @@ class VtkhdfWriter:
 
     def _once(self, group: Any, name: str, values: NDArray[Any]) -> None:
         """Write an array that does not change, packed if it is large."""
-        level = self._options.compression
-        large = values.nbytes >= SMALL and level > 0
-        packed = {"compression": "gzip", "compression_opts": level, "shuffle": True}
-        group.create_dataset(
-            name, data=values, **(packed | {"chunks": values.shape} if large else {})
-        )
+        store(group, name, values, self._options.compression if values.nbytes >= SMALL else 0)
+
+    def _growing(self, group: Any, name: str, number: str, rest: tuple[int, ...] = ()) -> None:
+        """Make a data set of one row a frame."""
+        shape = {"maxshape": (None, *rest), "chunks": (64, *rest)}
+        group.create_dataset(name, (0, *rest), number, fletcher32=True, **shape)
 
     def add(self, frame: Frame) -> None:
         """Take a frame; :meth:`commit` brings all taken frames to the disk.
@@ -400,7 +403,7 @@ class VtkhdfWriter:
 
     def _nodes_of_section(self, group: int, nodes: Ints) -> None:
         if _section(group) not in self._file:
-            self._file.create_group(_section(group))["nodes"] = nodes
+            store(self._file.create_group(_section(group)), "nodes", nodes)
 
     def _blocks_of_file(self, frame: Frame) -> None:
         """Tell which cells have which variables, of a frame that was read from a file."""
@@ -415,8 +418,8 @@ class VtkhdfWriter:
             group.attrs["variables"] = " ".join(
                 n for n, has in zip(names, kind, strict=True) if has
             )
-            group["cells"] = np.flatnonzero(which.ravel() == number)
-            group["shape functions"] = np.zeros((0, 0))
+            store(group, "cells", np.flatnonzero(which.ravel() == number))
+            store(group, "shape functions", np.zeros((0, 0)))
 
     def _block(self, number: int, block: PointFields) -> str:
         """Group of a block of points, made at its first frame."""
@@ -425,15 +428,16 @@ class VtkhdfWriter:
             group = self._file.create_group(name)
             group.attrs["element"] = block.element
             group.attrs["variables"] = " ".join(sorted(block.values))
-            group["cells"], group["shape functions"] = block.cells, block.shape
+            store(group, "cells", block.cells)
+            store(group, "shape functions", block.shape)
             if self._options.points:
-                group["reference volume"] = block.volume
+                store(group, "reference volume", block.volume)
         return name
 
     def _offsets(self, kind: str, name: str) -> Any:
         group = self._root["Steps"][f"{kind}Offsets"]
         if name not in group:
-            group.create_dataset(name, (0,), np.int64, maxshape=(None,), chunks=(64,))
+            self._growing(group, name, "i8")
         return group[name]
 
     def _store(self) -> None:
@@ -491,6 +495,7 @@ class VtkhdfWriter:
                 maxshape=(None, *rest),
                 chunks=(max(1, size), *rest),
                 fillvalue=_missing(place, name),
+                fletcher32=True,
                 **(packed if level and rows * row >= SMALL else {}),
             )
             unit = self.model.unit_system.label(vf.dimension_of_array(name))
@@ -518,6 +523,7 @@ class VtkhdfWriter:
             data = np.ascontiguousarray(values, series.dtype)
             planes = data.view(np.uint8).reshape(-1, data.itemsize).T
             chunk = packed([plane.tobytes() for plane in planes], self._options.compression)
+            chunk += fletcher32(chunk).to_bytes(4, "little")
             series.id.write_direct_chunk((number * rows, *rest), chunk)
 
     def commit(self) -> None:
