@@ -8,7 +8,7 @@ core as functions of the nodal positions alone, with exact first and second deri
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Term
 from corota.analysis.terms.contact.side import check_side
 from corota.errors import ModelError, UnsupportedError
 from corota.model.contact import ContactPair, Tie
+from corota.model.schemes import SCHEMES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,6 +50,14 @@ class ContactState:
     multipliers : ndarray, shape (n_multipliers,)
     damping : ndarray, shape (n_dofs,), or None
         Stabilising stiffness of this increment.
+    of_end : ndarray, shape (n_dofs,), or None
+        Force at the end, where a scheme weighs that of pressure laws between both ends.
+    states : list of ndarray
+        Of the constraints, once committed.
+    acting : list of Terms
+        Along whose gradients the forces acted, once committed.
+    where : ndarray, shape (n_nodes, 3)
+        Positions at which they did, once committed.
     """
 
     terms: list[Terms]
@@ -56,7 +65,15 @@ class ContactState:
     size: Floats
     multipliers: Floats
     damping: Floats | None = None
+    of_end: Floats | None = None
     states: list[NDArray[np.int8]] = field(default_factory=list)
+    acting: list[Terms] = field(default_factory=list)
+    where: Floats | None = None
+
+    @property
+    def force_at_end(self) -> Floats:
+        """Of the pairs on the nodes at the end, shape (n_dofs,)."""
+        return self.force if self.of_end is None else self.of_end
 
 
 class ContactTerm:
@@ -101,6 +118,9 @@ class ContactTerm:
         self.damped = self.nodal = np.zeros(0)
         #: Whether stabilising damping acts; it does not on paths, whose time is none.
         self.damps, self.persistent = True, False
+        #: Weight of the end of an increment in the forces of pressure laws, and their force at its
+        #: start.
+        self.law_share, self.law_force = 1.0, np.zeros(0)
         self.damping_work = 0.0
         self._damping_force = np.zeros(0)
         # Dof of each variable 3 node + component, -1 where there is none.
@@ -128,7 +148,7 @@ class ContactTerm:
     @property
     def force(self) -> Floats:
         """Of the pairs on the nodes in the committed state, shape (n_dofs,)."""
-        return np.zeros(self.system.n_dofs) if self.at is None else self.at.force
+        return np.zeros(self.system.n_dofs) if self.at is None else self.at.force_at_end
 
     def massless_nodes(self) -> NDArray[np.bool_]:
         """Slave nodes of contact, shape (n_nodes,): others may carry their mass."""
@@ -173,14 +193,19 @@ class ContactTerm:
         self.damps = step.procedure == "static"
         stays = self.damps and getattr(step, "path", None) is None
         self.first = min(step.first_increment, step.period) if stays else 0.0
-        self.persistent = getattr(step, "scheme", "") == "energy_momentum"
+        scheme = getattr(step, "scheme", "")
+        self.persistent = scheme == "energy_momentum"
         if self.number == 1:
             self._start()
         x = self.positions(self.u)
         for pair in self.pairs:
             pair.fixed = pair.start = None
-            if self.persistent and not pair.tied and pair.law is None:
+            if self.persistent and not pair.tied:
                 pair.persist(pair.evaluate(x, x, self.system.nlgeom))
+        self.law_share = 1.0
+        if scheme in SCHEMES:
+            self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
+        self._keep_law_force()
 
     def _start(self) -> None:
         """Look at the gaps of the start; report, adjust or note what to ramp."""
@@ -289,14 +314,42 @@ class ContactTerm:
                 self._ramp(pair, step_time)
                 terms = pair.evaluate(x, old, system.nlgeom)
             found.append(terms)
-            part = p[terms.constraint, None] * terms.gap_gradient
+            acting = terms.acting
+            share = self.share(pair)
+            part = share * p[acting.constraint, None] * acting.gap_gradient
             if pair.two:
-                part = part + q[terms.constraint, None] * terms.slip_gradient
-            where = self.dofs(terms.variables)
+                part = part + q[acting.constraint, None] * acting.slip_gradient
+            where = self.dofs(acting.variables)
             np.add.at(force, where, part)
             np.add.at(size, where, np.abs(part))
         damping = self._damping(step_time)
-        return ContactState(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
+        state = ContactState(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
+        if len(self.law_force):
+            now = self._forces_of_laws(found, multipliers)
+            state.of_end = state.force + (1.0 - self.law_share) * now
+            state.force = state.force + (1.0 - self.law_share) * self.law_force
+        return state
+
+    def share(self, pair: Pair) -> float:
+        """Weight of the tractions at the end in the equation of an increment."""
+        return 1.0 if pair.law is None else self.law_share
+
+    def _forces_of_laws(self, terms: list[Terms], multipliers: Floats) -> Floats:
+        """Pressures of the pairs with a law on the nodes, shape (n_dofs,)."""
+        force = np.zeros(self.system.n_dofs + 1)
+        for pair, own, (p, _) in zip(self.pairs, terms, self.parts(multipliers), strict=True):
+            if pair.law is not None:
+                part = p[own.constraint, None] * own.gap_gradient
+                np.add.at(force, self.dofs(own.variables), part)
+        return self.system.at_nodes(force[:-1])
+
+    def _keep_law_force(self) -> None:
+        """Keep the forces of pressure laws that the next increment begins with."""
+        self.law_force = np.zeros(0)
+        if self.law_share != 1.0 and any(pair.law is not None for pair in self.pairs):
+            self.law_force = np.zeros(self.system.n_dofs)
+            if self.at is not None:
+                self.law_force = self._forces_of_laws(self.at.terms, self.committed)
 
     def _ramp(self, pair: Pair, step_time: float) -> None:
         item = pair.item
@@ -361,6 +414,7 @@ class ContactTerm:
             self._damping_force = contact_state.damping * (u - self.u)
             mean = self._damping_force + (before if len(before) else 0.0)
             self.damping_work += 0.5 * float(mean @ (u - self.u))
+        contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
         contact_state.states = [
             pair.states(terms, p, q)
@@ -374,11 +428,13 @@ class ContactTerm:
         ):
             for part in tractions if not pair.tied else ():
                 part[state == OPEN] = 0.0
+        contact_state.acting = [terms.acting for terms in contact_state.terms]
         for i, (pair, terms) in enumerate(zip(self.pairs, contact_state.terms, strict=True)):
             if pair.start is not None:
                 pair.persist(terms)
-            contact_state.terms[i] = terms.bare or terms
+            contact_state.terms[i] = replace(terms.bare or terms, between=None)
         self.at = contact_state
+        self._keep_law_force()
 
     def restore(self) -> None:
         """Go back to the committed state."""

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.pair import Terms
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -458,25 +459,52 @@ class ContactEquations:
             dp, rp, dq, rq, ratio = pair.rows(terms, state, p, q, self.slip_directions[first])
             diagonal[first : first + n], rhs[first : first + n] = dp, rp
             expected += int((state != OPEN).sum())
-            where = contact_term.dofs(terms.variables)
-            k = terms.constraint
-            closed = state != OPEN
-            rows.append(border(where, first + k, -terms.gap_gradient, closed[k]))
+            closed, share = state != OPEN, contact_term.share(pair)
+            if share != 1.0:
+                diagonal[first : first + n] *= share
+                rhs[first : first + n] *= share
+            acting = terms.acting
+            to_rows, to_acting = (contact_term.dofs(t.variables) for t in (terms, acting))
+
+            def columns(
+                name: str,
+                start: int,
+                chosen: NDArray[np.bool_],
+                terms: Terms = terms,
+                acting: Terms = acting,
+                to_rows: Ints = to_rows,
+                to_acting: Ints = to_acting,
+                share: float = 1.0,
+            ) -> None:
+                """A gradient at the end in rows and columns; forces may act along another."""
+                k, own = terms.constraint, share * getattr(terms, name)
+                rows.append(border(to_rows, start + k, -own, chosen[k]))
+                if acting is not terms:
+                    follow.append(border(to_rows, start + k, own, chosen[k]))
+                    k, own = acting.constraint, share * getattr(acting, name)
+                    follow.append(border(to_acting, start + k, -own, chosen[k]))
+
+            columns("gap_gradient", first, closed, share=share)
+            k = acting.constraint
             # Tractions that are known after the correction go to the right-hand side.
-            known = np.where(closed, 0.0, -p)
-            part = known[k, None] * terms.gap_gradient
+            known = np.where(closed, 0.0, -share * p)
+            part = known[k, None] * acting.gap_gradient
             if pair.two:
                 second = first + n
                 diagonal[second : second + n], rhs[second : second + n] = dq, rq
                 expected += int((state == CLOSED).sum())
-                rows.append(border(where, second + k, -terms.slip_gradient, state[k] == CLOSED))
+                columns("slip_gradient", second, state == CLOSED)
                 known = np.where(state == CLOSED, 0.0, ratio * p - q)
-                part += known[k, None] * terms.slip_gradient
-                slope = -ratio[k, None] * terms.slip_gradient
-                follow.append(border(where, first + k, slope, state[k] == SLIPPING))
-            np.add.at(force, where, part)
+                part += known[k, None] * acting.slip_gradient
+                slope = -ratio[k, None] * acting.slip_gradient
+                follow.append(border(to_acting, first + k, slope, state[k] == SLIPPING))
+            np.add.at(force, to_acting, part)
             if self.system.nlgeom and (p.any() or q.any()):
-                geometric_stiffness.append(self._geometric_stiffness(pair, p, q))
+                # Half way an end moves by half.
+                half = 1.0 if acting is terms else 0.5
+                geometric_stiffness.append(
+                    self._geometric_stiffness(pair, half * share * p, half * q)
+                )
             near.append(self._near(pair, terms))
         coupling = Coupling(
             Triplets.join(geometric_stiffness),
@@ -594,7 +622,7 @@ class ContactEquations:
     def force(self) -> Floats:
         """Of contact on the nodes at the end of the increment, shape (n_dofs,)."""
         assert self.contact_state is not None
-        return self.contact_state.force
+        return self.contact_state.force_at_end
 
     def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
         """See :func:`corota.analysis.terms.contact.impact.impact_error`."""

@@ -40,7 +40,7 @@ def impact_error(
     if contact_term.persistent:
         depth = 0.0
         for pair, terms in zip(contact_term.pairs, contact_state.terms, strict=True):
-            if pair.start is not None and pair.n:
+            if pair.start is not None and pair.law is None and pair.n:
                 deeper = np.minimum(pair.begun()[0], 0.0) - (terms.bare or terms).gap
                 edge = float(pair.slave.length.mean())
                 depth = max(depth, float((deeper / pair.full).max()) / edge)

@@ -41,13 +41,14 @@ def output(
     each = {p.name: np.zeros((n, 5)) for p in contact_term.pairs if several and not p.tied}
     contact_state = contact_term.at
     friction = law = 0.0
-    x = contact_term.positions(contact_term.u)
     for k, (pair, (p, q)) in enumerate(
         zip(contact_term.pairs, contact_term.parts(contact_term.committed), strict=True)
     ):
         if contact_state is None:
             continue
         terms, state = contact_state.terms[k], contact_state.states[k]
+        acting, x = contact_state.acting[k], contact_state.where
+        assert x is not None
         seen = terms.area > COVERED * pair.full
         gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), pair.reach)
         # Positive when the slave is pulled along its own edges' direction.
@@ -57,7 +58,7 @@ def output(
         _spread(values, pair, rows, seen)
         if pair.name in each:
             _spread(each[pair.name], pair, rows, seen)
-        fx, fy, moment = resultant(pair, terms, p, q, x)
+        fx, fy, moment = resultant(pair, acting, p, q, x)
         sums[f"{pair.name}: force x"] = fx
         sums[f"{pair.name}: force y"] = fy
         sums[f"{pair.name}: moment"] = moment
@@ -66,7 +67,7 @@ def output(
             np.maximum.at(closed, pair.nodes, np.where(state != OPEN, terms.area, 0.0))
             sums[f"{pair.name}: area"] = float(closed.sum())
         if pair.friction:
-            shear = resultant(pair, terms, np.zeros_like(p), q, x)
+            shear = resultant(pair, acting, np.zeros_like(p), q, x)
             for name, value in zip(("x", "y", "moment"), shear, strict=True):
                 sums[f"{pair.name}: friction {name}"] = value
         friction += pair.friction_work

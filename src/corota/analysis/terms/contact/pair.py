@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.terms.contact.discrete_gradient import discrete_gradient, mean_pressure
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.model.contact import ContactPair, Tie
 
@@ -45,6 +46,8 @@ class Terms:
         Gap and area of each node before neighbours share constraints.
     bare : Terms or None
         Gaps and areas as they are, where a condition on rates has changed them.
+    between : Terms or None
+        Gradients along which tractions act that are those of an increment, not of its end.
     """
 
     gap: Floats
@@ -57,6 +60,12 @@ class Terms:
     slip_gradient: Floats
     parts: tuple[Floats, Floats]
     bare: Terms | None = None
+    between: Terms | None = None
+
+    @property
+    def acting(self) -> Terms:
+        """Terms along whose gradients the tractions act."""
+        return self if self.between is None else self.between
 
 
 class Pair:
@@ -116,6 +125,7 @@ class Pair:
         self.friction_work = 0.0
         self.seen = False  # whether the surfaces were ever near each other
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
+        self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
         self.noise = 32.0 * EPS * (system.length + far)  # gaps that are rounding [length]
         self.name = item.name
@@ -126,15 +136,25 @@ class Pair:
         """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3)."""
         if not nlgeom:
             return self._since(self._linear(x, old))
+        before = old if self.friction else None
+        middle = None
+        if self.start is not None and x is not old:
+            x_middle = 0.5 * (x + old)
+            self.core.search(x_middle)
+            middle = self.core.evaluate(x_middle, before)
         self.core.search(x)
-        return self._since(self._read(self.core.evaluate(x, old if self.friction else None)))
+        terms = self._read(self.core.evaluate(x, before))
+        if middle is not None:
+            terms.between = discrete_gradient(self, terms, self._shared(middle), x, old)
+        return self._since(terms)
 
     def _since(self, terms: Terms) -> Terms:
         """Gaps as the persistency condition sees them (Laursen & Chawla 1997).
 
-        There is no contact before an increment begins in it, and from then on none deeper.
+        There is no contact before an increment begins in it, and from then on none deeper. What
+        has a pressure law may get deeper.
         """
-        if self.start is None:
+        if self.start is None or self.law is not None:
             return terms
         start, far = self.begun()
         gap = terms.gap - np.where(far, 0.0, np.minimum(start, 0.0))
@@ -150,17 +170,31 @@ class Pair:
         """Take the gaps of a state for the start of an increment."""
         self.start = terms.parts
 
+    def gap_of_start(self) -> Floats:
+        """Weighted gaps that the increment began with, shape (n,).
+
+        Where a pressure law saw nothing of the other side, it begins with its first pressure.
+        """
+        assert self.start is not None
+        gap, area = (np.bincount(self.owner, t, self.n) for t in self.start)
+        if self.law is None:
+            return gap
+        return np.where(area > COVERED * self.full, gap, -self.law.start * self.area)
+
     def _read(self, raw: dict[str, Any]) -> Terms:
+        self.seen = self.seen or bool(len(raw["constraint"]))
+        if self.beside is not None and not self.frozen:
+            self.owner = self._owners(raw["total_area"])
+        return self._shared(raw)
+
+    def _shared(self, raw: dict[str, Any]) -> Terms:
+        """Terms in which weak parts belong to their owners."""
         gap, slip, area = raw["total_gap"], raw["total_slip"], raw["total_area"]
         parts = (gap, area)
-        self.seen = self.seen or bool(len(raw["constraint"]))
         constraint = raw["constraint"]
-        if self.beside is not None:
-            if not self.frozen:
-                self.owner = self._owners(area)
-            if (self.owner != np.arange(self.n)).any():
-                gap, slip, area = (np.bincount(self.owner, t, self.n) for t in (gap, slip, area))
-                constraint = self.owner[constraint]
+        if (self.owner != np.arange(self.n)).any():
+            gap, slip, area = (np.bincount(self.owner, t, self.n) for t in (gap, slip, area))
+            constraint = self.owner[constraint]
         return Terms(
             gap,
             slip,
@@ -242,7 +276,10 @@ class Pair:
         if self.law is not None:
             # The areas of the law are those of the increment's start: its tangent is exact.
             gap = np.where(seen, terms.gap / self.area, np.inf)
-            return gap, np.where(seen, -gap - self.law.start, -np.inf)
+            least = gap
+            if self.start is not None:  # its pressure is a mean over the increment
+                least = np.minimum(gap, self.gap_of_start() / self.area)
+            return gap, np.where(seen, -least - self.law.start, -np.inf)
         gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), np.inf)
         return gap, np.where(seen, p - self.stiffness * np.where(seen, gap, 0.0), -np.inf)
 
@@ -304,7 +341,7 @@ class Pair:
         if self.law is None:
             complementarity = np.abs(np.minimum(c * gap, p))
         else:
-            complementarity = np.abs(p - self._pressure(terms.gap / self.area)[0])
+            complementarity = np.abs(p - self._law_now(terms.gap / self.area)[0])
         complementarity = np.where(seen, complementarity, np.abs(p))
         if self.friction:
             bound = self.friction * np.maximum(p, 0.0)
@@ -317,6 +354,12 @@ class Pair:
         begun = -gap > self.law.start
         p, slope, energy = self.law(np.where(begun, -gap, self.law.start))
         return (np.where(begun, p, 0.0), np.where(begun, slope, 0.0), np.where(begun, energy, 0.0))
+
+    def _law_now(self, gap: Floats) -> tuple[Floats, Floats]:
+        """Pressure of the law in this increment, which ends with gaps, and its slope."""
+        if self.start is None:
+            return self._pressure(gap)[:2]
+        return mean_pressure(self._pressure, self.gap_of_start() / self.area, gap)
 
     def law_energy(self, terms: Terms) -> float:
         """Energy of the pressure law [force*length]."""
@@ -345,7 +388,10 @@ class Pair:
         rp = np.where(closed, terms.gap, -own * p)
         if self.law is not None and closed.any():
             area = self.area
-            value, slope, _ = self.law(np.maximum(-terms.gap / area, self.law.start))
+            if self.start is None:
+                value, slope, _ = self.law(np.maximum(-terms.gap / area, self.law.start))
+            else:
+                value, slope = self._law_now(terms.gap / area)
             weight = area / np.where(slope > 0.0, slope, self.stiffness)
             dp = np.where(closed, -weight, dp)
             rp = np.where(closed, weight * (p - value), rp)

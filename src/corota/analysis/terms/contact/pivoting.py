@@ -203,12 +203,13 @@ class Pivoting:
             column = np.full(pair.n, -1, np.int64)
             column[c.rows] = at + 2 * np.arange(len(c.rows))
             state, slip_direction = base[c.k], slip_directions[c.k]
-            where = problem.contact_term.dofs(terms.variables)
-            i = terms.constraint
+            acting = terms.acting
+            where = problem.contact_term.dofs(acting.variables)
+            i = acting.constraint
             of_open = (column[i] >= 0) & (state[i] == OPEN)
-            push = terms.gap_gradient
+            push = acting.gap_gradient
             if pair.two:
-                push = push + (pair.friction * slip_direction)[i, None] * terms.slip_gradient
+                push = push + (pair.friction * slip_direction)[i, None] * acting.slip_gradient
             wide = where.shape[1]
             np.add.at(
                 force,
@@ -222,7 +223,7 @@ class Pivoting:
                 np.add.at(
                     force,
                     (where[less], np.repeat(column[i][less][:, None] + 1, wide, 1)),
-                    -slip_direction[i[less], None] * terms.slip_gradient[less],
+                    -slip_direction[i[less], None] * acting.slip_gradient[less],
                 )
                 stuck = c.rows[state[c.rows] == CLOSED]
                 rows[pair.first + pair.n + stuck, column[stuck] + 1] = -1.0

@@ -1,0 +1,134 @@
+"""Forces of contact between both ends of an increment, for the energy-momentum scheme.
+
+A traction does exactly the work of its gap, ``p (G1 - G0)``, if it acts along a discrete gradient
+of the gap. It is the gradient at the middle of the increment, which keeps the momenta because the
+gap does not depend on the frame, with a correction that is orthogonal to all rigid motions of the
+nodes of a constraint (Gonzalez 1996). A pressure law acts with the quotient of its energy and its
+overclosure.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.model.contact import RigidCurve
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.terms.contact.pair import Pair, Terms
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+    Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
+
+#: Share of its full area below which the middle of an increment does not see a constraint.
+COVERED = 1e-9
+#: Deformations of this share of the model's size are rounding.
+NONE = 1e-8
+#: Relative changes of overclosure below which a mean is a quadrature.
+NEAR = 1e-4
+
+
+def discrete_gradient(pair: Pair, end: Terms, middle: Terms, x: Floats, old: Floats) -> Terms:
+    """Gradients whose products with the increment are the changes of gap and slip.
+
+    Parameters
+    ----------
+    pair : Pair
+    end, middle : Terms
+        At the end of the increment and half way.
+    x, old : ndarray, shape (n_nodes, 3)
+        Positions and rotations at the end and at the start.
+    """
+    # What only the end sees acts along the gradient there.
+    known = middle.area > COVERED * pair.full
+    parts = [(middle, known[middle.constraint]), (end, ~known[end.constraint])]
+
+    def both(name: str) -> NDArray[np.generic]:
+        return np.concatenate([getattr(terms, name)[rows] for terms, rows in parts])
+
+    constraint, variables = both("constraint"), both("variables")
+    move = x - old
+    move[:, 2] = 2.0 * np.tan(0.5 * move[:, 2])
+    away = _without_symmetry(pair, variables, 0.5 * (x + old), move)
+    size = np.bincount(constraint, (away**2).sum(axis=1), pair.n)
+    moved = move.ravel()[variables]
+    changes = {"gap_gradient": end.gap - pair.gap_of_start(), "slip_gradient": end.slip}
+    gradients = {}
+    for name, change in changes.items():
+        gradient = both(name)
+        missing = change - np.bincount(constraint, (gradient * moved).sum(axis=1), pair.n)
+        counts = size > (NONE * pair.size) ** 2
+        factor = np.where(counts, missing / np.where(counts, size, 1.0), 0.0)
+        gradients[name] = gradient + factor[constraint, None] * away
+    return replace(
+        end, constraint=constraint, variables=variables, pair=both("pair"), **gradients
+    )
+
+
+def _without_symmetry(pair: Pair, variables: Ints, x: Floats, move: Floats) -> Floats:
+    """Displacements by variable less the motions that leave the gap as it is; none of rotations."""
+    node, part = np.maximum(variables, 0) // 3, variables % 3
+    used = variables >= 0
+    first, second = used & (part == 0), used & (part == 1)
+    own = move[node]
+    curve = getattr(pair.item, "master", None)
+    if isinstance(curve, RigidCurve) and not isinstance(curve.reference, int | np.integer):
+        if len(curve.segments) > 1:
+            out = own[:, :, :2]
+        else:
+            # One line may be moved along, one arc about its center.
+            x0, y0, x1, y1, cx, cy, sweep = curve.segments[0]
+            line = np.array([y0 - y1, x1 - x0]) / np.hypot(x1 - x0, y1 - y0)
+            normal = np.broadcast_to(line, own[:, :, :2].shape)
+            if sweep:
+                arm = x[node][:, :, :2] - [cx, cy]
+                normal = arm / np.maximum(np.hypot(arm[..., 0], arm[..., 1]), 1e-300)[..., None]
+            out = (own[:, :, :2] * normal).sum(axis=2, keepdims=True) * normal
+        return np.where(first, out[:, :, 0], np.where(second, out[:, :, 1], 0.0))
+    count = np.maximum(first.sum(axis=1), 1)[:, None]
+
+    def centered(values: Floats) -> tuple[Floats, Floats]:
+        a, b = (np.where(first, values[node][:, :, i], 0.0) for i in (0, 1))
+        mean = a.sum(axis=1)[:, None] / count, b.sum(axis=1)[:, None] / count
+        return np.where(first, a - mean[0], 0.0), np.where(first, b - mean[1], 0.0)
+
+    (rx, ry), (dx, dy) = centered(x), centered(move)
+    inertia = (rx * rx + ry * ry).sum(axis=1)
+    spin = (rx * dy - ry * dx).sum(axis=1) / np.where(inertia > 0.0, inertia, 1.0)
+    dx, dy = dx + spin[:, None] * ry, dy - spin[:, None] * rx
+    # The y of a node is the variable behind its x.
+    out_y = np.zeros_like(dy)
+    out_y[:, 1:] = dy[:, :-1]
+    return np.where(first, dx, np.where(second, out_y, 0.0))
+
+
+def mean_pressure(law: Law, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """Pressure of a law over an increment between two gaps, and its slope by overclosure.
+
+    Parameters
+    ----------
+    law : callable
+        Pressure, slope and energy per area at gaps.
+    begin, end : ndarray, shape (n,)
+        Gaps [length].
+    """
+    p0, _, w0 = law(begin)
+    p1, slope1, w1 = law(end)
+    way = begin - end
+    near = np.abs(way) <= NEAR * np.maximum(np.abs(begin), np.abs(end))
+    step = np.where(near, 1.0, way)
+    p_middle, slope_middle, _ = law(0.5 * (begin + end))
+    mean = np.where(near, (p0 + 4.0 * p_middle + p1) / 6.0, (w1 - w0) / step)
+    slope = np.where(near, (slope1 + 2.0 * slope_middle) / 6.0, (p1 - mean) / step)
+    return mean, slope
+
+
+__all__ = ["discrete_gradient", "mean_pressure"]
