@@ -243,13 +243,13 @@ def test_oblique_collision_keeps_momenta(scheme):
     assert any(f.scalars["hit: force y"] > 1.0 for f in results.frames[1:])
     for name in ("momentum x", "momentum y"):
         np.testing.assert_allclose(last[name], first[name], rtol=1e-8)
-    tolerance = 1e-4 if scheme == "energy_momentum" else 2e-2
+    tolerance = 1e-9 if scheme == "energy_momentum" else 2e-2
     np.testing.assert_allclose(
         last["angular momentum"], first["angular momentum"], atol=tolerance * 2.0
     )
     assert last["ALLFD"] > 0
     if scheme == "energy_momentum":
-        np.testing.assert_allclose(last["ETOTAL"], first["ETOTAL"], rtol=1e-2)
+        np.testing.assert_allclose(last["ETOTAL"], first["ETOTAL"], rtol=1e-8)
 
 
 @pytest.mark.parametrize("scheme", ["energy_momentum", "hht"])
@@ -279,7 +279,7 @@ def test_bar_that_falls_and_rebounds(scheme):
         np.testing.assert_allclose(frames[-1].scalars["energy balance"], 0.0, atol=1e-7)
 
 
-@pytest.mark.parametrize("scheme", IMPLICIT[:2])
+@pytest.mark.parametrize("scheme", IMPLICIT)
 def test_bounce_on_a_soft_layer(scheme):
     # Pressure law of stiffness K: half a period of m y'' = -K A y in contact; energy in ALLCL.
     width, height, soft, v = 2.0, 0.5, 300.0, 1.0
@@ -411,7 +411,9 @@ def test_harmonic_force_on_a_block_over_a_soft_layer(direct):
 FRAMES = [
     (scheme, element, ["consistent", "constant", "lumped"][(i + j) % 3])
     for i, scheme in enumerate(IMPLICIT)
-    for j, element in enumerate(["T3", "T6", "Q4", "Q4I", "Q4S", "Q4R", "Q8R", "Q9", "Q4DI"])
+    for j, element in enumerate(
+        ["T3", "T6", "Q4", "Q4I", "Q4S", "Q4R", "Q8R", "Q9", "Q4DI", "Q4D", "OPT", "Q8"]
+    )
 ]
 
 

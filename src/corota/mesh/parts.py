@@ -31,6 +31,14 @@ def part_of_cells(mesh: Mesh) -> Ints:
     return _components(nodes, cells + mesh.n_nodes, total)[mesh.n_nodes :]
 
 
+def part_of_nodes(mesh: Mesh) -> Ints:
+    """Number the parts that hang together by common nodes; shape (n_nodes,), -1 without cells."""
+    nodes, cells = _incidence(mesh)
+    out = np.full(mesh.n_nodes, -1, np.int64)
+    out[nodes] = part_of_cells(mesh)[cells]
+    return out
+
+
 def stiff_part_of_cells(mesh: Mesh) -> Ints:
     """Number the parts that hang together by common sides; shape (n_cells,)."""
     keys, rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]

@@ -14,6 +14,7 @@ from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, New
 from corota.analysis.increments import CUT, SAME, Increments
 from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
+from corota.analysis.procedures.free_flight import FreeFlight
 from corota.analysis.procedures.motion import ConservingMotion, Driven, NewmarkMotion
 from corota.analysis.procedures.motion_output import EndForces
 from corota.analysis.procedures.motion_start import (
@@ -108,6 +109,7 @@ class DynamicStepper(NewtonStepper):
         self.system, self.state, self.step = system, state, step
         self.inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
         self.viscous = ViscousElements(system, step.rayleigh[1])
+        self.flight = FreeFlight(system)
         resumes = bool(state.resumes)
         self.now = (
             resting(system)
@@ -159,13 +161,14 @@ class DynamicStepper(NewtonStepper):
         """Newton's method; automatic increments are refused where the local error is too large."""
         system, step, now = self.system, self.step, self.now
         dt = target - self.control.time
-        prescribed = system.conditions.prescribed(target, now.u)
+        guess = self.flight.guess(now.u, now.v, dt)
+        prescribed = system.conditions.prescribed(target, guess)
         driven = _driven(system, prescribed, target, dt)
         self.motion = _motion(system, step, self.inertia, now, dt, driven, self.viscous)
         outcome, contact = solve_increment(
             self.motion,
             system,
-            now.u,
+            guess,
             prescribed,
             target,
             self.settings,

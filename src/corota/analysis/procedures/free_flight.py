@@ -1,0 +1,93 @@
+"""Where Newton's method starts in an increment of a motion.
+
+A body that nothing holds goes on as if it were rigid: its iterations are then the same whether it
+rests or flies. Other bodies start from where they are.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.mesh.parts import part_of_nodes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.equations import System
+
+    Floats = NDArray[np.float64]
+
+#: A body that turns by more in an increment starts from where it is [rad].
+LARGEST_TURN = 1.0
+
+
+class FreeFlight:
+    """Bodies without supports and constraints.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        part = part_of_nodes(system.model.mesh)
+        held = system.conditions.constrained.copy()
+        link = system.constraints.link(np.zeros(system.n_dofs))
+        if link.couples:
+            bound = system.constraints.dependent
+            held[bound] = True
+            held[np.unique(link.direct.tocoo().col)] = True
+        nodes = np.zeros(len(part), bool)
+        nodes[system.node_of_dof[held]] = True
+        for pair in system.contact_term.pairs:
+            if pair.tied:
+                nodes[pair.nodes] = True
+                if pair.master is not None:
+                    nodes[pair.master.node_list] = True
+        free = part >= 0
+        free &= ~np.isin(part, part[nodes])
+        #: Nodes of free bodies, and the number of the body of each.
+        self.nodes = np.flatnonzero(free)
+        self.body = np.unique(part[self.nodes], return_inverse=True)[1]
+
+    def guess(self, u: Floats, v: Floats, dt: float) -> Floats:
+        """Displacement after a time at which free bodies go on rigidly, shape (n_dofs,)."""
+        if not len(self.nodes):
+            return u
+        system, body = self.system, self.body
+        moved, rates = system.by_node(u), system.by_node(v)
+        x = system.model.mesh.points[self.nodes].copy()
+        if system.nlgeom:
+            x += moved[self.nodes, :2]
+        rate = rates[self.nodes, :2]
+        count = np.bincount(body).astype(float)
+
+        def mean(values: Floats) -> Floats:
+            sums = [np.bincount(body, values[:, i]) for i in (0, 1)]
+            return np.stack(sums, axis=1) / count[:, None]
+
+        travel = mean(rate)
+        arm = x - mean(x)[body]
+        inertia = np.bincount(body, (arm**2).sum(axis=1))
+        lever = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        spin = np.bincount(body, (lever * rate).sum(axis=1)) / np.where(inertia > 0, inertia, 1.0)
+        turn = spin * dt
+        goes = np.abs(turn) <= LARGEST_TURN
+        turn, travel = np.where(goes, turn, 0.0), np.where(goes[:, None], travel, 0.0)
+        angle = turn[body][:, None]
+        if system.nlgeom:
+            change = np.sin(angle) * lever - 2.0 * np.sin(0.5 * angle) ** 2 * arm
+        else:
+            change = angle * lever
+        out = np.zeros_like(moved)
+        out[self.nodes, :2] = dt * travel[body] + change
+        out[self.nodes, 2] = turn[body]
+        guess: Floats = u + system.from_nodes(out)
+        return guess
+
+
+__all__ = ["FreeFlight"]
