@@ -50,9 +50,7 @@ def test_oblique_collision_in_free_flight(
     lower = ct.mesh.rectangle(2.0, 0.5, nx=6, ny=2, cell=kind)
     model = ct.Model(ct.mesh.assembly(a=replace(upper, points=turned), b=lower))
     model.section("all", element=element, material=ct.Elastic(E=500.0, nu=0.3, rho=1.0))
-    model.contact(
-        "a.bottom", "b.top", friction=friction, method=method, law=LAWS[law], name="hit"
-    )
+    model.contact("a.bottom", "b.top", friction=friction, method=method, law=LAWS[law], name="hit")
     hits = np.arange(len(upper.points))
     model.velocity(hits, x=0.8, y=-2.0, spin=-1.0, about=(0.7, 1.2))
     step = ct.Dynamic(period=0.3, increments=50, scheme="energy_momentum", tolerance=1e-11)
@@ -78,7 +76,7 @@ def test_impulse_of_a_fixed_curve(curve: str) -> None:
     else:
         # Angular momentum is that about the origin, which must be the center. Mortar integrals know
         # where a long arc is cut into pieces, to 1e-9.
-        model = ct.Model(replace(mesh, points=mesh.points + (-0.2, 2.0)))
+        model = ct.Model(replace(mesh, points=np.add(mesh.points, [-0.2, 2.0])))
         model.section("all", element="Q4I", material=ct.Elastic(E=500.0, nu=0.3, rho=1.0))
         rigid = ct.RigidCurve.arc((0.0, 0.0), 2.0, 150.0, -120.0)
     method: Any = "mortar" if curve == "floor" else "node_to_segment"

@@ -22,7 +22,7 @@ from tests.support.lines import chain
 
 SCHEMES = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
 ELEMENTS = ["Q4I", "Q8", "T6", "Q4D", "OPT", "BEAM"]
-MORE = ["T3", "Q4", "Q4S", "Q4R", "Q8R", "Q9", "Q4DI"]
+OTHERS = ["T3", "Q4", "Q4S", "Q4R", "Q8R", "Q9", "Q4DI"]
 EXTRAS = ["plain", "contact", "point mass", "damping"]
 MASSES = ["consistent", "constant", "lumped"]
 SPIN, DRIFT, ANGLE = 2.0, np.array([3.0, -2.0]), 0.7
@@ -31,7 +31,7 @@ SOFT = ct.Elastic(E=200.0, nu=0.3, rho=1.0)
 EVERY = [
     pytest.param(s, e, x, m, id=f"{s}-{e}-{x}-{m}", marks=[] if quick else [pytest.mark.slow])
     for i, s in enumerate(SCHEMES)
-    for j, e in enumerate(ELEMENTS + MORE)
+    for j, e in enumerate(ELEMENTS + OTHERS)
     for k, x in enumerate(EXTRAS)
     for n, m in enumerate(MASSES)
     for quick in [e in ELEMENTS and n == (i + j + k) % 3]
@@ -56,7 +56,9 @@ def body(element: str, extra: str, angle: float, drift: np.ndarray) -> ct.Model:
     if extra == "contact":
         model.contact("bottom", ct.RigidCurve.line((-900.0, -900.0), (900.0, -900.0)))
     elif extra == "point mass":
-        model.point_mass([0], 0.5, inertia=0.1 if line or element in ("Q4D", "OPT", "Q4DI") else 0.0)
+        model.point_mass(
+            [0], 0.5, inertia=0.1 if line or element in ("Q4D", "OPT", "Q4DI") else 0.0
+        )
     center = turn(angle) @ [1.0, 0.2]
     model.velocity(x=drift[0], y=drift[1], spin=SPIN, about=(center[0], center[1]))
     return model

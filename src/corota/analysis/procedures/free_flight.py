@@ -68,7 +68,8 @@ class FreeFlight:
 
         def mean(values: Floats) -> Floats:
             sums = [np.bincount(body, values[:, i]) for i in (0, 1)]
-            return np.stack(sums, axis=1) / count[:, None]
+            out: Floats = np.stack(sums, axis=1) / count[:, None]
+            return out
 
         travel = mean(rate)
         arm = x - mean(x)[body]
@@ -83,10 +84,10 @@ class FreeFlight:
             change = np.sin(angle) * lever - 2.0 * np.sin(0.5 * angle) ** 2 * arm
         else:
             change = angle * lever
-        out = np.zeros_like(moved)
-        out[self.nodes, :2] = dt * travel[body] + change
-        out[self.nodes, 2] = turn[body]
-        guess: Floats = u + system.from_nodes(out)
+        flown = np.zeros_like(moved)
+        flown[self.nodes, :2] = dt * travel[body] + change
+        flown[self.nodes, 2] = turn[body]
+        guess: Floats = u + system.from_nodes(flown)
         return guess
 
 

@@ -11,10 +11,11 @@ overclosure.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.terms.contact.gaps import COVERED
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -22,64 +23,71 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.pair import Pair, Terms
+    from corota.analysis.terms.contact.gaps import Terms
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
 
-#: Share of its full area below which the middle of an increment does not see a constraint.
-COVERED = 1e-9
-#: Deformations of this share of the model's size are rounding.
-NONE = 1e-8
 #: Relative changes of overclosure below which a mean is a quadrature.
 NEAR = 1e-4
 
 
-def discrete_gradient(pair: Pair, end: Terms, middle: Terms, x: Floats, old: Floats) -> Terms:
+def discrete_gradient(
+    end: Terms,
+    middle: Terms,
+    begun: Floats,
+    full: Floats,
+    positions: tuple[Floats, Floats],
+    master: Any,
+    rounding: float,
+) -> Terms:
     """Gradients whose products with the increment are the changes of gap and slip.
 
     Parameters
     ----------
-    pair : Pair
     end, middle : Terms
         At the end of the increment and half way.
-    x, old : ndarray, shape (n_nodes, 3)
-        Positions and rotations at the end and at the start.
+    begun, full : ndarray, shape (n,)
+        Weighted gap at the start [length^3], and whole area [length^2].
+    positions : tuple of ndarray, shape (n_nodes, 3)
+        Positions and rotations at the start and at the end.
+    master : RigidCurve or other
+    rounding : float
+        Length of deformations that are none [length].
     """
+    old, x = positions
+    n = len(full)
     # What only the end sees acts along the gradient there.
-    known = middle.area > COVERED * pair.full
+    known = middle.area > COVERED * full
     parts = [(middle, known[middle.constraint]), (end, ~known[end.constraint])]
 
-    def both(name: str) -> NDArray[np.generic]:
+    def both(name: str) -> Any:
         return np.concatenate([getattr(terms, name)[rows] for terms, rows in parts])
 
     constraint, variables = both("constraint"), both("variables")
     move = x - old
     move[:, 2] = 2.0 * np.tan(0.5 * move[:, 2])
-    away = _without_symmetry(pair, variables, 0.5 * (x + old), move)
-    size = np.bincount(constraint, (away**2).sum(axis=1), pair.n)
+    away = _without_symmetry(master, variables, 0.5 * (x + old), move)
+    size = np.bincount(constraint, (away**2).sum(axis=1), n)
     moved = move.ravel()[variables]
-    changes = {"gap_gradient": end.gap - pair.gap_of_start(), "slip_gradient": end.slip}
+    changes = {"gap_gradient": end.gap - begun, "slip_gradient": end.slip}
     gradients = {}
     for name, change in changes.items():
         gradient = both(name)
-        missing = change - np.bincount(constraint, (gradient * moved).sum(axis=1), pair.n)
-        counts = size > (NONE * pair.size) ** 2
+        missing = change - np.bincount(constraint, (gradient * moved).sum(axis=1), n)
+        counts = size > rounding**2
         factor = np.where(counts, missing / np.where(counts, size, 1.0), 0.0)
         gradients[name] = gradient + factor[constraint, None] * away
-    return replace(
-        end, constraint=constraint, variables=variables, pair=both("pair"), **gradients
-    )
+    return replace(end, constraint=constraint, variables=variables, pair=both("pair"), **gradients)
 
 
-def _without_symmetry(pair: Pair, variables: Ints, x: Floats, move: Floats) -> Floats:
+def _without_symmetry(curve: Any, variables: Ints, x: Floats, move: Floats) -> Floats:
     """Displacements by variable less the motions that leave the gap as it is; none of rotations."""
     node, part = np.maximum(variables, 0) // 3, variables % 3
     used = variables >= 0
     first, second = used & (part == 0), used & (part == 1)
     own = move[node]
-    curve = getattr(pair.item, "master", None)
     if isinstance(curve, RigidCurve) and not isinstance(curve.reference, int | np.integer):
         if len(curve.segments) > 1:
             out = own[:, :, :2]

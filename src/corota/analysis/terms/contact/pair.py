@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient, mean_pressure
+from corota.analysis.terms.contact.gaps import COVERED, Terms
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.model.contact import ContactPair, Tie
 
@@ -22,50 +23,11 @@ if TYPE_CHECKING:
 
 #: States of a constraint.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
-#: Share of its full area below which a node sees nothing of the other side.
-COVERED = 1e-9
+#: Deformations of this share of the model's size are rounding.
+NONE = 1e-8
 #: Share of its area below which a node leaves its part to a neighbour.
 WEAK = 0.2
 EPS = float(np.finfo(float).eps)
-
-
-@dataclass
-class Terms:
-    """Gaps and slips of one pair at a state.
-
-    Parameters
-    ----------
-    gap, slip, area : ndarray, shape (k,)
-        Weighted gap and slip of each constraint [length^3], covered area [length^2].
-    constraint, pair : ndarray of int, shape (m,)
-        Constraint of each term, and candidate pair of the core.
-    variables : ndarray of int, shape (m, v)
-        ``3 node + component``, -1 for none.
-    gap_gradient, slip_gradient : ndarray, shape (m, v)
-    parts : tuple of ndarray, shape (k,)
-        Gap and area of each node before neighbours share constraints.
-    bare : Terms or None
-        Gaps and areas as they are, where a condition on rates has changed them.
-    between : Terms or None
-        Gradients along which tractions act that are those of an increment, not of its end.
-    """
-
-    gap: Floats
-    slip: Floats
-    area: Floats
-    constraint: Ints
-    pair: Ints
-    variables: Ints
-    gap_gradient: Floats
-    slip_gradient: Floats
-    parts: tuple[Floats, Floats]
-    bare: Terms | None = None
-    between: Terms | None = None
-
-    @property
-    def acting(self) -> Terms:
-        """Terms along whose gradients the tractions act."""
-        return self if self.between is None else self.between
 
 
 class Pair:
@@ -145,7 +107,15 @@ class Pair:
         self.core.search(x)
         terms = self._read(self.core.evaluate(x, before))
         if middle is not None:
-            terms.between = discrete_gradient(self, terms, self._shared(middle), x, old)
+            terms.between = discrete_gradient(
+                terms,
+                self._shared(middle),
+                self.gap_of_start(),
+                self.full,
+                (old, x),
+                getattr(self.item, "master", None),
+                NONE * self.size,
+            )
         return self._since(terms)
 
     def _since(self, terms: Terms) -> Terms:
@@ -176,7 +146,7 @@ class Pair:
         Where a pressure law saw nothing of the other side, it begins with its first pressure.
         """
         assert self.start is not None
-        gap, area = (np.bincount(self.owner, t, self.n) for t in self.start)
+        gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
         if self.law is None:
             return gap
         return np.where(area > COVERED * self.full, gap, -self.law.start * self.area)
