@@ -185,6 +185,34 @@ def make_parser() -> Parser:
         metavar="PAIR",
         help="pressure along the slave surface of a contact pair, the first by default",
     )
+    plot.add_argument(
+        "--forces",
+        choices=("N", "V", "M"),
+        type=str.upper,
+        help="diagram of a section force on trusses and beams",
+    )
+    plot.add_argument(
+        "--section",
+        nargs=4,
+        type=float,
+        metavar=("X1", "Y1", "X2", "Y2"),
+        help="N, V and M of a cut through planar elements, over the time",
+    )
+    plot.add_argument(
+        "--diagram",
+        nargs=5,
+        type=float,
+        metavar=("X1", "Y1", "X2", "Y2", "WIDTH"),
+        help="N, V and M along an axis, of cuts so wide across it",
+    )
+    plot.add_argument("--principal", action="store_true", help="principal stresses as crosses")
+    plot.add_argument(
+        "--flow",
+        nargs="?",
+        const="principal",
+        choices=("principal", "x", "y"),
+        help="trajectories of principal stress, or the flow of force along x or y",
+    )
     plot.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
     plot.add_argument("--response", action="store_true", help="steady-state response")
     plot.add_argument("--energies", action="store_true", help="energies of a motion over time")
@@ -197,6 +225,9 @@ def make_parser() -> Parser:
         help="where the last attempt of a run that stopped ended; what is out of balance as RF",
     )
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
+    plot.add_argument(
+        "--width", type=float, default=0.0, metavar="MM", help="of the picture, such as 85"
+    )
 
     report = command("report", "Write a page for a browser from the files of a job.")
     report.add_argument("job", help="stem of the job's files, or any of them")

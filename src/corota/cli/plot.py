@@ -19,6 +19,13 @@ def run(args: Any, terminal: Terminal) -> int:
     """Draw what was asked for and tell the file."""
     from corota import plots
 
+    with plots.width_of(args.width):
+        return _run(args, terminal)
+
+
+def _run(args: Any, terminal: Terminal) -> int:
+    from corota import plots
+
     args.elements, args.parameters, args.lenient, args.allow_include = [], [], True, True
     args.as_written = False
     source = Path(args.file)
@@ -43,6 +50,10 @@ def run(args: Any, terminal: Terminal) -> int:
             return _tell(path, terminal)
         if args.modes or args.response or args.energies:
             return _of_motion(args, source, results, terminal)
+        if args.forces or args.section or args.diagram:
+            return _section_forces(args, source, results, terminal)
+        if args.principal or args.flow:
+            return _stress_lines(args, source, results, terminal)
         if args.curve:
             path = Path(args.output or f"{source.stem}_curve.png")
             y, x = _axes(args.curve, results)
@@ -93,6 +104,46 @@ def _of_motion(args: Any, source: Path, results: Results, terminal: Terminal) ->
             draw(found, path=path, dpi=args.dpi)
     else:
         draw(results, path=path, dpi=args.dpi)
+    return _tell(path, terminal)
+
+
+def _stress_lines(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
+    """Principal stresses as crosses, or the flow of force."""
+    from corota import plots
+
+    options = {"frame": args.frame, "scale": args.scale, "dpi": args.dpi}
+    if args.principal:
+        path = Path(args.output or f"{source.stem}_principal.png")
+        plots.principal(results, path=path, **options)
+    else:
+        path = Path(args.output or f"{source.stem}_flow.png")
+        plots.flow(results, args.flow, path=path, **options)
+    return _tell(path, terminal)
+
+
+def _section_forces(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
+    """Diagrams of line elements, across planar ones, or the forces of a cut over the time."""
+    from corota import plots
+    from corota.results.section import Cut
+
+    if args.forces:
+        path = Path(args.output or f"{source.stem}_{args.forces}.png")
+        found = results.member_forces(frame=args.frame)
+        plots.section_forces(found, args.forces, scale=args.scale, path=path, dpi=args.dpi)
+        return _tell(path, terminal)
+    if args.diagram:
+        path = Path(args.output or f"{source.stem}_diagram.png")
+        x1, y1, x2, y2, width = args.diagram
+        diagram = results.section_diagram([(x1, y1), (x2, y2)], width, frame=args.frame)
+        plots.section_diagram(diagram, path=path, dpi=args.dpi)
+        return _tell(path, terminal)
+    path = Path(args.output or f"{source.stem}_section.png")
+    x1, y1, x2, y2 = args.section
+    cut = Cut(results, (x1, y1), (x2, y2))
+    one = cut.forces(args.frame)
+    terminal.line(f"N {one.N:.7g}  V {one.V:.7g}  M {one.M:.7g}  ({one.method})")
+    terminal.record({"event": "section", "N": one.N, "V": one.V, "M": one.M, "method": one.method})
+    plots.section_history(cut, path=path, dpi=args.dpi)
     return _tell(path, terminal)
 
 

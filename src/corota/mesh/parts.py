@@ -10,6 +10,8 @@ import numpy as np
 from corota.mesh.data import EDGES
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.mesh.data import Ints, Mesh
 
 
@@ -51,6 +53,14 @@ def stiff_part_of_cells(mesh: Mesh) -> Ints:
     order = np.argsort(key, kind="stable")
     same = np.flatnonzero(np.diff(key[order]) == 0)
     return _components(row[order[same]], row[order[same + 1]], mesh.n_cells)
+
+
+def part_of_nodes(mesh: Mesh, without: NDArray[np.bool_]) -> Ints:
+    """Number the parts that hang together by cells, those of a mask left out; shape (n_nodes,)."""
+    nodes, cells = _incidence(mesh)
+    kept = ~without[cells]
+    total = mesh.n_nodes + mesh.n_cells
+    return _components(nodes[kept], cells[kept] + mesh.n_nodes, total)[: mesh.n_nodes]
 
 
 def _incidence(mesh: Mesh) -> tuple[Ints, Ints]:

@@ -10,8 +10,11 @@ from corota.plots.animation import animate
 from corota.plots.contact import contact_line, status
 from corota.plots.contour import contour
 from corota.plots.curves import curve
+from corota.plots.figure import width_of
+from corota.plots.forces import section_diagram, section_forces, section_history
 from corota.plots.model import model
 from corota.plots.motion import energies, modes, response
+from corota.plots.principal import flow, principal
 from corota.plots.sweep import sweep
 from corota.plots.view import view
 
@@ -22,10 +25,16 @@ __all__ = [
     "contour",
     "curve",
     "energies",
+    "flow",
     "model",
     "modes",
+    "principal",
     "response",
+    "section_diagram",
+    "section_forces",
+    "section_history",
     "status",
     "sweep",
     "view",
+    "width_of",
 ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from corota.plots.figure import INK, PALE, look, new_figure, save
+from corota.plots.figure import INK, PALE, figure_of, look, save
 from corota.results.variables import described, labelled
 
 if TYPE_CHECKING:
@@ -42,11 +42,7 @@ def along(
     units = line.results.model.unit_system
     names = [name.upper() for name in variables or ("U1", "U2")]
     with look():
-        if ax is None:
-            figure = new_figure(5.2, 3.7, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        figure, ax = figure_of(ax, 5.2, 3.7, shown=path is None)
         for name in names:
             ax.plot(line.distance, line.values(name), linewidth=1.4, label=name, zorder=3)
         ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)

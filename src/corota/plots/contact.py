@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.plots.contour import frame_title
-from corota.plots.figure import COLORS, INK, PALE, extent_size, label_axes, look, new_figure, save
+from corota.plots.figure import COLORS, INK, PALE, extent_size, figure_of, label_axes, look, save
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
 
@@ -71,11 +71,7 @@ def contact_line(
     contact = state.pairs.get(chosen.name, state.C)
     runs = _contours(results, chosen)
     with look():
-        if ax is None:
-            figure = new_figure(6.0, 3.6, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        figure, ax = figure_of(ax, 6.0, 3.6, shown=path is None)
         low, high = np.inf, -np.inf
         for nodes, way in runs:
             pressure, shear, _, _, status = contact[nodes].T
@@ -153,12 +149,8 @@ def status(
     with look():
         from matplotlib.collections import LineCollection
 
-        if ax is None:
-            width, height, _ = extent_size(low, high)
-            figure = new_figure(width, height, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        width, height, _ = extent_size(low, high)
+        figure, ax = figure_of(ax, width, height, shown=path is None)
         ax.add_collection(LineCollection(outline(mesh, positions), colors=INK, linewidths=0.8))
         draw_rigid(ax, results.model, state, scale)
         every = [n for p in results.model.contacts for n, _ in _contours(results, p)]

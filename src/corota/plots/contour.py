@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.plots.figure import INK, PALE, extent_size, label_axes, look, new_figure, save
+from corota.plots.figure import INK, PALE, extent_size, figure_of, label_axes, look, save
 from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
@@ -192,12 +192,8 @@ def contour(
         every = np.concatenate([results.mesh.points, positions]) if undeformed else positions
         low, high = every.min(axis=0), every.max(axis=0)
         below = extent_size(low, high)[2]
-        if ax is None:
-            width, height, below = extent_size(low, high)
-            figure = new_figure(width, height, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        width, height, below = extent_size(low, high)
+        figure, ax = figure_of(ax, width, height, shown=path is None)
         painted = paint(ax, mpl, drawing, frame, scale, edges, undeformed, limits)
         if name == "PEEQ":
             draw_boundary(ax, results, frame, scale)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.model.units import Units
-from corota.plots.figure import INK, PALE, look, new_figure, save
+from corota.plots.figure import INK, PALE, figure_of, look, save
 from corota.plots.path import draw_path, has_stability
 from corota.results.variables import described, dimension, labelled
 
@@ -54,11 +54,7 @@ def curve(
         many, x = [x], many[0]
     units = x.results.model.unit_system if x.results is not None else Units()
     with look():
-        if ax is None:
-            figure = new_figure(5.2, 3.7, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        figure, ax = figure_of(ax, 5.2, 3.7, shown=path is None)
         across = np.asarray(x.values)
         marked = len(across) <= 60
         as_path = len(many) == 1 and has_stability(x.results)

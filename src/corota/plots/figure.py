@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import textwrap
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +40,14 @@ STYLE = {
 #: Colors that stay apart in print and for the color-blind (Okabe and Ito).
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999")
 INK, PALE = "#20242b", "#9aa3b0"
+#: What pulls and what presses; positive and negative values of section forces.
+TENSION, COMPRESSION = COLORS[1], COLORS[0]
+#: Width of new figures [inch]; 0 for that of each kind of picture.
+_WIDTH: ContextVar[float] = ContextVar("width", default=0.0)
+#: Own width of a picture of a wide body [inch].
+WIDE = 7.2
+#: Width [mm] below which letters are smaller.
+NARROW = 110.0
 
 
 def matplotlib() -> Any:
@@ -63,12 +73,41 @@ def look() -> Any:
     mpl = matplotlib()
     style: dict[str, Any] = dict(STYLE)
     style["axes.prop_cycle"] = mpl.cycler(color=COLORS)
+    if 0.0 < _WIDTH.get() * 25.4 < NARROW:
+        style |= {key: 7.5 for key in ("font.size", "axes.titlesize", "axes.labelsize")}
+        style |= {key: 6.5 for key in ("xtick.labelsize", "ytick.labelsize", "legend.fontsize")}
     with mpl.rc_context(style):
         yield mpl
 
 
+@contextlib.contextmanager
+def width_of(millimeters: float) -> Any:
+    """Make all new figures inside of a ``with`` block so wide, such as one column of a page.
+
+    Parameters
+    ----------
+    millimeters : float
+        0 for the own width of each kind of picture.
+
+    Raises
+    ------
+    InputError
+        If it is no width of a page.
+    """
+    if millimeters and not 40.0 <= millimeters <= 1000.0:
+        raise InputError(f"the width of a picture is 40 to 1000 mm, not {millimeters:g}")
+    before = _WIDTH.set(millimeters / 25.4)
+    try:
+        yield
+    finally:
+        _WIDTH.reset(before)
+
+
 def new_figure(width: float, height: float, shown: bool) -> Any:
     """Make an empty figure [inch]; one that is only written does not touch the display."""
+    wanted = _WIDTH.get()
+    if wanted:
+        width, height = wanted, height * min((wanted / width) ** 0.75, 1.5)
     if shown:
         from matplotlib import pyplot
 
@@ -79,6 +118,14 @@ def new_figure(width: float, height: float, shown: bool) -> Any:
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def figure_of(ax: Any, width: float, height: float, shown: bool) -> tuple[Any, Any]:
+    """The figure of given axes and the axes, or a new figure [inch] with one pair of axes."""
+    if ax is not None:
+        return ax.figure, ax
+    figure = new_figure(width, height, shown)
+    return figure, figure.add_subplot()
 
 
 def picture_path(path: str | PathLike[str], formats: tuple[str, ...] = FORMATS) -> Path:
@@ -107,6 +154,7 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
     """
     target = picture_path(path)
     hidden = target.with_name(f".{target.name}.next")
+    wrap_texts(figure)
     try:
         with look():
             figure.savefig(hidden, dpi=dpi, format=target.suffix[1:].lower())
@@ -125,11 +173,43 @@ def label_axes(ax: Any, units: Units) -> None:
     ax.set_ylabel(f"y{unit}")
 
 
-def extent_size(low: Any, high: Any, wide: float = 7.2) -> tuple[float, float, bool]:
-    """Figure size [inch] for an extent, and whether the color bar lies below."""
+def wrap_texts(figure: Any) -> None:
+    """Break titles and labels that would run out of the figure."""
+    wide, high = (72.0 * inches for inches in figure.get_size_inches())
+    columns = {round(ax.get_position().x0, 2) for ax in figure.axes if not hasattr(ax, "_colorbar")}
+    count = max(len(columns), 1)
+    for ax in figure.axes:
+        for text, room in (
+            (ax._left_title, 0.92 * wide / count),
+            (ax.xaxis.label, 0.95 * wide / count),
+            (ax.yaxis.label, 0.95 * high),
+        ):
+            letters = max(int(room / (0.56 * text.get_fontsize())), 12)
+            lines = text.get_text().split("\n")
+            if any(len(line) > letters for line in lines):
+                parts = [textwrap.fill(line, letters, break_on_hyphens=False) for line in lines]
+                text.set_text("\n".join(parts))
+
+
+def page_width() -> float:
+    """Width of a picture of a wide body [inch]."""
+    return _WIDTH.get() or WIDE
+
+
+def extent_size(low: Any, high: Any, below: float = 1.75) -> tuple[float, float, bool]:
+    """Figure size [inch] for an extent, and whether the color bar lies below.
+
+    Parameters
+    ----------
+    low, high : array_like, shape (2,)
+    below : float
+        Height of titles, axes, legends and bars [inch].
+    """
+    wide = page_width()
     width, height = (max(float(b - a), 1e-12) for a, b in zip(low, high, strict=True))
     ratio = min(max(height / width, 1e-3), 1e3)
     if ratio < 0.8:
-        return wide, min(max(wide * 0.9 * ratio, 0.9) + 1.75, 7.5), True
+        least, below = (0.9, below) if wide > 5.0 else (0.4, 0.85 * below)
+        return wide, min(max(wide * 0.9 * ratio, least) + below, 7.5), True
     tall = 6.0
     return min(max(tall / ratio * 0.92, 1.4) + 2.6, 8.5), tall, False

@@ -14,9 +14,9 @@ from corota.plots.figure import (
     COLORS,
     INK,
     extent_size,
+    figure_of,
     label_axes,
     look,
-    new_figure,
     save,
 )
 from corota.plots.lines import draw_lines
@@ -85,12 +85,8 @@ def model(
     with look():
         from matplotlib.collections import LineCollection
 
-        if ax is None:
-            width, height, _ = extent_size(low - 0.1 * size, high + 0.1 * size)
-            figure = new_figure(width, height, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        width, height, _ = extent_size(low - 0.1 * size, high + 0.1 * size)
+        figure, ax = figure_of(ax, width, height, shown=path is None)
         _sections(ax, subject)
         if mesh.n_cells <= 4000 if edges is None else edges:
             ax.add_collection(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from corota.errors import InputError
-from corota.plots.figure import INK, look, new_figure, save
+from corota.plots.figure import INK, figure_of, look, save
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -70,11 +70,7 @@ def sweep(
         raise InputError(f"{by!r} has {len(values)} values; a picture shows up to {MOST_LINES}")
     varying = [p for p in table.parameters if p not in (x, by) and len(set(table[p].tolist())) > 1]
     with look():
-        if ax is None:
-            figure = new_figure(5.2, 3.7, shown=path is None)
-            ax = figure.add_subplot()
-        else:
-            figure = ax.figure
+        figure, ax = figure_of(ax, 5.2, 3.7, shown=path is None)
         for value in values:
             mine = groups == value
             order = np.argsort(across[mine], kind="stable")

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from corota.model.paths import CriticalPoint, Modes
     from corota.model.steps import Step
     from corota.results.history import History
+    from corota.results.members import Members
     from corota.results.probe import Line, Place
+    from corota.results.section import SectionDiagram, SectionForces
     from corota.results.variables import Averaging
 
     Floats = NDArray[np.float64]
@@ -472,6 +474,111 @@ class Results(Brief):
         from corota.results.probe import line
 
         return line(self, path, points, frame, spread)
+
+    def section(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        *,
+        frame: int = -1,
+        cells: str | ArrayLike | None = None,
+    ) -> SectionForces:
+        """Section forces N, V and M of a straight cut, as a free body has them.
+
+        Parameters
+        ----------
+        start, end : array_like, shape (2,)
+            Points of the undeformed shape, outside of the body or on its surface [length]. The
+            normal points to the right of the way between them: a cut upwards has it along x.
+        frame : int
+        cells : str or array_like of int, optional
+            Cut this element set only, where others lie on the line too.
+
+        Returns
+        -------
+        SectionForces
+            About the center of the cut in the deformed body. What transmits it is summed at the
+            nodes of the elements next to the cut, ahead of it.
+
+        Raises
+        ------
+        InputError
+            If the cut meets nothing, or ends inside of the body.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+        >>> model.fix("left")
+        >>> model.force("right", y=-0.001, total=True)
+        >>> results = ct.solve(model, ct.Static(), threads=1)
+        >>> cut = results.section((4.0, 0.0), (4.0, 1.0))
+        >>> round(cut.V, 6), round(cut.M, 5)
+        (-0.001, -0.006)
+        """
+        from corota.results.section import Cut
+
+        return Cut(self, start, end, cells).forces(frame)
+
+    def section_history(
+        self, name: str, start: ArrayLike, end: ArrayLike, *, cells: str | ArrayLike | None = None
+    ) -> History:
+        """``N``, ``V`` or ``M`` of a cut over the frames; see :meth:`section`."""
+        from corota.results.section import Cut
+
+        return Cut(self, start, end, cells).history(name)
+
+    def section_diagram(
+        self, axis: ArrayLike, width: float, *, cuts: int = 41, frame: int = -1
+    ) -> SectionDiagram:
+        """N, V and M of planar elements along an axis, by cuts across it.
+
+        Parameters
+        ----------
+        axis : array_like, shape (n, 2)
+            Points of the undeformed shape along the member [length].
+        width : float
+            Length of the cuts, half of it on either side [length]; they end outside of the body.
+        cuts : int
+        frame : int
+
+        Returns
+        -------
+        SectionDiagram
+            With a method ``plot``.
+
+        Raises
+        ------
+        InputError
+            As :meth:`section`.
+        """
+        from corota.results.section import diagram
+
+        return diagram(self, axis, width, cuts, frame)
+
+    def member_forces(self, cells: str | ArrayLike | None = None, *, frame: int = -1) -> Members:
+        """N, V and M of trusses and beams.
+
+        Parameters
+        ----------
+        cells : str or array_like of int, optional
+            Element set or cells; all line elements with section forces by default.
+        frame : int
+
+        Returns
+        -------
+        Members
+            With a method ``plot``.
+
+        Raises
+        ------
+        InputError
+            If there are none.
+        """
+        from corota.results.members import members
+
+        return members(self, cells, frame)
 
     def to_xarray(
         self, variables: Sequence[str] | None = None, frames: Sequence[int] | None = None
