@@ -469,6 +469,9 @@ class JobFiles(BaseObserver):
 
             path = self._path(self.name or self.model.name, "modes.vtkhdf")
             self._finish(lambda: write_modes(results, path))
+        for big in self._big:
+            for modes in results.modes:
+                self._finish(lambda big=big, modes=modes: big.add_modes(modes))  # type: ignore[misc]
         self._iterate(results)
         self.close(results.info, done=error is None)
         if self.error is not None and error is None:

@@ -61,6 +61,14 @@ def _scalars(name: str, names: tuple[str, ...], request: str) -> Block:
 
 
 DISP = _vector("DISP", "D", "U")
+#: Size and phase in degrees of complex modes.
+PDISP = Block(
+    "PDISP",
+    tuple(
+        (f"{part}{i}", 12, i + 3 * (part == "PHA"), 0) for part in ("MAG", "PHA") for i in (1, 2, 3)
+    ),
+    "PU",
+)
 VELO = _vector("VELO", "V", "V")
 FORC = _vector("FORC", "F", "RF")
 STRESS = _tensor("STRESS", "S", "S")
@@ -72,6 +80,6 @@ CONTACT = _scalars("CONTACT", ("COPEN", "CSLIP1", "CSLIP2", "CPRESS", "CSHEAR1",
 BLOCKS = (DISP, VELO, STRESS, TOSTRAIN, FORC, PE, ENER, CONTACT)
 
 __all__ = [
-    "BLOCKS", "CONTACT", "DISP", "ELEMENTS", "ENER", "FORC", "KINDS", "NODES", "PE", "STRESS",
-    "TOSTRAIN", "VELO", "Block",
+    "BLOCKS", "CONTACT", "DISP", "ELEMENTS", "ENER", "FORC", "KINDS", "NODES", "PDISP", "PE",
+    "STRESS", "TOSTRAIN", "VELO", "Block",
 ]  # fmt: skip

@@ -86,10 +86,14 @@ def read_frd(path: str | PathLike[str]) -> Results:
         raise FileError(f"{path}: damaged or incomplete: {error}") from None
 
 
+#: Types of analysis that give modes, and what their number is.
+MODES = {2: "frequency", 3: "frequency", 4: "buckling factor"}
+
+
 class _Reader:
     def __init__(self, source: _Source) -> None:
         self.source = source
-        self.frames: dict[tuple[int, int, float], dict[str, tuple[Ints, Floats]]] = {}
+        self.frames: dict[tuple[int, int, float, int, int], dict[str, tuple[Ints, Floats]]] = {}
 
     def read(self) -> Results:
         labels, points = np.zeros(0, np.int64), np.zeros((0, 3))
@@ -168,7 +172,9 @@ class _Reader:
             data = table["label"].astype(np.int64), table["v"].astype(np.float64)
         else:
             data = self._rows(stored)
-        self.frames.setdefault((*where, time), {})[name] = data
+        # Modes may have the same frequency: the number of the set tells them apart.
+        kind, number = int(head[56:58] or 0), int(head[58:63] or 0)
+        self.frames.setdefault((*where, time, kind, number), {})[name] = data
 
     def _results(
         self, labels: Ints, points: Floats, elements: list[tuple[int, int, list[int]]]
@@ -196,7 +202,7 @@ class _Reader:
         results = Results(Model(mesh, self.source.path.stem))
         results.notes.append("RF of a .frd file holds reactions and loads together")
         n = mesh.n_nodes
-        for (step, increment, time), data in self.frames.items():
+        for (step, increment, time, kind, _), data in self.frames.items():
 
             def at_nodes(name: str, data: Any = data) -> Floats | None:
                 if name not in data:
@@ -206,7 +212,11 @@ class _Reader:
                 out[index(own)] = values
                 return out
 
-            results.add(_frame(step, increment, time, n, at_nodes))
+            frame = _frame(step, increment, time, n, at_nodes)
+            if kind in MODES:
+                mode = 1 + sum("mode" in f.scalars and f.step == step for f in results.frames)
+                frame.scalars |= {MODES[kind]: time, "mode": float(mode)}
+            results.add(frame)
         return results
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from corota.io.frd.layout import (
     ELEMENTS,
     ENER,
     FORC,
+    PDISP,
     PE,
     STRESS,
     TOSTRAIN,
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
 
     from corota.io.frd.layout import Block
     from corota.model.model import Model
+    from corota.model.paths import Modes
     from corota.model.steps import Step
     from corota.results.results import Frame, Results
 
@@ -44,8 +47,26 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 END = b" 9999\n"
+#: Types of analysis of modes; 0 is static and 1 dynamic.
+ANALYSIS, COMPLEX = {"frequency": 2, "buckling": 4}, 3
 #: Numbers closer to 0 are 0: their exponents have three digits.
 TINY = 1e-99
+
+
+@dataclass(frozen=True)
+class _Head:
+    """What the lines before a block tell."""
+
+    step: int
+    increment: int
+    value: float
+    kind: int
+    mode: int = 0
+
+
+def _head_of(frame: Frame) -> _Head:
+    moving = frame.V is not None and bool(frame.V.any())
+    return _Head(frame.step, frame.increment, frame.time, 1 if moving else 0)
 
 
 class FrdWriter:
@@ -195,29 +216,62 @@ class FrdWriter:
             return
         self._frames += 1
         text = b"".join(
-            self._block(frame, block, labels, values) for block, labels, values in self._data(frame)
+            self._block(_head_of(frame), block, labels, values)
+            for block, labels, values in self._data(frame)
         )
+        self._append(text)
+
+    def add_modes(self, modes: Modes) -> None:
+        """Write modes of vibration or buckling, a set of blocks each.
+
+        Raises
+        ------
+        FileError
+            If the disk refuses.
+        """
+        labels = np.concatenate([self._model.mesh.node_labels, self._rigid_labels])
+        still = np.zeros((len(self._rigid_labels), 3))
+        kind = ANALYSIS[modes.kind] if modes.imaginary is None else COMPLEX
+        text = b""
+        for mode, (value, shape) in enumerate(zip(modes.factors, modes.shapes, strict=True)):
+            self._frames += 1
+            head = _Head(modes.step, 0 if kind == COMPLEX else 1, float(value), kind, mode + 1)
+            real = shape * [1.0, 1.0, 0.0]
+            text += self._block(head, DISP, labels, np.concatenate([real, still]))
+            if modes.imaginary is None:
+                continue
+            wave = real + 1j * modes.imaginary[mode] * [1.0, 1.0, 0.0]
+            polar = np.column_stack([np.abs(wave), np.degrees(np.angle(wave))])
+            polar = np.concatenate([polar, np.zeros((len(still), 6))])
+            text += self._block(head, PDISP, labels, polar)
+        self._append(text)
+
+    def _append(self, text: bytes) -> None:
         self._file.cut(self._file.length - len(END))
         self._file.append(text + END)
 
-    def _block(self, frame: Frame, block: Block, labels: Ints, values: Floats) -> bytes:
+    def _block(self, head: _Head, block: Block, labels: Ints, values: Floats) -> bytes:
         self._blocks += 1
-        when = frame.time
+        when = head.value
         shown = f"{when:#.10g}"[:11] if 1.0 <= abs(when) < 1e9 else f"{when:11.5E}"
         how = 2 if self._binary else 1
-        moving = frame.V is not None and bool(frame.V.any())
-        lines = [
-            f"    1PSTEP{self._blocks:26d}{frame.increment:12d}{frame.step:12d}{'':10}",
+        lines = [f"    1PSTEP{self._blocks:26d}{head.increment:12d}{head.step:12d}{'':10}"]
+        if head.kind in (ANALYSIS["frequency"], COMPLEX):
+            stiffness = (2.0 * np.pi * when) ** 2
+            lines += [f"    1P{n:<4}{v:26.6E}{'':34}" for n, v in (("GM", 1.0), ("GK", stiffness))]
+            numbers = (("HID", -1), ("SUBC", 0), ("MODE", head.mode))
+            lines += [f"    1P{n:<4}{v:26d}{'':34}" for n, v in numbers]
+        form = "MODAL" if head.kind == ANALYSIS["frequency"] else ""
+        lines += [
             f"  100CL{100 + self._frames:5d} {shown:<11}{len(labels):12d}{'':20}"
-            f"{1 if moving else 0:2d}{self._frames:5d}{'':10}{how:2d}",
+            f"{head.kind:2d}{self._frames:5d}{form:<10}{how:2d}",
             f" -4  {block.name:<8}{len(block.components) + bool(block.size):5d}    1",
         ]
         for name, kind, row, column in block.components:
             lines.append(f" -5  {name:<8}{1:5d}{kind:5d}{row:5d}{column:5d}")
         if block.size:
             lines.append(f" -5  {block.size:<8}{1:5d}{2:5d}{0:5d}{0:5d}{1:5d}{block.size}")
-        head = ("\n".join(lines) + "\n").encode()
-        return head + self._rows(labels, values)
+        return ("\n".join(lines) + "\n").encode() + self._rows(labels, values)
 
     def _data(self, frame: Frame) -> list[tuple[Block, Ints, Floats]]:
         """Blocks of an increment with their nodes and values."""
@@ -293,7 +347,7 @@ class FrdWriter:
 
 
 def write_frd(results: Results, path: Path, binary: bool = False, **options: Any) -> None:
-    """Write all increments but the state at the start.
+    """Write all increments but the state at the start, and all modes.
 
     Parameters
     ----------
@@ -309,6 +363,8 @@ def write_frd(results: Results, path: Path, binary: bool = False, **options: Any
     try:
         for frame in results.frames:
             writer.add(frame)
+        for modes in results.modes:
+            writer.add_modes(modes)
     finally:
         writer.close()
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.model.model import Model
+    from corota.model.paths import Modes
     from corota.model.steps import Step
     from corota.results.results import Frame, PointFields
 
@@ -226,6 +227,9 @@ class VtkhdfWriter:
             for (place, name), like in self._known.items()
         ]
         return {"count": self._count, "known": known}
+
+    def add_modes(self, modes: Modes) -> None:
+        """Nothing: modes have a file of their own."""
 
     def sync(self) -> None:
         """Bring the last commit to the disk."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from corota.model.model import Model
+    from corota.model.paths import Modes
     from corota.results.results import Frame, Results
 
 _NAMES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
@@ -136,6 +137,9 @@ class PvdWriter:
     def state(self) -> dict[str, Any]:
         """Frames so far."""
         return {"entries": list(self._entries)}
+
+    def add_modes(self, modes: Modes) -> None:
+        """Nothing: modes have a file of their own."""
 
     def sync(self) -> None:
         """Bring the frames to the disk."""
