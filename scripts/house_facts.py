@@ -22,7 +22,9 @@ FACADES = {
     "corota.results.results": {
         "corota.results.arrays",
         "corota.results.history",
+        "corota.results.members",
         "corota.results.probe",
+        "corota.results.section",
     },
 }
 #: Folders whose imports are looked at for circles by themselves.

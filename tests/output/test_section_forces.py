@@ -1,5 +1,7 @@
 """Section forces of cuts and of line elements: statics, closed forms, files, pictures."""
 
+# SPDX-License-Identifier: BSD-3-Clause
+
 import numpy as np
 import pytest
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,8 +60,6 @@ class Members(Brief):
 
     def to_dataframe(self) -> Any:
         """Table of elements and their forces as a ``pandas.DataFrame``."""
-        from corota.results.arrays import require
-
         mesh = self.results.mesh
         columns = {
             "element": mesh.cell_labels[self.cells],
@@ -71,7 +70,7 @@ class Members(Brief):
             "M1": self.M[:, 0],
             "M2": self.M[:, 1],
         }
-        return require("pandas", "data").DataFrame(columns)
+        return import_module("pandas").DataFrame(columns)
 
     def plot(
         self, name: str = "M", *, path: str | PathLike[str] | None = None, **options: Any
