@@ -179,12 +179,12 @@ def wrap_texts(figure: Any) -> None:
     columns = {round(ax.get_position().x0, 2) for ax in figure.axes if not hasattr(ax, "_colorbar")}
     count = max(len(columns), 1)
     for ax in figure.axes:
-        for text, room in (
+        for text, space in (
             (ax._left_title, 0.92 * wide / count),
             (ax.xaxis.label, 0.95 * wide / count),
             (ax.yaxis.label, 0.95 * high),
         ):
-            letters = max(int(room / (0.56 * text.get_fontsize())), 12)
+            letters = max(int(space / (0.56 * text.get_fontsize())), 12)
             lines = text.get_text().split("\n")
             if any(len(line) > letters for line in lines):
                 parts = [textwrap.fill(line, letters, break_on_hyphens=False) for line in lines]
