@@ -55,7 +55,7 @@ def stiff_part_of_cells(mesh: Mesh) -> Ints:
     return _components(row[order[same]], row[order[same + 1]], mesh.n_cells)
 
 
-def part_of_nodes(mesh: Mesh, without: NDArray[np.bool_]) -> Ints:
+def parts_without(mesh: Mesh, without: NDArray[np.bool_]) -> Ints:
     """Number the parts that hang together by cells, those of a mask left out; shape (n_nodes,)."""
     nodes, cells = _incidence(mesh)
     kept = ~without[cells]

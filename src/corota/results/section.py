@@ -12,7 +12,7 @@ import numpy as np
 from corota.display import Brief
 from corota.errors import InputError
 from corota.mesh.data import EDGES
-from corota.mesh.parts import cells_of, part_of_nodes
+from corota.mesh.parts import cells_of, parts_without
 from corota.mesh.shape_functions import shape_functions
 from corota.model import elements
 from corota.results.history import History
@@ -314,7 +314,7 @@ class Cut:
         crossed = np.zeros(mesh.n_cells, dtype=bool)
         for c in self.crossings:
             crossed[c.cells] = True
-        part = part_of_nodes(mesh, crossed)
+        part = parts_without(mesh, crossed)
         behind = np.unique(np.concatenate([part[c.nodes[~c.ahead]] for c in self.crossings]))
         ahead = np.unique(np.concatenate([part[c.nodes[c.ahead]] for c in self.crossings]))
         if np.isin(behind, ahead).any():
