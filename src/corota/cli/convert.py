@@ -21,6 +21,15 @@ def run(args: Any, terminal: Terminal) -> int:
     InputError
         If the target is the source, or a file that the source includes.
     """
+    if args.paraview:
+        from corota.io.paraview import write_paraview
+
+        path = write_paraview(args.source, args.field, scale=args.scale, target=args.target)
+        terminal.line(f"wrote {path}; open it with: paraview --script={path}")
+        terminal.record({"event": "convert", "source": args.source, "target": str(path)})
+        return 0
+    if not args.target:
+        raise InputError("name the file to write, such as job.frd; or give --paraview")
     target = os.path.realpath(args.target)
     if target == os.path.realpath(args.source):
         raise InputError(f"{args.target} is the source: name another file")

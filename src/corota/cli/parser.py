@@ -260,7 +260,16 @@ def make_parser() -> Parser:
 
     convert = command("convert", "Convert a mesh to a deck (.inp), or results to another format.")
     convert.add_argument("source")
-    convert.add_argument("target", help="the ending names the format")
+    convert.add_argument("target", nargs="?", help="the ending names the format")
+    convert.add_argument(
+        "--paraview",
+        action="store_true",
+        help="write a script beside the results that shows them in ParaView",
+    )
+    convert.add_argument("--field", default="", help="variable of the colors in ParaView")
+    convert.add_argument(
+        "--scale", type=float, default=1.0, help="factor of the displacements in ParaView"
+    )
     _reading(convert)
 
     verify = command("verify", "Measure the problems of the verification catalogue.")
