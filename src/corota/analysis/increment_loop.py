@@ -297,6 +297,9 @@ class NewtonStepper(ABC):
             loop.count("iterations", attempt.outcome.iterations)
             if not attempt.reason:
                 return self.accept(attempt)
+            near = loop.system.constraints.near_their_limit(loop.state.u)
+            if near and near not in attempt.reason:
+                attempt.reason = f"{attempt.reason}; {near}"
             loop.count("cut-backs")
             loop.state.failed = attempt.outcome
             end = control.cut(attempt.target)

@@ -25,6 +25,12 @@ NOT_CONSERVATIVE = (
 )
 
 
+#: Places on a chord at which forces are compared, evenly apart.
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+#: Ratio of second differences below which forces are not smooth.
+CORNER = 0.2
+
+
 def product(u: Floats, v: Floats, counted: Mask) -> float:
     """Scalar product over the counted dofs.
 
@@ -170,6 +176,10 @@ class PathSystem(Protocol):
         """
         ...
 
+    def has_corner(self, base: Point, point: Point, period: float) -> bool:
+        """Whether a law of the structure has a corner between two near equilibria."""
+        ...
+
     def commit(self) -> None:
         """Accept the last evaluated state."""
         ...
@@ -225,6 +235,25 @@ class SmoothPath:
 
     def around(self, *_: Any) -> None:
         """No kinks are known."""
+
+    def has_corner(self, base: Point, point: Point, period: float) -> bool:
+        """Whether forces along the chord of two near equilibria bend in one place only.
+
+        Where they are smooth, their second differences are alike; a corner of a law leaves some of
+        them without any.
+        """
+        forces = []
+        for share in SHARES:
+            u = base.u + share * (point.u - base.u)
+            factor = base.factor + share * (point.factor - base.factor)
+            at = self.system.evaluate(u, factor * period)
+            forces.append(np.where(self.system.conditions.constrained, 0.0, at.reaction))
+        self.system.evaluate(point.u, point.factor * period)
+        bends = [
+            float(np.abs(a - 2.0 * b + c).max())
+            for a, b, c in zip(forces, forces[1:], forces[2:], strict=False)
+        ]
+        return min(bends) < CORNER * max(bends)
 
     def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """See :class:`PathSystem`; `at` is overwritten."""

@@ -315,6 +315,10 @@ class Constraints:
             if a is not None:
                 a[relation.dependent] = j @ a[relation.masters] + relation.curve(u, v)
 
+    def near_their_limit(self, u: Floats) -> str:
+        """What may keep an increment from converging at `u`, or nothing."""
+        return next(filter(None, (r.near_its_limit(u) for r in self.relations)), "")
+
     def link(self, u: Floats) -> LinearizedConstraints:
         """Linearise at `u`."""
         g, direct = self._substituted(lambda r: r.jacobian(u))

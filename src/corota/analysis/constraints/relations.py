@@ -55,6 +55,10 @@ class Relation(ABC):
     def jacobian(self, u: Floats) -> Floats:
         """Derivative of the dependents by the masters at `u`, shape (d, m)."""
 
+    def near_its_limit(self, u: Floats) -> str:
+        """What may keep an increment from converging at `u`, or nothing."""
+        return ""
+
     def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
         """Second derivative of ``force . dependents`` by the masters, shape (m, m)."""
         return np.zeros((len(self.masters), len(self.masters)))

@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 
 #: The axis of the dependent displacement may come this close to the line (sine of the angle).
 CLOSEST = 1e-3
+#: From this angle on an increment that fails is said to fail for that [degrees].
+CLOSE = 15.0
 #: ``S v`` turns v by a right angle; ``e . S t = t . M e`` with M its transpose.
 S = np.array([[0.0, -1.0], [1.0, 0.0]])
 M = S.T
@@ -76,6 +78,20 @@ class OnLine(Relation):
     def _start(self) -> tuple[Floats, Floats]:
         node, first, last = self.points
         return node - first, last - first
+
+    def near_its_limit(self, u: Floats) -> str:
+        """See :class:`Relation`."""
+        if not self.nlgeom:
+            return ""
+        _, t = self._places(u)
+        length = float(np.hypot(*t)) or 1.0
+        angle = float(np.degrees(np.arcsin(min(abs(self.bound @ (S @ t)) / length, 1.0))))
+        if not angle < CLOSE:
+            return ""
+        return (
+            f"{self.what} has turned to within {angle:.1f} degrees of the displacement that it "
+            "determines; axes of the node (local_axes, *TRANSFORM) that lie otherwise help"
+        )
 
     def values(self, u: Floats) -> Floats:
         """See :class:`Relation`."""

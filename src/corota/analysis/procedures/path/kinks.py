@@ -3,7 +3,7 @@
 A smooth path turns little over an increment: its direction is the one nearest to the chord.
 Where contact closes, opens or begins to slip the direction jumps, by any angle. The chord is
 then a sum of the directions before and behind, and what changed its state tells which way leads
-on.
+on. At a corner of a nonlinear spring the sum alone tells.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -36,6 +36,7 @@ def direction(
     point: Point,
     aim: Tangent | None = None,
     sure: bool = False,
+    corner: Tangent | None = None,
 ) -> tuple[Tangent, float | None]:
     """Direction at a point that was evaluated last.
 
@@ -49,6 +50,8 @@ def direction(
         Direction at a point behind, or the predicted one.
     sure : bool
         Whether the increment is so short that what changed its state decides alone.
+    corner : Tangent, optional
+        Direction behind a corner of a law that lies in the increment.
 
     Returns
     -------
@@ -62,6 +65,8 @@ def direction(
         If the tangent matrix has no inverse there.
     """
     tangent, _ = tangent_at(system, point, metric)
+    if corner is not None:
+        return behind_corner(metric, base, old, point, tangent, corner)
     du, df = point.u - base.u, point.factor - base.factor
     if metric.dot(tangent.u, tangent.factor, du, df) < 0.0:
         tangent = tangent.reversed()
@@ -79,6 +84,27 @@ def direction(
             return tangent, np.inf  # chord and contact contradict each other
         tangent, aside = tangent.reversed(), other
     return tangent, aside / length
+
+
+def behind_corner(
+    metric: Metric, base: Point, old: Tangent, point: Point, tangent: Tangent, behind: Tangent
+) -> tuple[Tangent, float | None]:
+    """Direction at a point before or behind a corner, whichever of both it is like."""
+    before, after = (metric.dot(tangent.u, tangent.factor, t.u, t.factor) for t in (old, behind))
+    if abs(before) >= abs(after):
+        return (tangent if before > 0.0 else tangent.reversed()), None
+    tangent = tangent if after > 0.0 else tangent.reversed()
+    du, df = point.u - base.u, point.factor - base.factor
+    length = metric.size(du, df) or 1.0
+    return tangent, _aside(metric, du, df, old, tangent) / length
+
+
+def sense_behind(metric: Metric, base: Point, old: Tangent, point: Point, new: Tangent) -> Tangent:
+    """The sense of a direction behind a corner: the chord is a sum of it and the one before."""
+    du, df = point.u - base.u, point.factor - base.factor
+    back = new.reversed()
+    first, second = (_aside(metric, du, df, old, t) for t in (new, back))
+    return new if first <= second else back
 
 
 def _aside(metric: Metric, du: Floats, df: float, old: Tangent, new: Tangent) -> float:
@@ -103,4 +129,4 @@ def shares(
     return (p - c * q) / (1.0 - c * c), (q - c * p) / (1.0 - c * c)
 
 
-__all__ = ["direction", "shares"]
+__all__ = ["direction", "sense_behind", "shares"]

@@ -20,7 +20,7 @@ import numpy as np
 from corota.analysis.path_system import Metric, Point, Tangent
 from corota.analysis.procedures.path.controls import Arc, Factor, Plane, Row
 from corota.analysis.procedures.path.corrector import STILL, correct, tangent_at
-from corota.analysis.procedures.path.kinks import direction, shares
+from corota.analysis.procedures.path.kinks import direction, sense_behind, shares
 from corota.analysis.procedures.path.plan import End, Increment, PathStalled, Plan
 from corota.analysis.procedures.path.stability import Critical, Station, has_event, locate
 from corota.errors import SingularError
@@ -118,6 +118,10 @@ class PathTracer(ABC):
         self.count, self.begun, self.going = 0, False, False
         #: The bifurcation point from which the next increment takes another branch.
         self.crossing: Critical | None = None
+        #: How often the path turned too much since an increment was taken at once.
+        self.sharp = 0
+        #: Direction behind a corner of a law in the increment.
+        self.corner: Tangent | None = None
         self._evaluated: Point | None = None
 
     def __iter__(self) -> Iterator[Increment]:
@@ -228,6 +232,7 @@ class PathTracer(ABC):
         wanted = self._wanted()
         size = wanted
         while True:
+            self.corner = None
             guess, size = self._predict(size)
             control, name = self._control(guess, size)
             done = self._solve(guess, control, size)
@@ -340,7 +345,16 @@ class PathTracer(ABC):
             if aside is not None and aside > MAX_KINK_OFFSET:
                 return None, "the path has more than one kink"
             if aside is None and (turn > MAX_TURN or length > 3.0 * size):
-                return None, f"the path turns by {math.degrees(turn):.0f} degrees"
+                why = f"the path turns by {math.degrees(turn):.0f} degrees"
+                self.sharp += 1
+                if self.sharp <= KINK or not self.system.has_corner(self.base, point, self.period):
+                    return None, why
+                self.corner = sense_behind(self.metric, self.base, self.tangent, point, tangent)
+                tangent, aside = direction(
+                    self.system, self.metric, self.base, self.tangent, point, corner=self.corner
+                )
+                if aside is None or aside > MAX_KINK_OFFSET:
+                    return None, why
         return Station(1.0, point, tangent, aside is not None), ""
 
     def _angle(self, tangent: Tangent, du: Floats, df: float, length: float) -> float:
@@ -380,6 +394,8 @@ class PathTracer(ABC):
         self.landed = crossed is not None or any(self._reached(e, point) for e in self.plan.ends)
         self._commit(point)
         self.started = True
+        if self.attempt == 1 or self.corner is not None:
+            self.sharp = 0
         du, df = point.u - self.base.u, point.factor - self.base.factor
         length = self.first_metric.size(du, df)
         if critical is None:
@@ -501,7 +517,13 @@ class PathTracer(ABC):
             if done.point is None:
                 return None
             tangent, aside = direction(
-                self.system, self.metric, self.base, self.tangent, done.point, end.tangent
+                self.system,
+                self.metric,
+                self.base,
+                self.tangent,
+                done.point,
+                end.tangent,
+                corner=self.corner,
             )
             return Station(share, done.point, tangent, aside is not None)
 

@@ -205,6 +205,10 @@ class ContactPathEquations(ContactEquations):
             total += float((np.sign(slip) * gaps[k][1] * pair.stiffness)[slid].sum())
         return total
 
+    def has_corner(self, base: Point, point: Point, period: float) -> bool:
+        """Only kinks of contact are known."""
+        return False
+
     def commit(self) -> None:
         """Accept the last evaluated state, of bodies and contact."""
         assert self._now is not None
