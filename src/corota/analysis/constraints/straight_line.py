@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,9 +84,10 @@ class OnLine(Relation):
         """See :class:`Relation`."""
         if not self.nlgeom:
             return ""
-        _, t = self._places(u)
+        t = self._places(u)[1]
         length = float(np.hypot(*t)) or 1.0
-        angle = float(np.degrees(np.arcsin(min(abs(self.bound @ (S @ t)) / length, 1.0))))
+        across = abs(float(self.bound @ (S @ t)))
+        angle = math.degrees(math.asin(min(across / length, 1.0)))
         if not angle < CLOSE:
             return ""
         return (
