@@ -271,6 +271,17 @@ DECKS: dict[str, Callable[[], str]] = {
         _step("*DYNAMIC, DIRECT\n.02, .3", "*CLOAD\nTOPA, 2, -2.\nTOPA, 1, .5\n"),
         more="*INITIAL CONDITIONS, TYPE=VELOCITY\nNA, 2, -.2\n",
     ),
+    "contact, explicit": lambda: _pressed(
+        _RUB,
+        _step("*DYNAMIC, EXPLICIT\n, .3", "*CLOAD\nTOPA, 2, -2.\nTOPA, 1, .5\n"),
+        more="*INITIAL CONDITIONS, TYPE=VELOCITY\nNA, 2, -.2\n",
+    ),
+    "contact, explicit, nodes": lambda: _pressed(
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n5000.\n*FRICTION\n.2\n",
+        _step("*STATIC\n.5, 1.", "*BOUNDARY\nTOPA, 1, 1, 0.\nTOPA, 2, 2, -.02\n")
+        + _step("*DYNAMIC, EXPLICIT\n, .3", "*BOUNDARY\nTOPA, 1, 1, .05\nTOPA, 2, 2, -.02\n"),
+        "NODE TO SURFACE",
+    ),
     "contact on a rigid profile": lambda: (
         (EXAMPLES_FOLDER.parent / "docs/decks/contact.inp")
         .read_text()
@@ -279,6 +290,9 @@ DECKS: dict[str, Callable[[], str]] = {
     "tie": lambda: _pressed("", _step("*STATIC\n.2, 1.", "*CLOAD\nTOPA, 1, 4.\n")),
     "tie in motion": lambda: _pressed(
         "", _step("*DYNAMIC, DIRECT\n.02, .3", "*CLOAD\nTOPA, 1, 4.\n")
+    ),
+    "tie, explicit": lambda: _pressed(
+        "", _step("*DYNAMIC, EXPLICIT\n, .2", "*CLOAD\nTOPA, 1, 4.\n")
     ),
     "requests now and then": lambda: _strip(
         "*STEP, NLGEOM, INC=100\n*STATIC, DIRECT\n.05, 1.\n" + _TIP + "*NODE PRINT, NSET=RIGHTA,"

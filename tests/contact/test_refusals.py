@@ -90,14 +90,3 @@ def test_a_body_that_nothing_holds_sideways():
     model.contact("up.bottom", "low.top")
     with pytest.raises(ct.SingularError, match="unconstrained"):
         ct.solve(model, threads=1)
-
-
-def test_explicit_motion_takes_no_contact():
-    """It went on without: bodies passed through each other."""
-    mesh = ct.mesh.rectangle(1.0, 0.5, 4, 2)
-    model = ct.Model(mesh)
-    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3, rho=1.0))
-    model.velocity(y=-1.0)
-    model.contact("bottom", ct.RigidCurve.line((-1.0, -0.01), (2.0, -0.01)))
-    with pytest.raises(ct.UnsupportedError, match="central differences take no contact"):
-        ct.solve(model, ct.Dynamic(period=0.1, scheme="central_difference"), threads=1)

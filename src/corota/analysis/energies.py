@@ -36,9 +36,10 @@ TERMS = {
     "ALLFD": "frictional dissipation",
     "ALLSD": "dissipation of contact stabilisation",
     "ALLCL": "energy stored by contact pressure laws",
+    "ALLPW": "work of contact forces in central differences less ALLFD and ALLCL",
     "ALLWK": "work of loads and of supports that move",
     "ALLTH": "work of thermal expansion: what changes of temperature put into the body",
-    "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLWK - ALLTH",
+    "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }
 #: Share of the largest energy from which a balance error is worth a warning.
 LARGE_ERROR = 0.02
@@ -66,6 +67,8 @@ class Energies:
     def __init__(self, system: System) -> None:
         self.system = system
         self.work = self.viscous = self.contact = self.internal = self.kinetic = 0.0
+        #: Of contact in central differences, less friction and what laws store; None without.
+        self.impact: float | None = None
         self.error, self.where = 0.0, (1, 0)
         self.scheme = "static"
         self._reference: float | None = None
@@ -142,6 +145,9 @@ class Energies:
         }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
         own["ETOTAL"] = sum(own[k] for k in gained) - own["ALLWK"] - own["ALLTH"]
+        if self.impact is not None:
+            own["ALLPW"] = self.impact
+            own["ETOTAL"] -= self.impact
         if self._reference is None:
             self._reference = own["ETOTAL"]
         missing = own["ETOTAL"] - self._reference
@@ -160,6 +166,11 @@ class Energies:
         expansion = free.largest(free.start - free.now) * length if free.expands else 0.0
         rounding = scales.nothing * max(scales.moved, NEGLIGIBLE_ENERGY * length)
         return max(rounding, NEGLIGIBLE_ENERGY * scales.stiffest * expansion**2)
+
+    @property
+    def largest(self) -> float:
+        """Largest energy so far [force*length]."""
+        return self._largest
 
     @property
     def made_by_contact(self) -> bool:

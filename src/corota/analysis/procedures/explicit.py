@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.energies import LARGE_ERROR
 from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.procedures.motion_start import initial_velocity
+from corota.analysis.terms.contact.forward import forward_contact
 from corota.analysis.terms.damping import material_pairs
 from corota.analysis.terms.inertia import Inertia
 from corota.errors import ConvergenceError, InputError, ModelError, UnsupportedError
@@ -38,7 +41,7 @@ FRAMES = 200
 #: Attributes of the stepper that a checkpoint holds.
 MEMORY = (
     *("known", "done", "n", "keep", "wanted", "dt", "stable", "u", "v", "at"),
-    *("begin", "work", "internal", "told", "driven"),
+    *("begin", "work", "internal", "told", "driven", "contact"),
 )
 
 
@@ -105,7 +108,7 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
     InputError
         If there is damping, which this scheme leaves out.
     UnsupportedError
-        If there are constraints or contact.
+        If there are constraints.
     ModelError
         If the asked increment is not stable; the message gives the stable one. If a free dof
         with stiffness or load has no mass, or if there is no stiffness to find an increment from.
@@ -125,10 +128,11 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
             "the masses of others, and the mass is no diagonal any more; use an implicit scheme",
             step.where,
         )
-    system.contact_term.check_explicit(step)
     stepper = ExplicitStepper(loop, step, stops)
     loop.run(stepper)
-    loop.state.reaction = None
+    # A static step that follows needs the static equation at this displacement.
+    loop.state.reaction, loop.state.at = None, stepper.at
+    stepper.tell_of_impacts()
     if stepper.keep > 1:
         warnings.warn(
             f"central differences took {stepper.n} increments of {stepper.dt:.3g} (stable: "
@@ -173,12 +177,18 @@ class ExplicitStepper:
         self.moving = ~constrained & (mass > 0.0)
         self.idle = ~constrained & ~self.moving
         self.inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=self.moving)
-        if not resumes:
-            _refuse_pushed(system, self.idle, self.at)
-        a = -self.inverse * self.at.residual
         assert state.energies is not None
         self.account = account = state.energies
-        account.drive(self.at.external, self.at.residual)
+        self.contact = forward_contact(system, account, dt)
+        if not resumes:
+            _refuse_pushed(system, self.idle, self.at)
+        free = state.v - 0.5 * dt * self.inverse * self.at.residual
+        still, force = np.zeros_like(free), np.zeros_like(free)
+        if not resumes:
+            force = self._touch(still, state.v, free, 0.5, 0.0)
+        residual = self.at.residual - force
+        a = -self.inverse * residual
+        account.drive(self.at.external, residual)
         self.begin = account.work
         #: Velocity half an increment ahead.
         self.v = state.v + 0.5 * dt * a
@@ -189,13 +199,16 @@ class ExplicitStepper:
         self.driven = 0.5 * float((mass * state.v**2)[constrained].sum())
         self.done = 0
         if resumes:
-            for name, value in state.resume(self.kind, known=self.known).items():
+            fresh = {"known": self.known, "contact": self.contact}
+            for name, value in state.resume(self.kind, **fresh).items():
                 if name != "kind":
                     setattr(self, name, value)
             return
-        state.at, state.a = self.at, np.where(constrained, given_a, a)
-        state.reaction = np.where(constrained, self.at.residual + mass * given_a, 0.0)
-        loop.show_start({"kinetic energy": first, "external work": account.work})
+        state.at = replace(self.at, internal=self.at.internal - force)
+        state.a = np.where(constrained, given_a, a)
+        state.reaction = np.where(constrained, residual + mass * given_a, 0.0)
+        scalars = {"kinetic energy": first, "external work": account.work}
+        loop.show_start(scalars | self.contact.sums())
 
     def _increment(self) -> float:
         """Increment that was asked for, or a stable one [time]."""
@@ -261,11 +274,13 @@ class ExplicitStepper:
         self.at = at = system.evaluate(self.u, time)
         system.commit()
         _refuse_pushed(system, self.idle, at)
-        a = -self.inverse * at.residual
-        account.add_work(du, at.external, at.residual)
-        self.internal += float(0.5 * (before.internal + at.internal) @ du)
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
         given_v, given_a = system.conditions.support_rates(time, dt)
+        force = self._touch(du, self.v, self.v - dt * self.inverse * at.residual, 1.0, time)
+        residual = at.residual - force
+        a = -self.inverse * residual
+        account.add_work(du, at.external, residual)
+        self.internal += float(0.5 * (before.internal + at.internal) @ du)
         whole = np.where(constrained, given_v, self.v + 0.5 * dt * a)
         # Supports accelerate the mass that moves with them.
         moved = 0.5 * float((mass * whole**2)[constrained].sum())
@@ -276,7 +291,7 @@ class ExplicitStepper:
         stiff = float(np.where(self.moving, at.internal - before.internal, 0.0) @ du)
         inert = float(np.where(self.moving, mass * du, 0.0) @ du)
         kinetic = 0.5 * float(whole @ (mass * whole))
-        pending = float((at.external + np.where(constrained, at.residual, 0.0)) @ whole) * dt
+        pending = float((at.external + np.where(constrained, residual, 0.0)) @ whole) * dt
         allowed = BLOW_UP * self.known.energy(worked, self.internal, pending)
         # The frequency of the increment itself is above the stable one, and energy comes of it.
         unstable = stiff * dt**2 > 4.0 * inert and kinetic + self.internal > allowed
@@ -288,20 +303,58 @@ class ExplicitStepper:
         self.done = i
         if i % self.keep and i != self.n and i not in self.wanted:
             return None
-        state.u, state.v, state.at = self.u, whole, at
+        state.u, state.v = self.u, whole
+        state.at = replace(at, internal=at.internal - force)
         state.a = np.where(constrained, given_a, a)
         state.step_time, account.kinetic = time, kinetic
         account.internal += self.internal - self.told
         self.told = self.internal
-        state.reaction = np.where(constrained, at.residual + mass * given_a, 0.0)
+        state.reaction = np.where(constrained, residual + mass * given_a, 0.0)
         scalars = {
             "dt": dt,
             "iterations": 1.0,
             "external work": account.work,
             "internal work": account.internal,
             "kinetic energy": kinetic,
+            **self.contact.sums(),
         }
         return Accepted(i, time / self.step.period, scalars)
+
+    def _touch(self, du: Floats, before: Floats, free: Floats, share: float, time: float) -> Floats:
+        """Contact forces at a state, shape (n_dofs,).
+
+        Parameters
+        ----------
+        du : ndarray, shape (n_dofs,)
+            Increment that ended there.
+        before, free : ndarray, shape (n_dofs,)
+            Velocity before the state, and behind it without contact.
+        share : float
+            Of an increment that forces act over.
+        time : float
+            Step time.
+        """
+        system, dt = self.system, self.dt
+        held = system.conditions.constrained
+        driven = dt * system.conditions.support_rates(time, dt)[0]
+        if time < self.step.period - 0.5 * dt:
+            driven = system.conditions.prescribed(time + dt, self.u) - self.u
+        ahead = np.where(held, driven, dt * free)
+        force = self.contact.act(self.u, du, ahead, dt * before, share, self.inverse, time)
+        if self.idle.any():
+            pushed = self.idle & (np.abs(force) > BALANCED * np.abs(force).max())
+            _refuse_idle(system, pushed, "has a contact force on it but no mass")
+        return force
+
+    def tell_of_impacts(self) -> None:
+        """Note what impacts have cost, where that is much."""
+        account = self.account
+        if account.impact is not None and -account.impact > LARGE_ERROR * account.largest:
+            self.state.notes.append(
+                f"impacts have taken {-account.impact / account.largest:.1%} of the largest "
+                "energy (ALLPW): nodes stop at once in central differences, with their mass; "
+                "finer meshes lose less"
+            )
 
 
 class Known:

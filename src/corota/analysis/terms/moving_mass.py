@@ -47,7 +47,9 @@ def mass_of_step(steps: Sequence[Step], number: int) -> MovingMass:
     before = [step for step in steps[: number - 1] if isinstance(step, Dynamic)]
     for step in later[:1] or before[-1:]:
         explicit = step.scheme == "central_difference"
-        return MovingMass("lumped" if explicit else step.mass, step.redistribute)
+        if explicit:
+            return MovingMass("lumped")
+        return MovingMass(step.mass, step.redistribute)
     modes = [step for step in steps[number - 1 :] if isinstance(step, Frequency)]
     return MovingMass(modes[0].mass) if modes else MovingMass()
 

@@ -158,20 +158,6 @@ class ContactTerm:
                 found[pair.slave.node_list] = True
         return found
 
-    def check_explicit(self, step: Step) -> None:
-        """Refuse a step without linear equations.
-
-        Raises
-        ------
-        UnsupportedError
-        """
-        if self.pairs:
-            raise UnsupportedError(
-                "central differences take no contact pairs and no ties; use an implicit scheme "
-                "(hht, generalized_alpha, energy_momentum; *DYNAMIC without EXPLICIT)",
-                step.where,
-            )
-
     # -- steps -------------------------------------------------------------------------
 
     def begin(self, step: Step) -> None:
@@ -196,7 +182,7 @@ class ContactTerm:
         scheme = getattr(step, "scheme", "")
         self.persistent = scheme == "energy_momentum"
         if self.number == 1:
-            self._start()
+            self._start(getattr(step, "scheme", "") == "central_difference")
         x = self.positions(self.u)
         for pair in self.pairs:
             pair.fixed = pair.start = None
@@ -207,7 +193,7 @@ class ContactTerm:
             self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
         self._keep_law_force()
 
-    def _start(self) -> None:
+    def _start(self, explicit: bool) -> None:
         """Look at the gaps of the start; report, adjust or note what to ramp."""
         x = self.positions(self.u)
         for pair in self.pairs:
@@ -238,7 +224,10 @@ class ContactTerm:
             longest = float(pair.slave.length.max())
             if gap[deepest] < -1e-9 * longest:
                 how = {
-                    "keep": "is pushed out in the first increment (start='ramp' spreads "
+                    "keep": "stays until it opens, for central differences push nothing out at "
+                    "once (start='ramp' spreads it over the step)"
+                    if explicit
+                    else "is pushed out in the first increment (start='ramp' spreads "
                     "it over the step, start='adjust' takes it as touching without strain)",
                     "adjust": "counts as touching, without strain",
                     "ramp": "is pushed out over the first step",
@@ -311,7 +300,7 @@ class ContactTerm:
         found = []
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
-                self._ramp(pair, step_time)
+                pair.core.offset = self.offset_at(pair, step_time)
                 terms = pair.evaluate(x, old, system.nlgeom)
             found.append(terms)
             acting = terms.acting
@@ -351,15 +340,16 @@ class ContactTerm:
             if self.at is not None:
                 self.law_force = self._forces_of_laws(self.at.terms, self.committed)
 
-    def _ramp(self, pair: Pair, step_time: float) -> None:
+    def offset_at(self, pair: Pair, step_time: float) -> Floats:
+        """Gaps of a pair that count as none at a time of the step, shape (n,)."""
         item = pair.item
-        if not isinstance(item, ContactPair) or self.number > 1:
-            return
-        # A first increment that is cut pushes out its share.
-        period = {"ramp": self.period, "keep": self.first}.get(item.start, 0.0)
-        if period > 0.0:
-            left = max(1.0 - step_time / period, 0.0)
-            pair.core.offset = pair.base + pair.overlap * left
+        if isinstance(item, ContactPair) and self.number <= 1:
+            # A first increment that is cut pushes out its share.
+            period = {"ramp": self.period, "keep": self.first}.get(item.start, 0.0)
+            if period > 0.0:
+                left = max(1.0 - step_time / period, 0.0)
+                return np.asarray(pair.base + pair.overlap * left)
+        return np.asarray(pair.core.offset)
 
     def _measure(self, values: Floats) -> None:
         """Pressure per gap of each node: stiffness of the node over its area."""

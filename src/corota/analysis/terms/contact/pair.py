@@ -318,7 +318,7 @@ class Pair:
             complementarity += np.abs(q - np.where(seen, np.clip(q - c * slip, -bound, bound), 0.0))
         return area * complementarity
 
-    def _pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
+    def pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
         """The law at gaps: pressure, slope, energy per area; none where it has not begun."""
         assert self.law is not None
         begun = -gap > self.law.start
@@ -328,8 +328,8 @@ class Pair:
     def _law_now(self, gap: Floats) -> tuple[Floats, Floats]:
         """Pressure of the law in this increment, which ends with gaps, and its slope."""
         if self.start is None:
-            return self._pressure(gap)[:2]
-        return mean_pressure(self._pressure, self.gap_of_start() / self.area, gap)
+            return self.pressure(gap)[:2]
+        return mean_pressure(self.pressure, self.gap_of_start() / self.area, gap)
 
     def law_energy(self, terms: Terms) -> float:
         """Energy of the pressure law [force*length]."""
@@ -337,7 +337,7 @@ class Pair:
             return 0.0
         seen = terms.area > COVERED * self.full
         gap = np.where(seen, terms.gap / self.area, -self.law.start)
-        return float((self._pressure(gap)[2] * self.area)[seen].sum())
+        return float((self.pressure(gap)[2] * self.area)[seen].sum())
 
     def rows(
         self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats

@@ -1,0 +1,469 @@
+"""Contact of central differences: forward-increment Lagrange multipliers.
+
+The contact forces at the beginning of an increment make its end fit the surfaces (Carpenter,
+Taylor and Katona 1991): with the displacement that the motion would have without them,
+
+    gap + dt G v + dt^2 G M^-1 G^T p >= 0,    p >= 0,
+
+and the same with the slip and Coulomb's bound. Gaps and gradients are those of the beginning,
+so that forces keep linear and angular momentum to rounding; what is of second order in the
+increment is made good in the next one.
+
+A pressure law takes the mean ``(g0 + 2 g1 + g2) / 4`` of three gaps, which keeps energy; where it
+is too stiff for the increment, the gap at its end, as if there were none. Both are stable.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.analysis.terms.contact.active_set import UnilateralConstraints
+from corota.analysis.terms.contact.contact import ContactState
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN
+from corota.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.energies import Energies
+    from corota.analysis.equations import System
+    from corota.analysis.terms.contact.active_set import Law
+    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.pair import Pair, Terms
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Rounds in which forces close further constraints.
+ROUNDS = 20
+#: Square of the frequency of a mass on a law, times dt^2, beyond which the law is not resolved.
+RESOLVED = 1.0
+#: Entries of a matrix from which it is taken for sparse.
+DENSE = 100_000
+#: Depth, in edges, that a surface nothing can move may be pressed into another.
+DEPTH = 1e-6
+
+
+class NoForwardContact:
+    """A model without pairs and ties.
+
+    Parameters
+    ----------
+    n_dofs : int
+    """
+
+    def __init__(self, n_dofs: int) -> None:
+        self.n_dofs = n_dofs
+
+    def act(
+        self,
+        u: Floats,
+        moved: Floats,
+        ahead: Floats,
+        before: Floats,
+        share: float,
+        inverse: Floats,
+        time: float,
+    ) -> Floats:
+        """No force."""
+        return np.zeros(self.n_dofs)
+
+    def sums(self) -> dict[str, float]:
+        """Nothing to show."""
+        return {}
+
+
+class ForwardContact:
+    """Contact pairs and ties in a step of central differences.
+
+    Parameters
+    ----------
+    contact : ContactTerm
+    account : Energies
+    dt : float
+        Increment [time].
+
+    Attributes
+    ----------
+    depth : list of ndarray
+        Of each pair, what surfaces overlap by that is not pushed out [length]: what was there
+        when contact began. It stays until the gap opens.
+    """
+
+    def __init__(self, contact: ContactTerm, account: Energies, dt: float) -> None:
+        self.contact, self.account, self.dt = contact, account, dt
+        self.depth = [np.zeros(pair.n) for pair in contact.pairs]
+        self.state = [np.full(pair.n, OPEN, np.int8) for pair in contact.pairs]
+        self.sense = [np.ones(pair.n if pair.two else 0) for pair in contact.pairs]
+        # Work of the forces of the last state in the first half of what follows.
+        self.pending = 0.0
+        self.rubbed = [0.0] * len(contact.pairs)
+        if account.impact is None:
+            account.impact = 0.0
+
+    def act(
+        self,
+        u: Floats,
+        moved: Floats,
+        ahead: Floats,
+        before: Floats,
+        share: float,
+        inverse: Floats,
+        time: float,
+    ) -> Floats:
+        """Contact forces at a state, committed with it.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n_dofs,)
+        moved : ndarray, shape (n_dofs,)
+            Increment that ended at `u`.
+        ahead : ndarray, shape (n_dofs,)
+            Increment that follows without contact.
+        before : ndarray, shape (n_dofs,)
+            What it would be if no force acted on free dofs.
+        share : float
+            Of the increment that the forces act over: 1, or 1/2 at the start of a motion.
+        inverse : ndarray, shape (n_dofs,)
+            Inverse mass, zero where nothing moves by force.
+        time : float
+            Step time.
+
+        Returns
+        -------
+        ndarray, shape (n_dofs,)
+
+        Raises
+        ------
+        ConvergenceError
+            If surfaces that nothing can move are pressed into each other, or no forces are found.
+        """
+        contact, system = self.contact, self.contact.system
+        with system.timed("contact"):
+            x = contact.positions(u)
+            found = [self._look(pair, x, time) for pair in contact.pairs]
+            problem = _Increment(self, found, ahead, before, share, inverse, time)
+            multipliers = problem.solve()
+            force, size = self._forces(found, multipliers)
+            self._count(found, multipliers, force, moved, ahead + problem.pushed)
+            self._commit(u, found, multipliers, force, size, time)
+        return force
+
+    def sums(self) -> dict[str, float]:
+        """What a frame shows of contact."""
+        return self.contact.work_sums(self.account.contact)
+
+    def _look(self, pair: Pair, x: Floats, time: float) -> Terms:
+        """Gaps at a state."""
+        pair.core.offset = self.contact.offset_at(pair, time)
+        return pair.evaluate(x, x, self.contact.system.nlgeom)
+
+    def _forces(self, found: list[Terms], multipliers: Floats) -> tuple[Floats, Floats]:
+        contact, n = self.contact, self.contact.system.n_dofs
+        force, size = np.zeros(n + 1), np.zeros(n + 1)
+        for pair, terms, (p, q) in zip(
+            contact.pairs, found, contact.parts(multipliers), strict=True
+        ):
+            part = p[terms.constraint, None] * terms.gap_gradient
+            if pair.two:
+                part = part + q[terms.constraint, None] * terms.slip_gradient
+            where = contact.dofs(terms.variables)
+            np.add.at(force, where, part)
+            np.add.at(size, where, np.abs(part))
+        return force[:-1], size[:-1]
+
+    def _count(
+        self,
+        found: list[Terms],
+        multipliers: Floats,
+        force: Floats,
+        moved: Floats,
+        ahead: Floats,
+    ) -> None:
+        """Add the work of the forces, half of it on either side of the state."""
+        contact, account = self.contact, self.account
+        assert account.impact is not None
+        done = self.pending + 0.5 * float(force @ moved)
+        self.pending = 0.5 * float(force @ ahead)
+        account.contact += done
+        account.impact += done
+        for i, (pair, terms, (_, q)) in enumerate(
+            zip(contact.pairs, found, contact.parts(multipliers), strict=True)
+        ):
+            stored = pair.law_energy(contact.at.terms[i]) if contact.at is not None else 0.0
+            seen = terms.area > COVERED * pair.full
+            pair.area = np.where(seen, terms.area, pair.full)
+            account.impact += pair.law_energy(terms) - stored
+            if not pair.friction:
+                continue
+            slip = travel(contact, terms, terms.slip_gradient, moved, pair.n)
+            more = travel(contact, terms, terms.slip_gradient, ahead, pair.n)
+            rubbed = self.rubbed[i] + 0.5 * float(np.maximum(-q * slip, 0.0).sum())
+            self.rubbed[i] = 0.5 * float(np.maximum(-q * more, 0.0).sum())
+            pair.friction_work += rubbed
+            account.impact += rubbed
+            pair.slid += np.where(q != 0.0, slip / pair.area, 0.0)
+
+    def _commit(
+        self,
+        u: Floats,
+        found: list[Terms],
+        multipliers: Floats,
+        force: Floats,
+        size: Floats,
+        time: float,
+    ) -> None:
+        contact = self.contact
+        for pair in contact.pairs:
+            pair.core.commit()
+        contact.u, contact.committed, contact.time = u.copy(), multipliers, time
+        states = [state.copy() for state in self.state]
+        contact.at = ContactState(found, force, size, multipliers, None, states)
+
+
+class _Increment:
+    """The constraints of one increment, those of all pairs one after the other."""
+
+    def __init__(
+        self,
+        own: ForwardContact,
+        found: list[Terms],
+        ahead: Floats,
+        before: Floats,
+        share: float,
+        inverse: Floats,
+        time: float,
+    ) -> None:
+        self.own, self.contact, self.found = own, own.contact, found
+        self.share, self.inverse = share, inverse
+        self.pushed: Floats = np.zeros_like(ahead)
+        pairs = self.contact.pairs
+        counts = [pair.n for pair in pairs]
+        self.first = np.concatenate([[0], np.cumsum(counts)])
+        self.n = int(self.first[-1])
+        joined = {
+            "area": [terms.area for terms in found],
+            "full": [pair.full for pair in pairs],
+            "gap": [terms.gap for terms in found],
+            "slip": [terms.slip if pair.tied else np.zeros(pair.n) for pair, terms in self._each()],
+            "noise": [np.full(pair.n, pair.noise) for pair in pairs],
+        }
+        self.area, self.full, gap, slip, noise = (np.concatenate(v) for v in joined.values())
+        self.tied = np.repeat([pair.tied for pair in pairs], counts)
+        self.ruled = np.repeat([pair.law is not None for pair in pairs], counts)
+        self.friction = np.repeat([pair.friction for pair in pairs], counts)
+        self.two = np.repeat([pair.two for pair in pairs], counts)
+        self.seen = self.area > COVERED * self.full
+        self.tolerance = noise * self.full
+        self.state = np.concatenate(own.state)
+        self.sense = np.ones(self.n)
+        self.sense[self.two] = np.concatenate(own.sense)
+        travelled, slid = self._travel(ahead)
+        self.travel = travelled
+        ramp = np.concatenate([self._ramp(pair, time) for pair in pairs])
+        depth = self._depth(gap)
+        own.depth = np.split(depth, self.first[1:-1])
+        self.gap = gap + depth * self.area + travelled + ramp * self.area
+        self.slip = slip + slid
+        # A law takes the mean of the last three gaps: a quarter of dt^2 times the acceleration.
+        rest = self._travel(before)[0]
+        self.soft = gap + 0.25 / share * (travelled - rest)
+
+    def _each(self) -> list[tuple[Pair, Terms]]:
+        return list(zip(self.contact.pairs, self.found, strict=True))
+
+    def _travel(self, moved: Floats) -> tuple[Floats, Floats]:
+        """Changes of all gaps and slips by a displacement, linearized."""
+        gaps, slips = [], []
+        for pair, terms in self._each():
+            gaps.append(travel(self.contact, terms, terms.gap_gradient, moved, pair.n))
+            some = travel(self.contact, terms, terms.slip_gradient, moved, pair.n)
+            slips.append(some if pair.two else np.zeros(pair.n))
+        return np.concatenate(gaps), np.concatenate(slips)
+
+    def _ramp(self, pair: Pair, time: float) -> Floats:
+        """What gaps change by as overlaps of the start are pushed out over the step [length]."""
+        later = self.contact.offset_at(pair, time + self.own.dt)
+        return np.asarray(self.contact.offset_at(pair, time) - later)
+
+    def _depth(self, gap: Floats) -> Floats:
+        """Overlap that is not pushed out: that at which contact began, or what is left of it."""
+        overlap = np.where(self.seen, np.maximum(-gap, 0.0) / np.maximum(self.area, 1e-300), 0.0)
+        old = np.concatenate(self.own.depth)
+        depth = np.where(self.state != OPEN, np.minimum(old, overlap), overlap)
+        return np.where(self.tied | self.ruled, 0.0, depth)
+
+    # -- forces ------------------------------------------------------------------------
+
+    def solve(self) -> Floats:
+        """Multipliers of all pairs, shape (contact.n,)."""
+        self.state[~self.seen] = OPEN
+        own = self.contact
+        multipliers = np.zeros(own.n)
+        p, q = np.zeros(self.n), np.zeros(self.n)
+        chosen = self.seen & (self.tied | (self.state != OPEN) | (self.gap < -self.tolerance))
+        chosen |= self.seen & self.ruled & (self.gap < self.area * self._start_of_laws())
+        movable = np.zeros(self.n, bool)
+        for _ in range(ROUNDS):
+            if not chosen.any():
+                break
+            movable, p, q, self.pushed = self._forces(chosen)
+            rise = self._travel(self.pushed)[0] if self.pushed.any() else 0.0
+            more = self.seen & ~chosen & ~self.ruled & (self.gap + rise < -self.tolerance)
+            if not more.any():
+                break
+            chosen = chosen | more
+        self._check(chosen & ~movable)
+        self.state[~chosen | ~movable] = OPEN
+        self.own.state = np.split(self.state, self.first[1:-1])
+        sense = np.split(self.sense, self.first[1:-1])
+        self.own.sense = [s[: len(old)] for s, old in zip(sense, self.own.sense, strict=True)]
+        for pair, a, b in zip(own.pairs, self.first[:-1], self.first[1:], strict=True):
+            multipliers[pair.first : pair.first + pair.n] = p[a:b]
+            if pair.two:
+                multipliers[pair.first + pair.n : pair.first + pair.width] = q[a:b]
+        return multipliers
+
+    def _start_of_laws(self) -> Floats:
+        """Gaps below which pressure laws act, shape (n,), twice as far for what others do."""
+        starts = [
+            np.full(pair.n, 0.0 if pair.law is None else max(-pair.law.start, 0.0))
+            for pair in self.contact.pairs
+        ]
+        return 2.0 * np.concatenate(starts)
+
+    def _forces(
+        self, chosen: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.bool_], Floats, Floats, Floats]:
+        """Forces of some constraints: which can act, p and q, and what they move."""
+        rows, columns, values = self._gradients(chosen)
+        dofs, columns = np.unique(columns, return_inverse=True)
+        mass = self.share * self.inverse[dofs]
+        size = np.bincount(rows, values * values * mass[columns], 2 * self.n)
+        movable = chosen & (size[: self.n] > 0.0)
+        normal = np.flatnonzero(movable)
+        tangent = np.flatnonzero(movable & self.two & (size[self.n :] > 0.0))
+        here = np.concatenate([normal, self.n + tangent])
+        kept = np.isin(rows, here)
+        rows, columns, values = np.searchsorted(here, rows[kept]), columns[kept], values[kept]
+        matrix = _compliance(rows, columns, values, mass, len(here))
+        place = np.cumsum(movable) - 1
+        matrix *= self.own.dt**2
+        laws = self._laws(movable, place)
+        stiff = np.zeros(len(normal), bool)
+        deepest = np.minimum(self.gap, self.gap - self.travel)[normal]
+        for some, law in laws:
+            square = -law(some, deepest[some])[1] * np.diagonal(matrix)[some] / self.share
+            stiff[some] = square > RESOLVED
+        problem = UnilateralConstraints(
+            matrix,
+            self.gap[normal],
+            self.slip[tangent],
+            place[tangent],
+            self.friction[tangent],
+            self.tied[normal],
+            self.tolerance[normal],
+            np.where(stiff, self.gap[normal], self.soft[normal]),
+            np.where(stiff, 1.0, 0.25 / self.share),
+            laws,
+        )
+        fresh = (self.state[normal] == OPEN) & (self.gap[normal] < -self.tolerance[normal])
+        start = np.where(fresh, CLOSED, self.state[normal]).astype(np.int8)
+        found = problem.solve(start, self.sense[tangent])
+        if found is None:
+            raise ConvergenceError(
+                f"no contact forces found for {len(normal)} nodes in contact: the constraints "
+                "contradict each other; use fewer pairs at the same nodes, or an implicit scheme"
+            )
+        z, state, sense = found
+        self.state[normal], self.sense[tangent] = state, sense
+        p, q = np.zeros(self.n), np.zeros(self.n)
+        p[normal], q[tangent] = z[: len(normal)], z[len(normal) :]
+        pushed = np.zeros_like(self.inverse)
+        moved = np.bincount(columns, values * z[rows], len(dofs))
+        pushed[dofs] = self.own.dt**2 * mass * moved
+        return movable, p, q, pushed
+
+    def _gradients(self, chosen: NDArray[np.bool_]) -> tuple[Ints, Ints, Floats]:
+        """Triplets of the gradients of gaps, and of slips behind them, where masses move."""
+        rows, columns, values = [], [], []
+        for (pair, terms), first in zip(self._each(), self.first, strict=False):
+            own = chosen[first : first + pair.n]
+            kept = own[terms.constraint]
+            where = self.contact.dofs(terms.variables[kept])
+            row = np.repeat(first + terms.constraint[kept], where.shape[1])
+            kinds = [(0, terms.gap_gradient)]
+            if pair.two:
+                kinds.append((self.n, terms.slip_gradient))
+            for offset, gradient in kinds:
+                flat, value = where.ravel(), gradient[kept].ravel()
+                acts = (flat >= 0) & (value != 0.0)
+                acts[acts] &= self.inverse[flat[acts]] > 0.0
+                rows.append(offset + row[acts])
+                columns.append(flat[acts])
+                values.append(value[acts])
+        return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+
+    def _laws(self, movable: NDArray[np.bool_], place: Ints) -> list[tuple[Ints, Law]]:
+        out: list[tuple[Ints, Law]] = []
+        area = self.area[movable]
+        for (pair, _), first in zip(self._each(), self.first, strict=False):
+            if pair.law is None:
+                continue
+            mine = np.flatnonzero(movable[first : first + pair.n])
+
+            def law(rows: Ints, gap: Floats, pair: Pair = pair) -> tuple[Floats, Floats]:
+                pressure, slope, _ = pair.pressure(gap / area[rows])
+                return pressure, -slope / area[rows]
+
+            out.append((place[first + mine], law))
+        return out
+
+    def _check(self, held: NDArray[np.bool_]) -> None:
+        """Refuse surfaces that nothing can move and that are pressed into each other."""
+        for (pair, _), first in zip(self._each(), self.first, strict=False):
+            if pair.tied or pair.law is not None:
+                continue
+            k = slice(first, first + pair.n)
+            length = np.where(self.seen[k], self.gap[k] / np.maximum(self.area[k], 1e-300), 0.0)
+            wrong = held[k] & (length < -DEPTH * float(pair.slave.length.mean()))
+            if wrong.any():
+                label = self.contact.label(pair, int(np.argmax(wrong)))
+                raise ConvergenceError(
+                    f"contact pair {pair.name!r}: node {label} is held and pressed into the "
+                    "other side, which is held too; release one of them"
+                )
+
+
+def _compliance(rows: Ints, columns: Ints, values: Floats, mass: Floats, n: int) -> Floats:
+    """``G W G^T`` of a matrix G with n rows in triplets and diagonal weights W."""
+    if n * len(mass) <= DENSE:
+        g = np.zeros((n, len(mass)))
+        np.add.at(g, (rows, columns), values)
+        return np.asarray((g * mass) @ g.T)
+    import scipy.sparse as sp
+
+    many: Any = sp.csr_array((values, (rows, columns)), shape=(n, len(mass)))
+    return np.asarray(((many * mass) @ many.T).toarray())
+
+
+def travel(contact: ContactTerm, terms: Terms, gradient: Floats, moved: Floats, n: int) -> Floats:
+    """Change of the gaps or slips of a pair by a displacement, linearized, shape (n,)."""
+    by_dof = np.append(moved, 0.0)[contact.dofs(terms.variables)]
+    return np.asarray(np.bincount(terms.constraint, (gradient * by_dof).sum(axis=1), n), np.float64)
+
+
+def forward_contact(
+    system: System, account: Energies, dt: float
+) -> ForwardContact | NoForwardContact:
+    """Contact of an explicit step, whatever there is."""
+    contact = system.contact_term
+    if not contact.pairs:
+        return NoForwardContact(system.n_dofs)
+    return ForwardContact(contact, account, dt)
+
+
+__all__ = ["ForwardContact", "NoForwardContact", "forward_contact"]
