@@ -341,8 +341,8 @@ def test_inner_walls_of_a_crushed_ring_meet():
     model.contact("outer", ct.RigidCurve.line((-5.0, 0.0), (5.0, 0.0)), name="floor")
     model.contact("inner", "inner", name="inside", friction=0.2)
     results = run(model, 0.25)
-    touched = [f for f in results.frames[1:] if f.pairs["inside"][:, 0].max() > 0.0]
-    assert touched
+    met = [f for f in results.frames[1:] if f.pairs["inside"][:, 0].max() > 0.0]
+    assert met
     edge = 2.0 * np.pi * 0.85 / 48
     assert min(f.pairs["inside"][:, 2].min() for f in results.frames[1:]) > -0.02 * edge
     assert abs(results.frames[-1].scalars["energy balance error"]) < 0.02
