@@ -265,7 +265,7 @@ def test_ring_beside_the_implicit_scheme_with_small_increments():
     model.contact("outer", floor, name="hit")
     mass = lumped(model)
     ends = []
-    same = {"increments": 300, "mass": "lumped", "redistribute": False}
+    same = {"increments": 500, "mass": "lumped", "redistribute": False}
     for scheme, more in (("central_difference", {}), ("energy_momentum", same)):
         results = run(model, 0.25, scheme=scheme, **more)
         last = results.frames[-1]
