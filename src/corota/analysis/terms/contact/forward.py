@@ -221,7 +221,7 @@ class ForwardContact:
             pair.core.commit()
         contact.u, contact.committed, contact.time = u.copy(), multipliers, time
         states = [state.copy() for state in self.state]
-        contact.at = ContactState(found, force, size, multipliers, None, states)
+        contact.at = ContactState(found, force, size, multipliers, states=states)
 
 
 class _Increment:
