@@ -221,7 +221,10 @@ class ForwardContact:
             pair.core.commit()
         contact.u, contact.committed, contact.time = u.copy(), multipliers, time
         states = [state.copy() for state in self.state]
-        contact.at = ContactState(found, force, size, multipliers, states=states)
+        where = contact.positions(u)
+        contact.at = ContactState(
+            found, force, size, multipliers, states=states, acting=found, where=where
+        )
 
 
 class _Increment:
