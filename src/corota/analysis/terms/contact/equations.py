@@ -20,6 +20,7 @@ from corota.analysis.newton import PROGRESS, GiveUp, Outcome, ResidualNorms
 from corota.analysis.terms.contact.columns import border, stacked
 from corota.analysis.terms.contact.contact import ContactState, ContactTerm
 from corota.analysis.terms.contact.impact import impact_error
+from corota.analysis.terms.contact.kinks import Kink, Sides, again, both_sides, found
 from corota.analysis.terms.contact.messages import explained
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.pivoting import pivoted
@@ -51,6 +52,11 @@ ITERATIONS_BEFORE_PIVOTING = 3
 MAX_STATE_REPEATS = 2
 #: And how often before the increment is given up.
 MAX_REPEATS_BEFORE_CUTBACK = 7
+#: Kinks of the contact surfaces that an attempt tries, and corrections in which one may carry
+#: more than its jump.
+MAX_KINKS, MAX_BEYOND = 3, 3
+#: What two corrections that cancel each other may leave, in the last of them.
+TO_AND_FRO = 0.2
 #: Corrections after which partly covered nodes keep to whom they belong.
 CORRECTIONS_BEFORE_FREEZE = 4
 #: Relative difference of contact residuals that is none.
@@ -99,6 +105,12 @@ class ContactEquations:
         self.since: Floats | None = None
         #: Stiffness at each dof that holds it at a place, in relaxation.
         self.brake: tuple[Floats, Floats] | None = None
+        #: Kink of the contact surfaces at which the bodies are thought to rest, and how often one
+        #: was tried.
+        self.kink: Kink | None = None
+        self.kinks = self.beyond = 0
+        self.places: list[Floats] = []  # displacements of the last three evaluations
+        self.time = 0.0
         self.first_move = 0.0  # of the first correction [length]
         self.loose = ""  # what nothing held until contact was closed for it
         self.slip_directions: dict[
@@ -115,7 +127,11 @@ class ContactEquations:
         """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
         u, multipliers = z[: self.n], z[self.n :].copy()
         at = self.inner.evaluate(u, step_time)
-        contact_state = self.contact_term.evaluate(u, multipliers, step_time, at.values)
+        contact_state = self._at_kink(u, multipliers, step_time)
+        if contact_state is None:
+            contact_state = self.contact_term.evaluate(u, multipliers, step_time, at.values)
+        self.places = [*self.places[-2:], u.copy()]
+        self.time = step_time
         at.internal = at.internal - contact_state.force
         at.scale = at.scale + contact_state.size
         if contact_state.damping is not None:
@@ -135,6 +151,10 @@ class ContactEquations:
         norms.note = self.stage
         complementarity, pair, constraint = self.complementarity(at)
         before = norms.force
+        if self.kink is not None:
+            stiffness = float(self.kink.move**2 @ self.contact_term.nodal)
+            apart = max(abs(self.kink.distance) - self.contact_term.pairs[0].noise, 0.0)
+            complementarity = max(complementarity, self.kink.excess, stiffness * apart)
         self.system.scales.add_complementarity(norms, complementarity)
         if norms.force > before:
             node = self.contact_term.pairs[pair].nodes[constraint]
@@ -167,6 +187,10 @@ class ContactEquations:
     ) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         right_sides = RightHandSides(rhs[: self.n, None], du_prescribed[: self.n, None], np.ones(1))
+        if self._keeps_kink(at):
+            corrected = self._along_kink(at, right_sides)
+            if corrected is not None:
+                return corrected
         self.pivoting = self.pivoting or self.waited >= ITERATIONS_BEFORE_PIVOTING
         if self.pivoting:
             self._freeze()
@@ -184,6 +208,72 @@ class ContactEquations:
         z, negative = self._columns(at, right_sides, self._choose(at.contact_state))
         self.stage = "contact state changed at one node" if self.single > before else ""
         return self._moved(z[:, 0]), negative
+
+    # -- equilibria at kinks -------------------------------------------------------------
+
+    def _at_kink(self, u: Floats, multipliers: Floats, step_time: float) -> ContactState | None:
+        """Contact on the near side of the kink, with the force that it carries; or None."""
+        if self.kink is None:
+            return None
+        state = again(self, Sides(self, multipliers, step_time), u, self.kink)
+        if state is None:
+            self.kink = None
+        return state
+
+    def _keeps_kink(self, at: ContactEvaluation) -> bool:
+        """Whether the correction is one at a kink; looks for one where there is no progress."""
+        if self.kink is not None:
+            self.beyond += self.kink.excess > 0.0
+            if self.beyond <= MAX_BEYOND:
+                return True
+            raise GiveUp("no equilibrium at the kink of the contact surfaces")
+        if (
+            self.waited < ITERATIONS_BEFORE_PIVOTING
+            or self.kinks >= MAX_KINKS
+            or not self._to_and_fro()
+            or at.at.link.couples
+            or self.contact_term.persistent
+            or not self.system.nlgeom
+        ):
+            return False
+        sides = Sides(self, at.contact_state.multipliers, self.time)
+        _, before, here = self.places
+        self.kink = found(self, sides, here, before)
+        # The candidates of the search may have changed.
+        state, now = at.contact_state, sides.state(here)
+        at.at.internal = at.at.internal + state.force - now.force
+        at.contact_state = now
+        self.kinks += self.kink is not None
+        return self.kink is not None
+
+    def _to_and_fro(self) -> bool:
+        """Whether the last two corrections cancel each other."""
+        if len(self.places) < 3:
+            return False
+        first, before, here = self.places
+        return float(np.abs(here - first).max()) <= TO_AND_FRO * float(np.abs(here - before).max())
+
+    def _along_kink(
+        self, at: ContactEvaluation, right_sides: RightHandSides
+    ) -> tuple[Floats, int] | None:
+        """Newton correction with the force that the kink carries as an unknown."""
+        kink = self.kink
+        assert kink is not None
+        both = RightHandSides(
+            np.column_stack([right_sides.force[:, 0], kink.jump]),
+            np.column_stack([right_sides.constrained[:, 0], np.zeros(self.n)]),
+            np.array([1.0, 0.0]),
+        )
+        z, negative = self._columns(at, both, self._choose(at.contact_state))
+        first, second = kink.normal @ z[: self.n]
+        if second == 0.0:
+            self.kink = None
+            return None
+        change = (kink.distance - float(first)) / float(second)
+        dz: Floats = z[:, 0] + change * z[:, 1]
+        kink.base = (self.places[-1], kink.share, dz[: self.n].copy(), change)
+        self.stage = "equilibrium at a kink of the contact surfaces"
+        return self._moved(dz), negative
 
     def _moved(self, z: Floats) -> Floats:
         """A correction, whose first size is kept."""
@@ -568,6 +658,11 @@ class ContactEquations:
             ).strip("; ")
         if outcome.converged and self.pivoted:
             said = f"contact states by pivoting in {self.pivoted} iterations"
+            settled.note = f"{settled.note}; {said}".strip("; ")
+        if outcome.converged and self.kink is not None and self.contact_state is not None:
+            state = self.contact_state
+            self.contact_state = replace(state, terms=both_sides(self.kink, state.terms))
+            said = "equilibrium at a kink of the contact surfaces"
             settled.note = f"{settled.note}; {said}".strip("; ")
         return settled
 

@@ -118,6 +118,14 @@ class Pair:
             )
         return self._since(terms)
 
+    def let_go(self) -> None:
+        """Forget which masters the nodes had, to which they would keep for a while."""
+        if getattr(self.item, "method", "") != "node_to_segment":
+            return
+        places, masters, offset = self.core.state()
+        masters[1 : 1 + self.of_nodes] = -1
+        self.core.restore_state(places, masters, offset)
+
     def _since(self, terms: Terms) -> Terms:
         """Gaps as the persistency condition sees them (Laursen & Chawla 1997).
 

@@ -1,0 +1,237 @@
+"""Equilibria at a kink of the contact surfaces.
+
+Gaps depend on the positions continuously, but not smoothly: as a corner of one surface passes a
+node of the other, their gradients jump, and contact forces with them. Where the bodies rest just
+there, the force is between those of both sides, and Newton's method, which knows one side at a
+time, goes to and fro. Here the place of the jump becomes an equation, and the force that is
+carried across it an unknown: the generalized gradient in the sense of Clarke.
+
+Source: F. H. Clarke, *Optimization and Nonsmooth Analysis* (1983), ch. 2.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.terms.contact.contact import ContactState
+    from corota.analysis.terms.contact.pair import Terms
+    from corota.analysis.terms.contact.problem import ContactProblem
+
+    Floats = NDArray[np.float64]
+
+#: Halvings of the interval in which a jump is looked for.
+HALVINGS = 44
+#: Share of a difference of contact forces that must be a jump.
+JUMP = 0.25
+#: Width in which the kink is looked for again, in distances between the sides it was found from.
+WIDTH = 4.0
+#: And before, nearby, in distances that the last correction was to go.
+NEAR = (0.2, 3.0)
+#: Force beyond a side that is rounding, over the jump.
+BEYOND = 1e-9
+
+
+@dataclass
+class Kink:
+    """A place where contact forces jump, against the motion across it.
+
+    Parameters
+    ----------
+    normal : ndarray, shape (n_dofs,)
+        Gradient of the distance across the kink, positive on the far side.
+    move : ndarray, shape (n_dofs,)
+        Translations that go across, a motion of distance 1.
+    jump : ndarray, shape (n_dofs,)
+        Contact force of the far side less that of the near one.
+    width : float
+        Distance in which it is looked for [length].
+    distance : float
+        From the displacement judged last to the kink [length].
+    share : float
+        Part of the jump that is carried, from 0 on the near side to 1 on the far one.
+    """
+
+    normal: Floats
+    move: Floats
+    jump: Floats
+    width: float = 0.0
+    distance: float = 0.0
+    share: float = 0.0
+    far: list[Terms] = field(default_factory=list)  # of the pairs on the far side
+    #: Displacement and share from which a correction was made, and the corrections of both.
+    base: tuple[Floats, float, Floats, float] | None = None
+
+    @property
+    def excess(self) -> float:
+        """Force beyond those of both sides [force]."""
+        over = max(-self.share, self.share - 1.0)
+        return over * float(np.abs(self.jump).max()) if over > BEYOND else 0.0
+
+    def follow(self, u: Floats) -> None:
+        """Take the share that belongs to a trial, which may be part of a correction."""
+        if self.base is None:
+            return
+        start, share, du, change = self.base
+        square = float(du @ du)
+        part = min(max(float((u - start) @ du) / square, 0.0), 1.0) if square > 0.0 else 1.0
+        self.share = share + part * change
+
+
+class Sides:
+    """Contact forces at displacements near each other, for the same tractions.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    multipliers : ndarray, shape (n_multipliers,)
+    step_time : float
+    """
+
+    def __init__(self, problem: ContactProblem, multipliers: Floats, step_time: float) -> None:
+        self.problem, self.multipliers, self.time = problem, multipliers, step_time
+
+    def state(self, u: Floats, shear: bool = True) -> ContactState:
+        """Contact at a displacement, whatever masters the nodes had before.
+
+        Without `shear` its force is that of the pressures alone.
+        """
+        term = self.problem.contact_term
+        multipliers = self.multipliers
+        if not shear:
+            multipliers = multipliers.copy()
+            for pair in term.pairs:
+                multipliers[pair.first + pair.n : pair.first + pair.width] = 0.0
+        for pair in term.pairs:
+            pair.let_go()
+        return term.evaluate(u, multipliers, self.time, np.zeros(0))
+
+    def jump(self, place: Callable[[float], Floats]) -> tuple[float, float, Floats] | None:
+        """Where forces jump on the way from `place(0)` to `place(1)`, and by how much.
+
+        Returns
+        -------
+        before, behind : float
+            Ends of an interval of the size of rounding.
+        jump : ndarray, shape (n_dofs,)
+            None is returned if forces change gradually.
+        """
+        low, high = 0.0, 1.0
+        first, last = self.state(place(low)).force, self.state(place(high)).force
+        whole = float(np.abs(last - first).max())
+        if whole == 0.0:
+            return None
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            force = self.state(place(middle)).force
+            if np.abs(force - first).max() > np.abs(last - force).max():
+                high, last = middle, force
+            else:
+                low, first = middle, force
+        jump = last - first
+        return (low, high, jump) if float(np.abs(jump).max()) > JUMP * whole else None
+
+
+def found(problem: ContactProblem, sides: Sides, here: Floats, there: Floats) -> Kink | None:
+    """The kink between two displacements, seen from the first, or None.
+
+    Parameters
+    ----------
+    here, there : ndarray, shape (n_dofs,)
+    """
+
+    def place(t: float) -> Floats:
+        return here + t * (there - here)
+
+    at = sides.jump(place)
+    kink = None if at is None else _kink(problem, sides, place, at)
+    if at is None or kink is None:
+        return None
+    apart = float(kink.normal @ (there - here))
+    if apart <= 0.0:
+        return None  # the jump drives the bodies apart: nothing rests there
+    kink.width, kink.distance = WIDTH * apart, 0.5 * (at[0] + at[1]) * apart
+    return kink
+
+
+def again(problem: ContactProblem, sides: Sides, u: Floats, kink: Kink) -> ContactState | None:
+    """Contact on the near side of a kink next to a displacement, None if there is none any more.
+
+    The kink takes the new normal, jump and distance.
+    """
+    for width in (*(share * abs(kink.distance) for share in NEAR), kink.width):
+        if width > kink.width:
+            continue
+
+        def place(t: float, w: float = width) -> Floats:
+            return u + (2.0 * t - 1.0) * w * kink.move
+
+        at = sides.jump(place)
+        new = None if at is None else _kink(problem, sides, place, at)
+        if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
+            continue
+        kink.far = sides.state(place(at[1])).terms
+        state = sides.state(place(at[0]))
+        kink.distance = (2.0 * at[0] - 1.0) * width * float(new.normal @ kink.move)
+        kink.normal, kink.move, kink.jump = new.normal, new.move, new.jump
+        kink.follow(u)
+        state.force = state.force + kink.share * kink.jump
+        return state
+    return None
+
+
+def both_sides(kink: Kink, near: list[Terms]) -> list[Terms]:
+    """Terms of the pairs whose gradients are those of both sides, by the shares they carry."""
+    return [_mixed(a, b, kink.share) for a, b in zip(near, kink.far, strict=True)]
+
+
+def _mixed(near: Terms, far: Terms, share: float) -> Terms:
+    def join(name: str) -> Any:
+        return np.concatenate([getattr(near, name), getattr(far, name)])
+
+    def weighted(name: str) -> Floats:
+        parts = (1.0 - share) * getattr(near, name), share * getattr(far, name)
+        return np.concatenate(parts)
+
+    def mean(name: str) -> Floats:
+        value: Floats = (1.0 - share) * getattr(near, name) + share * getattr(far, name)
+        return value
+
+    return replace(
+        near,
+        gap=mean("gap"),
+        slip=mean("slip"),
+        area=mean("area"),
+        constraint=join("constraint"),
+        pair=join("pair"),
+        variables=join("variables"),
+        gap_gradient=weighted("gap_gradient"),
+        slip_gradient=weighted("slip_gradient"),
+    )
+
+
+def _kink(
+    problem: ContactProblem,
+    sides: Sides,
+    place: Callable[[float], Floats],
+    at: tuple[float, float, Floats],
+) -> Kink | None:
+    low, high, jump = at
+    # Gaps are continuous: the jump of their gradients is normal to the kink. Slips are not.
+    pressures = jump
+    if any(pair.friction for pair in problem.contact_term.pairs):
+        pressures = sides.state(place(high), False).force - sides.state(place(low), False).force
+    moves = np.where(problem.system.is_rotation, 0.0, pressures)
+    size = float(np.sqrt(moves @ moves))
+    return Kink(-pressures / size, -moves / size, jump) if size > 0.0 else None
+
+
+__all__ = ["Kink", "Sides", "again", "both_sides", "found"]

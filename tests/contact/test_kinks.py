@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Equilibria at a kink of the contact surfaces, where no single side carries the force.
+
+The lowest corner of a square that stands on it is pushed into a groove of two rigid flanks. Without
+friction it slides down whichever flank it meets and rests at the bottom, where the force is any
+positive combination of the normals of both.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.results.observer import BaseObserver
+
+#: Slope of the flanks.
+SLOPE = math.radians(25.0)
+
+
+def grooved(aside: float) -> tuple[ct.Model, int]:
+    mesh = ct.mesh.move(ct.mesh.rectangle(1.0, 1.0, 4, 4, "quad4"), angle=45.0)
+    low = int(np.argmin(mesh.points[:, 1]))
+    mesh.points = mesh.points - mesh.points[low] + [0.02, 0.02]
+    model = ct.Model(mesh)
+    steel = ct.Elastic(E=1000.0, nu=0.3)
+    model.section(
+        "all",
+        element="Q4I",
+        material=steel,
+        plane="strain",
+        local_strain="logarithmic",
+    )
+    # Short segments beside the bottom: a node keeps to one for a twentieth of its length.
+    x = np.array([-2.0, -0.02, 0.0, 0.02, 2.0])
+    groove = ct.RigidCurve.polyline(np.column_stack([x, math.tan(SLOPE) * np.abs(x)]))
+    slave = np.vstack([mesh.edge_sets["bottom"], mesh.edge_sets["left"]])
+    model.contact(slave, groove, name="groove", method="node_to_segment")
+    upper = np.union1d(mesh.node_sets["top"], mesh.node_sets["right"])
+    model.fix(upper, x=aside, y=-0.06)
+    return model, low
+
+
+@pytest.mark.parametrize("aside", [-0.02, -0.01, -0.03])
+def test_a_corner_comes_to_rest_at_the_bottom_of_a_groove(aside):
+    model, low = grooved(aside)
+    notes = []
+
+    class Log(BaseObserver):
+        def iteration(self, info):
+            notes.append(info.note)
+
+    results = ct.solve(model, ct.Static(), observers=[Log()], threads=1)
+    last = results.frames[-1]
+    place = model.mesh.points[low] + last.U[low, :2]
+    assert place == pytest.approx([0.0, 0.0], abs=1e-9)
+    force = np.array([last.scalars[f"groove: force {a}"] for a in "xy"])
+    # Between the normals of the flanks, and in balance with the supports.
+    assert abs(force[0]) < math.tan(SLOPE) * abs(force[1])
+    assert np.abs(last.RF[:, :2].sum(axis=0) + force).max() < 1e-9 * np.abs(force).max()
+    assert any("kink" in note for note in notes)
