@@ -41,6 +41,8 @@ TERMS = {
     "ALLTH": "work of thermal expansion: what changes of temperature put into the body",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }
+#: How Python and decks ask for the scheme that keeps energy.
+CONSERVES = "scheme='energy_momentum' (*DYNAMIC, SCHEME=ENERGY MOMENTUM)"
 #: Share of the largest energy from which a balance error is worth a warning.
 LARGE_ERROR = 0.02
 #: Share of an energy that rounding leaves.
@@ -194,16 +196,14 @@ class Energies:
             if impacts and self.error > 0.0:
                 return text + (
                     f"{self.scheme} does not conserve energy where contact opens and closes; use "
-                    "scheme='energy_momentum', which does, or smaller increments"
+                    f"{CONSERVES}, which does, or smaller increments"
                 )
             cause = "" if self.scheme == "newmark" else f"numerical dissipation of {self.scheme}"
             if impacts:
                 cause += f"{' and ' * bool(cause)}contact that opens and closes within increments"
             if self.error < 0.0:
-                return text + (
-                    f"{cause}; use smaller increments, or scheme='energy_momentum', which has none"
-                )
-            return text + "use smaller increments, or scheme='energy_momentum'"
+                return text + (f"{cause}; use smaller increments, or {CONSERVES}, which has none")
+            return text + f"use smaller increments, or {CONSERVES}"
         return text + "the work of the loads is summed over the increments: use smaller ones"
 
 

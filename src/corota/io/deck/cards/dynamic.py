@@ -23,6 +23,8 @@ APPLICATIONS = {
     "MODERATEDISSIPATION": -1.0 / 3.0,
     "QUASI-STATIC": 0.0,
 }
+#: What ``SCHEME=`` asks for, which is our own parameter.
+SCHEMES = {"HHT": "hht", "ENERGYMOMENTUM": "energy_momentum"}
 #: Increments of an explicit step without INC.
 EXPLICIT_INCREMENTS = 10_000_000
 
@@ -66,6 +68,16 @@ def dynamic(deck: Deck, card: Card) -> None:
             )
             return
     explicit = card.has("EXPLICIT")
+    scheme = SCHEMES[deck.choice(card, "SCHEME", SCHEMES, "HHT")]
+    others = [name for name in ("EXPLICIT", "ALPHA", "APPLICATION") if card.has(name)]
+    if scheme != "hht" and others:
+        deck.error(
+            card,
+            card.at(others[0]),
+            f"{others[0]} does not belong to SCHEME=ENERGY MOMENTUM, which has no parameter",
+            hint="leave one of both out",
+        )
+        return
     if explicit and not now.card.has("INC"):
         now.max_increments = EXPLICIT_INCREMENTS
     quasi_static = use == "QUASI-STATIC" and not explicit
@@ -83,7 +95,7 @@ def dynamic(deck: Deck, card: Card) -> None:
         if explicit
         else "generalized_alpha"
         if quasi_static
-        else "hht",
+        else scheme,
         **({"rho_inf": 0.0} if quasi_static else {}),
         "mass": "lumped" if explicit else "consistent",
         # Loads act at once unless an amplitude says otherwise.
