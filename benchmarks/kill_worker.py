@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from corota.model.model import Model
 
-#: Longest time a run may take before it counts as hanging [s].
+#: Longest time a run may take before it counts as hanging, on a machine with nothing else [s].
 LIMIT = 120.0
 JOB = "job"
 
@@ -108,7 +108,7 @@ def run(case: Case, folder: Path, every: int, resume: bool, strike: Strike) -> t
             with contextlib.suppress(ProcessLookupError):
                 os.kill(child, strike.signal)
             struck = True
-        if spent > LIMIT:
+        if spent > LIMIT * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1)):
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
             return 124, "still running after the limit"

@@ -25,7 +25,7 @@ from corota import _core
 from corota.cli import main
 used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + (int(sys.argv[1]) << 20),) * 2)
-sys.exit(main(["run", "strip.inp", "-q", "--threads", "1"]))
+sys.exit(main(["run", "strip.inp", "-q", "--threads", sys.argv[2]]))
 """
 
 
@@ -35,8 +35,10 @@ def test_a_job_that_no_machine_can_hold() -> None:
     _core.require_memory(0.0, "nothing")
 
 
-@pytest.mark.parametrize(("left", "code"), [(8, 5), (3000, 0)])
-def test_an_address_limit_is_seen_before_it_is_met(tmp_path: Path, left: int, code: int) -> None:
+@pytest.mark.parametrize(("left", "threads", "code"), [(8, 1, 5), (8, 2, 5), (3000, 1, 0)])
+def test_an_address_limit_is_seen_before_it_is_met(
+    tmp_path: Path, left: int, threads: int, code: int
+) -> None:
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, 20, 4), name="strip")
     model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
     model.fix("left")
@@ -44,7 +46,7 @@ def test_an_address_limit_is_seen_before_it_is_met(tmp_path: Path, left: int, co
     model.steps.append(ct.Static(increments=1))
     write(model, tmp_path / "strip.inp")
     done = subprocess.run(
-        [sys.executable, "-c", RUN, str(left)],
+        [sys.executable, "-c", RUN, str(left), str(threads)],
         cwd=tmp_path,
         capture_output=True,
         text=True,

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import os
 import time
 
 import h5py
@@ -12,7 +13,7 @@ import pytest
 import corota as ct
 from benchmarks.restart_cases import DECKS, MODELS
 from corota.cli import main
-from corota.io import job
+from corota.io import atomic_file, job
 from corota.io.checksum import fletcher32
 from corota.io.result_reader import read_results
 
@@ -201,3 +202,52 @@ def test_checksums_are_those_of_hdf5(tmp_path, length, fill):
         file.flush()
         _, raw = made.id.read_direct_chunk((0,))
     assert fletcher32(raw[:-4]) == int.from_bytes(raw[-4:], "little")
+
+
+def test_controls_of_a_later_step_do_not_damp_an_earlier_one(tmp_path):
+    """*CONTACT CONTROLS, STABILIZE acts from its own step on."""
+    first, second = "*STATIC\n.25, 1.\n", "*STATIC\n.1, 1., , .2\n"
+    plain = DECKS["contact"]()
+    control = "*CONTACT CONTROLS, STABILIZE\n"
+    frames = {}
+    for name, text in {
+        "none": plain,
+        "second": plain.replace(second, second + control),
+        "first": plain.replace(first, first + control),
+    }.items():
+        (tmp_path / f"{name}.inp").write_text(text)
+        model = ct.read(tmp_path / f"{name}.inp")
+        assert [c.stabilise_from for c in model.contacts] == [2 if name == "second" else 1]
+        frames[name] = [f.U for f in ct.solve(model, threads=1).frames if f.step == 1]
+    assert len(frames["none"]) > 2
+    for one, other in zip(frames["none"], frames["second"], strict=True):
+        np.testing.assert_array_equal(one, other)
+    damped = zip(frames["none"], frames["first"], strict=False)
+    assert any((one != other).any() for one, other in damped)
+
+
+def test_a_commit_reaches_the_disk_before_its_name(tmp_path, monkeypatch):
+    """A power cut leaves a state of the file, not a name without numbers."""
+    told = []
+    for name in ("fsync", "replace"):
+        true = getattr(os, name)
+        monkeypatch.setattr(os, name, lambda *a, t=true, n=name: (told.append(n), t(*a))[1])
+    monkeypatch.setattr(atomic_file, "YOUNG", 0.0)
+    file = atomic_file.AtomicFile(tmp_path / "x")
+    for number in range(3):
+        told.clear()
+        file.write(b"%d" % number)
+        file.commit()
+        assert told[:2] == ["fsync", "replace"]
+    file.close()
+    assert (tmp_path / "x").read_bytes() == b"012"
+
+
+@pytest.mark.parametrize("target", ["out.vtu", "out.npz", "out.frd"])
+def test_a_file_with_numbers_that_are_none_is_not_converted(tmp_path, target, capsys):
+    ct.solve(MODELS["newmark"](), observers=[ct.JobFiles(tmp_path, "job")], threads=1)
+    with h5py.File(tmp_path / "job.vtkhdf", "r+") as file:
+        file["VTKHDF/PointData/displacement"][-1, 0] = np.nan
+    code = main(["convert", str(tmp_path / "job.vtkhdf"), str(tmp_path / target)])
+    assert code in (1, 2, 6)
+    assert "finite" in capsys.readouterr().err

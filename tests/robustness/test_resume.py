@@ -256,7 +256,7 @@ def start(folder, period, *more):
 
 def _listen():
     """Let no signal be ignored because the tests run in the background."""
-    for name in ("SIGINT", "SIGHUP", "SIGTERM"):
+    for name in ("SIGINT", "SIGHUP", "SIGTERM", "SIGXCPU"):
         signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
@@ -265,7 +265,7 @@ def _text(path):
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="signals of this system")
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU"])
 def test_signal_ends_with_a_checkpoint_and_says_how_to_go_on(tmp_path, name):
     run = start(tmp_path, 50.0)
     run.send_signal(getattr(signal, name))

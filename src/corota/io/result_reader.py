@@ -126,6 +126,12 @@ def _whole(good: bool, what: str) -> None:
         raise ValueError(what)
 
 
+def _finite(name: str, values: NDArray[Any]) -> Floats:
+    """Numbers of a field; no run writes others."""
+    _whole(bool(np.isfinite(values).all()), f"{name} has values that are not finite")
+    return np.asarray(values, np.float64)
+
+
 class Arrays(Mapping[str, "Floats"]):
     """Arrays of a file by name; each is read when it is asked for."""
 
@@ -154,7 +160,7 @@ def _of_section(file: Any, group: Any, number: int, count: int) -> Callable[[str
                 return np.asarray(data[:])
             rows = len(group["nodes"])
             _whole(len(data) == rows * count, f"{name} of a section")
-            return np.asarray(data[number * rows : (number + 1) * rows], np.float64)
+            return _finite(name, data[number * rows : (number + 1) * rows])
 
     return read
 
@@ -236,7 +242,7 @@ class FileFrames(Sequence[Frame]):
             _whole(rows >= self._nodes and data.dtype.kind == "f", f"{name} at {rows} nodes")
             # Behind the nodes are points of rigid curves.
             first = number * rows
-            return np.asarray(data[first : first + self._nodes], np.float64)
+            return _finite(name, data[first : first + self._nodes])
 
     def at_cells(self, name: str, number: int) -> Floats:
         """An array of ``CellData`` in a frame."""
@@ -246,7 +252,7 @@ class FileFrames(Sequence[Frame]):
             good = rows >= self._cells and data.dtype.kind == "f"
             _whole(good, f"{name} of {rows} elements")
             first = number * rows
-            return np.asarray(data[first : first + self._cells], np.float64)
+            return _finite(name, data[first : first + self._cells])
 
     def _read(self, number: int) -> Frame:
         group = self._file["corota/frames"]

@@ -293,6 +293,8 @@ class ContactPair(Brief):
     stabilise : bool
         Damp the two surfaces in static steps until the end of each, so that bodies which
         nothing else holds find each other.
+    stabilise_from : int
+        First step that is damped, from 1.
     reach : float
         Distance at which pairs are looked at [length]; 0 takes four edges.
     name : str
@@ -309,6 +311,7 @@ class ContactPair(Brief):
     reach: float = 0.0
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
+    stabilise_from: int = field(default=1, kw_only=True)
     adjust: float = field(default=0.0, kw_only=True)
     adjust_nodes: str | Ints | None = field(default=None, kw_only=True)
     smooth: bool = field(default=False, kw_only=True)

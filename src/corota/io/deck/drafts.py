@@ -291,7 +291,8 @@ class PairDraft:
     adjust: float = 0.0
     adjust_set: str = ""
     clearance: float | None = None
-    stabilise: bool = False
+    #: First step that is damped, 0 for none.
+    stabilise: int = 0
     smooth: bool = False
     name: str = ""
 
@@ -308,7 +309,7 @@ class GeneralDraft:
     every: bool = False
     pairs: list[tuple[Card, Row]] = field(default_factory=list)
     interaction: str = ""
-    stabilise: bool = False
+    stabilise: int = 0
     where: Location | None = None
 
 

@@ -183,6 +183,8 @@ class ContactTerm:
         self.persistent = scheme == "energy_momentum"
         if self.number == 1:
             self._start(getattr(step, "scheme", "") == "central_difference")
+        if self._stiff:
+            self._damp()
         x = self.positions(self.u)
         for pair in self.pairs:
             pair.fixed = pair.start = None
@@ -362,16 +364,24 @@ class ContactTerm:
         for pair in self.pairs:
             k = nodal[pair.nodes]
             pair.stiffness = np.where(k > 0.0, k, top) / pair.full
+        self._damp()
+        self._stiff = True
+
+    def _damp(self) -> None:
+        """Damp the surfaces that this step stabilises."""
+        system, diagonal = self.system, self.nodal
         self.damped = np.zeros(system.n_dofs)
         for pair in self.pairs:
-            if isinstance(pair.item, ContactPair) and pair.item.stabilise:
+            item = pair.item
+            if not isinstance(item, ContactPair) or not item.stabilise:
+                continue
+            if self.number >= item.stabilise_from:
                 nodes = pair.slave.node_list
                 if pair.master is not None:
                     nodes = np.union1d(nodes, pair.master.node_list)
                 for component in (0, 1):
                     dofs = system.dofs(nodes, component)
                     self.damped[dofs] = STABILISE * diagonal[dofs]
-        self._stiff = True
 
     def _damping(self, step_time: float) -> Floats | None:
         if not self.damps or not self.damped.any():

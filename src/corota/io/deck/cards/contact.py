@@ -325,12 +325,14 @@ def contact_controls(deck: Deck, card: Card) -> None:
     if card.value("STABILIZE") or list(card.rows()):
         deck.note(f"{card.where}: {card.spelled}: the factor is not used; the damping is chosen")
     named = card.has("SLAVE") or card.has("MASTER")
+    # As other controls it stays for the steps behind.
+    first = max(len(deck.steps), 1)
     if deck.general is not None and not named:
-        deck.general.stabilise = True
+        deck.general.stabilise = deck.general.stabilise or first
         if not any(not pair.tied for pair in deck.pairs):
             return
     for pair in _named_pairs(deck, card, card.value("SLAVE"), card.value("MASTER"), named):
-        pair.stabilise = True
+        pair.stabilise = pair.stabilise or first
 
 
 def contact_interference(deck: Deck, card: Card) -> None:

@@ -75,13 +75,13 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             yield f"*CLEARANCE, SLAVE={slave}, MASTER={master}, VALUE={float(pair.clearance)!r}\n"
 
 
-def step_cards(writer: Writer) -> Iterator[str]:
-    """Cards of contact that stand in the first step."""
+def step_cards(writer: Writer, number: int) -> Iterator[str]:
+    """Cards of contact that stand in a step, counted from 1."""
     for pair in writer.model.contacts:
         slave, master = surfaces(writer, pair)
-        if pair.start == "ramp":
+        if pair.start == "ramp" and number == 1:
             yield f"*CONTACT INTERFERENCE, SHRINK\n{slave}, {master}\n"
-        if pair.stabilise:
+        if pair.stabilise and pair.stabilise_from == number:
             yield f"*CONTACT CONTROLS, STABILIZE, SLAVE={slave}, MASTER={master}\n"
 
 

@@ -225,8 +225,7 @@ class _Writer:
         yield f"*STATIC{', DIRECT' if step.fixed_increments else ''}\n"
         yield f"{_number(step.first_increment)}, {_number(step.period)}, "
         yield f"{_number(step.smallest_increment)}, {_number(step.largest_increment)}\n"
-        if number == 0:
-            yield from step_cards(self)
+        yield from step_cards(self, number + 1)
         yield from _boundary(self, step.supports, step.new_supports)
         for kind, card in _NEW.items():
             if step.renews(kind):
