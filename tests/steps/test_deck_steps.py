@@ -67,7 +67,7 @@ def test_faults_of_amplitudes(tmp_path: Path) -> None:
         ("DEFINITION=PERIODIC\n2, 1., 0., 0.\n1., 2.", "pairs"),
         ("DEFINITION=DECAY\n1., 2., 0., 0.", "decay time"),
         ("DEFINITION=EQUALLY SPACED\n1., 2.", "FIXED INTERVAL"),
-        ("DEFINITION=SMOOTH\n1., 2.", "is not known"),
+        ("DEFINITION=SMOOOTH\n1., 2.", "is not known"),
     ):
         text = DECK.replace("*STEP", f"*AMPLITUDE, NAME=a, {card}\n*STEP", 1)
         found = faults(tmp_path, text)
@@ -125,8 +125,26 @@ def test_application_and_parameters_of_dynamics(tmp_path: Path) -> None:
     assert (step.scheme, step.rho_inf, step.ramp) == ("generalized_alpha", 0.0, True)
     step = read(tmp_path, rho.replace("*STATIC", "*DYNAMIC, BETA=.25, GAMMA=.5, ALPHA=0.")).steps[0]
     assert (step.scheme, step.alpha) == ("hht", 0.0)
+    model = read(tmp_path, rho.replace("*STATIC", "*DYNAMIC, BETA=.25, GAMMA=.5"))
+    assert model.steps[0].alpha == 0.0
+    assert any("ALPHA=0, which belongs to the GAMMA given" in note for note in model.notes)
+    step = read(tmp_path, rho.replace("*STATIC", "*DYNAMIC, GAMMA=.6")).steps[0]
+    assert step.alpha == pytest.approx(-0.1)
+    found = faults(tmp_path, rho.replace("*STATIC", "*DYNAMIC, BETA=.3, GAMMA=.5"))
+    assert any("BETA=0.3 does not belong to ALPHA=0" in d.message for d in found)
+    found = faults(tmp_path, rho.replace("*STATIC", "*DYNAMIC, GAMMA=.4"))
+    assert any("does not belong to ALPHA" in d.message for d in found)
     found = faults(tmp_path, rho.replace("*STATIC", "*DYNAMIC, GAMMA=.7, ALPHA=0."))
     assert any("does not belong to ALPHA" in d.message for d in found)
+
+
+def test_words_of_parameters_may_be_abbreviated(tmp_path: Path) -> None:
+    table = "*AMPLITUDE, NAME=A, TIME=TOT, VALUE=REL\n0., 0., 1., 1.\n*STEP"
+    text = DECK.replace("*STEP", table, 1).replace("*CLOAD", "*CLOAD, AMP=A")
+    assert read(tmp_path, text).amplitudes["A"].total_time
+    for wrong in ("TIME=TO", "TIME=TIME"):
+        found = faults(tmp_path, text.replace("TIME=TOT", wrong))
+        assert any("is not known; expected" in d.message for d in found), wrong
 
 
 def test_constants_at_the_temperature_of_the_model(tmp_path: Path) -> None:

@@ -221,12 +221,18 @@ class Deck:
         return value
 
     def choice(self, card: Card, name: str, choices: Iterable[str], default: str) -> str:
-        """Value of a parameter out of a list (compared without case and blanks)."""
+        """Value of a parameter out of a list (compared without case and blanks).
+
+        The first letters of one alone, three at least, stand for it, as in Abaqus.
+        """
         if not card.has(name):
             return default
         value, allowed = key(card.value(name)), list(choices)
         if value in allowed:
             return value
+        begun = [word for word in allowed if len(value) > 2 and word.startswith(value)]
+        if len(begun) == 1:
+            return begun[0]
         self.error(
             card,
             card.at(name),

@@ -55,6 +55,9 @@ def dynamic(deck: Deck, card: Card) -> None:
     if alpha > 0.0:
         deck.error(card, card.at("ALPHA"), f"ALPHA must lie in [-1/3, 0], not {alpha:g}")
         return
+    if card.has("GAMMA") and not card.has("ALPHA"):
+        alpha = min(0.5 - deck.parameter_number(card, "GAMMA", 0.5 - alpha, 0.0), 0.0)
+        deck.note(f"{card.where}: ALPHA={alpha:g}, which belongs to the GAMMA given")
     fits = {"BETA": 0.25 * (1.0 - alpha) ** 2, "GAMMA": 0.5 - alpha}
     for name, value in fits.items():
         given = deck.parameter_number(card, name, value, 0.0)
