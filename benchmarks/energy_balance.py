@@ -138,8 +138,9 @@ def forget() -> None:
 def play(name: str) -> str:
     """Run a problem or an example; name what stopped it."""
     forget()
-    given = sys.argv
+    given = sys.argv, sys.path
     sys.argv = [name]  # an example reads its own arguments
+    sys.path = [str((ROOT / name).parent), *sys.path]  # and imports its neighbors
     with warnings.catch_warnings(), redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")
         try:
@@ -151,7 +152,7 @@ def play(name: str) -> str:
             if getattr(error, "code", 1):
                 return f" {type(error).__name__}"
         finally:
-            sys.argv = given
+            sys.argv, sys.path = given
     return ""
 
 
