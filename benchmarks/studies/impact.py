@@ -118,7 +118,7 @@ CASES = (
         "Half of a ring of radius 1 and thickness 0.1 (E = 1e4, yield stress 60, hardening 200, "
         "density 1) flies against a rigid wall with the velocity 1; at least 400 increments of "
         "HHT, constant inertia, redistributed at the contact; cells 2.5 times as long as thick, in "
-        "the fourth column trapezoids, in the fourth the energy-momentum scheme. Path of "
+        "the third column trapezoids, in the fourth the energy-momentum scheme. Path of "
         "its top (root mean square) against Q9 with 12 cells through the thickness and 144 along, "
         "the logarithmic strain, the same scheme and increments.",
         ("linear", "logarithmic", "trapezoids", "energy-momentum"),
