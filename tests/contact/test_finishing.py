@@ -72,3 +72,11 @@ def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():
     assert results.frames[-1].scalars["floor: force y"] == pytest.approx(0.0, abs=1e-9)
     said = [note for note in results.notes if "where that body rests is arbitrary" in note]
     assert len(said) == 1
+
+
+def test_an_impact_in_fixed_increments_is_relaxed():
+    # A strip that snaps as it hits, with friction .8: no shorter increment may be tried.
+    row = run(296, limit=60, size=0.5)
+    assert row["end"] == "done", row["why"]
+    assert row["increments"] == 100
+    assert row["residual"] < 1e-8

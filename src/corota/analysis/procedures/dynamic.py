@@ -26,9 +26,11 @@ from corota.analysis.procedures.motion_start import (
 )
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.terms.contact.newton import solve_increment
+from corota.analysis.terms.contact.relaxation import relax
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
+from corota.errors import SingularError
 from corota.model import elements
 from corota.model.schemes import SCHEMES
 
@@ -188,6 +190,25 @@ class DynamicStepper(NewtonStepper):
             if self.error > 1.0:
                 reason = f"local error {self.error:.2g} times the allowed one"
         return Attempt(target, outcome, contact, reason)
+
+    def rescue(self, failed: Attempt, end: str) -> Attempt | None:
+        """The increment by relaxation, where contact stops it and none shorter may be tried."""
+        system = self.system
+        if not end or not system.contact_term.acts or failed.outcome.converged:
+            return None
+        target = failed.target
+        guess = self.now.u
+        prescribed = system.conditions.prescribed(target, guess)
+        try:
+            outcome, contact = relax(
+                system, guess, prescribed, target, self.settings, self.report, self.motion
+            )
+        except SingularError:
+            return None
+        if outcome.converged:
+            return Attempt(target, outcome, contact)
+        failed.reason += f"; {outcome.reason}"
+        return None
 
     def refusal(self, failed: Attempt, end: str) -> str:
         """Why the step stopped."""

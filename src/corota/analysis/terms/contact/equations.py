@@ -55,6 +55,8 @@ MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Kinks of the contact surfaces that an attempt tries, and corrections in which one may carry
 #: more than its jump.
 MAX_KINKS, MAX_BEYOND = 3, 3
+#: Shares of the jump between which one is searched for: beyond, the bodies do not rest there.
+FEWEST_SHARES, MOST_SHARES = -2.0, 3.0
 #: What two corrections that cancel each other may leave, in the last of them.
 TO_AND_FRO = 0.2
 #: Corrections after which partly covered nodes keep to whom they belong.
@@ -270,6 +272,9 @@ class ContactEquations:
             self.kink = None
             return None
         change = (kink.distance - float(first)) / float(second)
+        if not FEWEST_SHARES <= kink.share + change <= MOST_SHARES:
+            self.kink = None
+            return None
         dz: Floats = z[:, 0] + change * z[:, 1]
         kink.base = (self.places[-1], kink.share, dz[: self.n].copy(), change)
         self.stage = "equilibrium at a kink of the contact surfaces"

@@ -156,8 +156,8 @@ def found(problem: ContactProblem, sides: Sides, here: Floats, there: Floats) ->
     if at is None or kink is None:
         return None
     apart = float(kink.normal @ (there - here))
-    if apart <= 0.0:
-        return None  # the jump drives the bodies apart: nothing rests there
+    if apart <= max(pair.noise for pair in problem.contact_term.pairs):
+        return None  # rounding, or the jump drives the bodies apart: nothing rests there
     kink.width, kink.distance = WIDTH * apart, 0.5 * (at[0] + at[1]) * apart
     return kink
 

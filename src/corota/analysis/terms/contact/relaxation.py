@@ -15,7 +15,7 @@ Optim. 14 (1976).
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -56,13 +56,14 @@ def relax(
     step_time: float,
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
+    inner: Any = None,
 ) -> tuple[Outcome[Evaluation], ContactEquations]:
-    """Find an equilibrium by a creep.
+    """Find an equilibrium by a creep; in motion (`inner`) one with the inertia of an increment.
 
     The parameters and results are those of
     :func:`corota.analysis.terms.contact.newton.solve_increment`.
     """
-    creep = _Creep(system, u, prescribed, step_time, settings, report)
+    creep = _Creep(inner or system, system, u, prescribed, step_time, settings, report)
     return creep.problem.settle(creep.run()), creep.problem
 
 
@@ -71,6 +72,7 @@ class _Creep:
 
     def __init__(
         self,
+        inner: Any,
         system: System,
         u: Floats,
         prescribed: Floats,
@@ -79,7 +81,7 @@ class _Creep:
         report: Callable[[int, ResidualNorms, float, str], None] | None,
     ) -> None:
         self.system, self.step_time, self.report = system, step_time, report
-        self.problem = ContactEquations(system, system)
+        self.problem = ContactEquations(inner, system)
         self.z = self.problem.start(u)
         self.left = prescribed - u  # that supports have still to move
         most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
