@@ -121,7 +121,7 @@ def _legend(svg: Svg, name: str, facts: elements.Element) -> None:
     many = f"{facts.n_points} integration point" + ("s" if facts.n_points > 1 else "")
     svg.text(x + 18, y, many, anchor="start")
     y += 26
-    svg.text(x - 3, y, "S1", "face", "start", bold=True)
+    svg.text(x - 6, y, "S1", "face", "start", bold=True)
     svg.text(x + 18, y, "faces of surfaces and loads", anchor="start")
     more = [
         f"{facts.n_internal_modes} internal modes" if facts.n_internal_modes > 1 else "",

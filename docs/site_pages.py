@@ -10,6 +10,7 @@ from pathlib import Path
 
 import element_pages
 import keyword_pages
+import thumbnails
 from svg import STYLE
 
 import corota as ct
@@ -87,40 +88,49 @@ def inline_figure(match: re.Match[str]) -> str:
 
 
 def _gallery(folder: Path) -> None:
-    cards = []
+    models = []
     for name in ct.examples.names():
         picture = folder / f"model-{name}.png"
         if not picture.exists():
-            results = ct.solve(ct.examples.load(name))
-            results.plot(path=picture)
+            thumbnails.draw(ct.solve(ct.examples.load(name)), picture, 110)
         code = inspect.getsource(ct.examples.MODELS[name])
         text = ct.examples.describe(name)
         page = f"# {name.capitalize()}\n\n{text}\n\n![{name}](model-{name}.png)\n\n"
         page += f'```sh\ncorota demo {name}\n```\n\nor `ct.examples.load("{name}")`:\n\n'
         page += f"```python\n{code}```\n"
         _put(folder / f"model-{name}.md", page)
-        cards.append((f"model-{name}", name.capitalize(), text, f"model-{name}.png"))
-    scripts = []
+        models.append(_card(f"model-{name}", name.capitalize(), text, f"model-{name}.png"))
+    scripts, groups = [], []
     for group in sorted(p for p in (ROOT / "examples").iterdir() if p.is_dir()):
         page = f"# examples/{group.name}\n"
         for script in sorted(group.glob("*.py")):
             source = script.read_text(encoding="utf-8")
-            page += f"\n## {script.name}\n\n{ast.get_docstring(ast.parse(source))}\n\n"
+            text = ast.get_docstring(ast.parse(source)) or ""
+            page += f"\n## {script.name}\n\n{text}\n\n"
+            picture = thumbnails.FOLDER / thumbnails.name(script)
+            if picture.exists():
+                image = f"../../images/gallery/{picture.name}"
+                page += f"![{script.stem}]({image})\n\n"
+                title = script.stem.replace("_", " ").capitalize()
+                scripts.append(_card(group.name, title, text.split("\n\n")[0], image))
             page += f"```python\n{source}```\n"
         _put(folder / f"{group.name}.md", page)
-        scripts.append(group.name)
-    grid = "".join(
-        f":::{{grid-item-card}} {title}\n:link: {page}\n:link-type: doc\n"
-        f":img-top: {image}\n{text}\n:::\n\n"
-        for page, title, text, image in cards
-    )
-    toc = "\n".join([page for page, *_ in cards] + scripts)
+        groups.append(group.name)
+    toc = "\n".join([*(f"model-{name}" for name in ct.examples.names()), *groups])
     _put(
         folder / "index.md",
-        "# Gallery\n\nModels that come with the package; pictures are computed with this site."
-        f"\n\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{grid}::::\n\n"
-        "Scripts of the repository, each run by the tests:\n\n"
-        f"```{{toctree}}\n:maxdepth: 1\n\n{toc}\n```\n",
+        "# Gallery\n\nModels that come with the package; the pictures show the largest stress."
+        f"\n\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(models)}::::\n\n"
+        "## Scripts\n\nExamples of the repository, each run by the tests."
+        f"\n\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(scripts)}::::\n\n"
+        f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n",
+    )
+
+
+def _card(page: str, title: str, text: str, image: str) -> str:
+    return (
+        f":::{{grid-item-card}} {title}\n:link: {page}\n:link-type: doc\n"
+        f":img-top: {image}\n{' '.join(text.split())}\n:::\n\n"
     )
 
 

@@ -73,7 +73,7 @@ def number(value: object, what: str, where: Location | None = None) -> float:
     Raises
     ------
     InputError
-        If it is no number, or not finite.
+        If it is not a number, or not finite.
     """
     try:
         found = float(value)  # type: ignore[arg-type]

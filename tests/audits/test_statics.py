@@ -2803,9 +2803,9 @@ def test_support_on_a_distributing_node_says_what_to_hold() -> None:
     model.couple("right", end, kind="distributing")
     model.fix("left")
     model.fix([end])
-    with pytest.raises(ct.CorotaError, match="hold the nodes that it follows") as caught:
+    with pytest.raises(ct.CorotaError, match="support the nodes that it follows") as caught:
         ct.solve(model, ct.Static(), threads=1)
-    assert "hold the reference node" not in str(caught.value)
+    assert "support the reference node" not in str(caught.value)
 
 
 # --- Rigid parts, gradients, constraints that do work ---

@@ -176,7 +176,7 @@ def test_gravity_needs_a_density() -> None:
 
 def test_mixed_units_are_warned_about() -> None:
     for young, rho, size, text in (
-        (2.1e11, 0.0, 100.0, "pascal mixed with millimetres"),
+        (2.1e11, 0.0, 100.0, "pascals mixed with millimeters"),
         (2.1e5, 7850.0, 100.0, "wave speed"),
         (2.1e5, 7.85e-9, 100.0, ""),
         (2.1e11, 7850.0, 2.0, ""),

@@ -76,7 +76,7 @@ def test_reaction_at_a_held_reference_node_balances_the_load(kind: str) -> None:
         )
     else:
         # Held dependents belong to the constraint.
-        with pytest.raises(ct.ModelError, match="is held, but the distributing coupling"):
+        with pytest.raises(ct.ModelError, match="is supported, but the distributing coupling"):
             ct.solve(model)
 
 

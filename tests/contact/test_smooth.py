@@ -154,5 +154,5 @@ def test_the_force_of_a_small_round_slides_without_jumps(element):
 def test_what_cannot_be_smoothed_is_said():
     mesh = ct.mesh.rectangle(1.0, 1.0, 1, 1)
     model = ct.Model(mesh)
-    with pytest.raises(InputError, match="rigid curve is what it is drawn"):
+    with pytest.raises(InputError, match="only a master of element edges"):
         model.contact("bottom", ct.RigidCurve.line((-1.0, 0.0), (2.0, 0.0)), smooth=True)

@@ -44,7 +44,7 @@ def test_a_user_material_that_gives_no_number_cuts_back_and_is_named(element, wr
     model.section("all", element=element, material=ct.UserMaterial(law))
     model.fix("left", rotation=True)
     model.force("right", x=1.0, per_node=True)
-    with pytest.raises(ct.ConvergenceError, match=r"function of the material .* no number"):
+    with pytest.raises(ct.ConvergenceError, match=r"material function .* not a number"):
         ct.solve(model, Static(), threads=1)
 
 

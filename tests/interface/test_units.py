@@ -46,7 +46,7 @@ def test_derived_units_have_their_names(names: tuple[str], dimension: str, label
     ("names", "text"),
     [
         (("mm", "N", "kg", "s"), "take the mass in t"),
-        (("mm", "N", "kg"), "units that do not fit"),
+        (("mm", "N", "kg"), "inconsistent units"),
         (("mm", "Newton"), "unknown unit 'Newton'"),
         (("mm", "m"), "two units of length"),
     ],

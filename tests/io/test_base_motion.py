@@ -110,7 +110,7 @@ def test_what_ends_with_its_step_says_how_it_goes_on(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("*BOUNDARY, TYPE=VELOCITY\n1, 1, 1, 1.\n", "TYPE belongs into a step"),
+        ("*BOUNDARY, TYPE=VELOCITY\n1, 1, 1, 1.\n", "TYPE belongs in a step"),
         (
             "*STEP\n*STATIC\n*BOUNDARY, TYPE=VELOCITY\n1, 1, 1, 1.\n*END STEP\n",
             "belongs to *DYNAMIC",
@@ -120,7 +120,7 @@ def test_what_ends_with_its_step_says_how_it_goes_on(tmp_path: Path) -> None:
             "*STEP\n*DYNAMIC\n.1, 1.\n*BOUNDARY, TYPE=ACCELERATION\n1, 1, 1, 1.\n*END STEP\n",
             "have an initial velocity",
         ),
-        ("*BOUNDARY, FIXED\n1, 1\n", "FIXED belongs into a step"),
+        ("*BOUNDARY, FIXED\n1, 1\n", "FIXED belongs in a step"),
     ],
 )
 def test_what_has_no_meaning_is_refused(tmp_path: Path, text: str, said: str) -> None:

@@ -19,7 +19,7 @@ CASES = [
     ("*STATIC", "*VISCO", 20, 1, "not part of this version"),
     ("*STATIC", "*STATIC, DIRCT", 20, 10, "did you mean DIRECT?"),
     ("*BOUNDARY", "*BOUNDARY, SUBMODEL", 16, 12, "SUBMODEL is not supported"),
-    ("*BOUNDARY", "*BOUNDARY, FIXED", 16, 12, "FIXED belongs into a step"),
+    ("*BOUNDARY", "*BOUNDARY, FIXED", 16, 12, "FIXED belongs in a step"),
     ("*BOUNDARY", "*BOUNDARY, OP=OLD", 16, 15, "expected NEW, MOD"),
     ("*CLOAD", "*CONTACT PAIR, INTERACTION=i", 22, 1, "inside a step"),
     ("*CLOAD", "*CLOAD, AMPLITUDE=up", 22, 19, "no amplitude named 'up'"),

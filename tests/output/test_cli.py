@@ -258,7 +258,7 @@ def test_plot_draws_pictures(tmp_path, here, monkeypatch):
     ("arguments", "words"),
     [
         (["--field", "MISS"], "did you mean MISES"),
-        (["--frame", "99"], "no frame 99; the results hold 5"),
+        (["--frame", "99"], "no frame 99; there are 5"),
         (["-o", "a.bmp"], "unknown picture format '.bmp'"),
         (["--curve", "U2"], "write two quantities"),
         (["--curve", "U2@NOWHERE,time"], "no set named 'NOWHERE'"),

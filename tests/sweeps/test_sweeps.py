@@ -146,7 +146,7 @@ def test_the_store_knows_the_measures_and_the_deck(deck: Path, tmp_path: Path) -
     deck.write_text(DECK.replace("1000., 0.", "2000., 0."))
     changed = ct.sweep(deck, {"t": [1.0]}, ["RF1@right"], workers=1, store=store)
     assert changed["RF1@right"][0] == pytest.approx(2.0 * first["RF1@right"][0])
-    with pytest.raises(ct.FileError, match=r"bar\.inp:1: no row of a sweep"):
+    with pytest.raises(ct.FileError, match=r"bar\.inp:1: not a row of a sweep"):
         ct.sweep(deck, {"t": [1.0]}, ["RF1@right"], workers=1, store=deck)
 
 

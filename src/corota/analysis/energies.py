@@ -38,7 +38,7 @@ TERMS = {
     "ALLCL": "energy stored by contact pressure laws",
     "ALLPW": "work of contact forces in central differences less ALLFD and ALLCL",
     "ALLWK": "work of loads and of supports that move",
-    "ALLTH": "work of thermal expansion: what changes of temperature put into the body",
+    "ALLTH": "work of thermal expansion, done by changes of temperature",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }
 #: How Python and decks ask for the scheme that keeps energy.

@@ -55,9 +55,9 @@ def name_motion(system: NumberedModel, error: SingularError, ratio: float) -> Si
     )
     if ratio > RATIO:
         text += (
-            f". The stiffnesses of nodes differ by a factor of {ratio:.0e}: if something soft "
-            "holds it, rounding hides that in double precision; look at moduli and units, or make "
-            "the stiff part a rigid body"
+            f". The stiffnesses of nodes differ by a factor of {ratio:.0e}: if it is supported "
+            "by something soft, rounding hides that in double precision; check moduli and "
+            "units, or make the stiff part a rigid body"
         )
     return SingularError(text, equation, mode, modes)
 

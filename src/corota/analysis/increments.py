@@ -73,7 +73,7 @@ class Increments:
         """Shorten after a failed attempt at a time; returns why that is impossible, or ''."""
         self.easy = 0
         if self.step.fixed_increments:
-            return "the increments are fixed (DIRECT), so none may be cut"
+            return "the increments are fixed (DIRECT) and cannot be cut"
         self.attempt += 1
         self.size = CUT * (tried - self.time)
         if self.attempt > MAX_ATTEMPTS:

@@ -105,7 +105,7 @@ class Settings:
     max_iterations: int = 16
     #: Corrects with the last factorisation, for an iteration that converges with it all the same.
     reuse: Callable[[Any], Floats] | None = None
-    #: Iterations without a residual clearly below all before, after which it is hopeless; 0: never.
+    #: Iterations without a clearly smaller residual after which the attempt is given up; 0: never.
     patience: int = 0
 
 

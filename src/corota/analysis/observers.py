@@ -73,7 +73,7 @@ class Observers:
             o.cut_back(step, increment, attempt, reason, dt)
 
     def note(self, step: int, text: str) -> None:
-        """Say what a step does that was not asked for in so many words."""
+        """Send a notice of what a step does by itself, such as a switch to arc length."""
         for o in self.each:
             if (tell := getattr(o, "note", None)) is not None:
                 tell(step, text)

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 #: What cannot be judged when the tangent is not symmetric.
 NOT_CONSERVATIVE = (
-    "the loads follow the structure and have no potential: the tangent is not symmetric, its "
-    "pivots do not tell stability (non-conservative: use dynamics)"
+    "the loads follow the structure and have no potential: the tangent is not symmetric, so its "
+    "pivots do not show stability (non-conservative: use dynamics)"
 )
 
 

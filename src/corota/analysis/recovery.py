@@ -32,9 +32,9 @@ def recover(system: NumberedModel, u: Floats) -> tuple[list[PointFields], dict[s
                 bad = int(np.argwhere(~np.isfinite(values))[0][0])
                 label = system.model.mesh.cell_labels[block.cells[bad]]
                 raise ElementFailure(
-                    f"{name} of element {label} is no number at the equilibrium that was "
-                    "found: its strain is beyond what its material and plane allow, as a "
-                    "thickness that vanishes; look at loads, moduli and units"
+                    f"{name} of element {label} is not a number at the equilibrium found: the "
+                    "strain exceeds what the material and the plane state allow (for example "
+                    "the thickness vanishes); check loads, moduli and units"
                 )
         if system.nlgeom and "M1" in own["values"]:
             # Moments of the ends balance the shear force over the current length of a beam.

@@ -164,7 +164,7 @@ class Analysis:
         self.threads = min(threads or cores, most)
         if threads and threads > most:
             self.results.notes.append(
-                f"{threads} threads were asked for; {most} are used, on {cores} cores"
+                f"{threads} threads were requested; {most} are used, on {cores} cores"
             )
         if isinstance(solver, str):
             self.solver: LinearSolver = make_solver(solver)

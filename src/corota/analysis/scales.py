@@ -204,7 +204,7 @@ class Scales:
         node = system.model.mesh.node_labels[system.node_of_dof[worst]]
         return (
             f"node {node} moves by {moved[worst]:.3g}, {moved[worst] / system.length:.2g} times "
-            "the size of the model: its body can move freely, nothing holds it; add a support"
+            "the size of the model: its body is unconstrained; add a support"
         )
 
 

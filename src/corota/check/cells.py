@@ -85,6 +85,6 @@ def _same_place(mesh: Mesh, used: Ints) -> list[Diagnostic]:
             "warning",
             f"{len(pairs)} pairs of nodes lie at the same place and are not joined, such as "
             f"{a} and {b}",
-            hint="merge them (corota.mesh.merge), unless a slit is meant",
+            hint="merge them (corota.mesh.merge), unless a slit is intended",
         )
     ]

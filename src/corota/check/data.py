@@ -30,9 +30,7 @@ def check_data(model: Model) -> list[Diagnostic]:
         later = number > 1
         if not (moved or later or step.loads or model.loads):
             found.append(
-                Diagnostic(
-                    "warning", f"step {number}: nothing loads or moves the model", step.where
-                )
+                Diagnostic("warning", f"step {number}: no load and no moving support", step.where)
             )
         if step.procedure.startswith("dynamic"):
             found += [

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from corota.model.model import Model
     from corota.model.units import Units
 
-#: Young's modulus that can only be in pascal, and a size that is hardly in metres.
+#: Young's modulus that can only be in pascal, and a size that is hardly in meters.
 PASCAL, LARGE = 1e9, 50.0
 #: Wave speeds of solids, from rubber in m/s to diamond in mm/s.
 SLOW, FAST = 10.0, 5e7
@@ -77,7 +77,7 @@ def _doubts(
         return
     if modulus >= PASCAL and size >= LARGE:
         yield (
-            f"E = {modulus:g} in a part of size {size:g} looks like pascal mixed with millimetres",
+            f"E = {modulus:g} in a part of size {size:g} looks like pascals mixed with millimeters",
             "use N, mm and MPa, or N, m and Pa",
         )
     elif density > 0.0:

@@ -34,7 +34,7 @@ def make_parser() -> Parser:
     """Build the parser of all commands."""
     parser = Parser(
         prog="corota",
-        description="Co-rotational planar finite elements: decks in, results and pictures out.",
+        description="Co-rotational planar finite elements: solve decks, draw and convert results.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -48,17 +48,21 @@ def make_parser() -> Parser:
         made.add_argument("-v", "--verbose", action="count", default=0, help="more lines; -vv more")
         return made
 
-    run = command("run", "Read a deck, solve its steps, write the results.")
+    run = command("run", "Solve the steps of a deck and write the results.")
     run.add_argument("deck", help="input deck (.inp)")
     run.add_argument("-o", "--output", metavar="DIR", default=".", help="folder of the results")
-    run.add_argument("--name", metavar="JOB", default="", help="stem of the files; else the deck's")
-    run.add_argument("--threads", type=_count, metavar="N", help="threads; else all cores")
+    run.add_argument(
+        "--name", metavar="JOB", default="", help="name of the job (default: that of the deck)"
+    )
+    run.add_argument(
+        "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
+    )
     run.add_argument(
         "--format",
         dest="formats",
         action="append",
         choices=("vtkhdf", "pvd", "frd", "frd-binary", "npz", "vtu"),
-        help="result format, repeatable; else vtkhdf",
+        help="result format, repeatable (default: vtkhdf)",
     )
     run.add_argument(
         "--history",
@@ -75,11 +79,9 @@ def make_parser() -> Parser:
         choices=("frd", "frd-binary"),
         help="JOB.frd for cgx, PrePoMax, FreeCAD beside the result file; frd-binary: smaller",
     )
+    run.add_argument("--points", action="store_true", help="also write values at quadrature points")
     run.add_argument(
-        "--points", action="store_true", help="values at quadrature points in the result file too"
-    )
-    run.add_argument(
-        "--single", action="store_true", help="fields of the result file in 4 bytes a number"
+        "--single", action="store_true", help="write fields in single precision (4 bytes)"
     )
     run.add_argument(
         "--fields",
@@ -89,7 +91,7 @@ def make_parser() -> Parser:
         help="fields of the result file, such as U,S,PEEQ; or requested: as *NODE FILE, *EL FILE",
     )
     run.add_argument(
-        "--compression", type=int, default=1, metavar="0-9", help="of the result file; else 1"
+        "--compression", type=int, default=1, metavar="0-9", help="of the result file (default: 1)"
     )
     _reading(run)
 
@@ -97,10 +99,10 @@ def make_parser() -> Parser:
         "--checkpoint-every",
         type=_whole,
         metavar="N",
-        help="checkpoint every N increments, 0 for none; else every minute",
+        help="checkpoint every N increments, 0 for none (default: every minute)",
     )
     run.add_argument(
-        "--provenance", action="store_true", help="write versions and digests beside the results"
+        "--provenance", action="store_true", help="also write versions and digests of the inputs"
     )
 
     run.add_argument(
@@ -109,17 +111,19 @@ def make_parser() -> Parser:
         type=_port,
         const=0,
         metavar="PORT",
-        help="show the run in a page of this machine while it goes on; prints the address",
+        help="show the progress on a local page and print its address",
     )
 
-    resume = command("resume", "Go on with a run that stopped, from its newest checkpoint.")
+    resume = command("resume", "Resume a stopped run from its newest checkpoint.")
     resume.add_argument("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
     resume.add_argument(
-        "-o", "--output", metavar="DIR", help="folder of the results; else the job's"
+        "-o", "--output", metavar="DIR", help="folder of the results (default: that of the job)"
     )
-    resume.add_argument("--threads", type=_count, metavar="N", help="threads; else all cores")
+    resume.add_argument(
+        "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
+    )
 
-    sweep = command("sweep", "Run a deck with many values of its *PARAMETER names.")
+    sweep = command("sweep", "Run a deck for many values of its *PARAMETER names.")
     sweep.add_argument("deck", help="input deck (.inp)")
     sweep.add_argument(
         "-p",
@@ -136,40 +140,44 @@ def make_parser() -> Parser:
         action="append",
         metavar="MEASURE",
         required=True,
-        help="what is kept: max(RM3@hub), last(U2@tip); repeatable",
+        help="measure to keep, such as max(RM3@hub) or last(U2@tip); repeatable",
     )
     sweep.add_argument(
         "--sample",
         type=_count,
         metavar="N",
-        help="N points of a Latin hypercube between the first and last values, not a grid",
+        help="N points of a Latin hypercube between the first and last values, instead of a grid",
     )
     sweep.add_argument("--seed", type=int, default=0, help="of the sample")
-    sweep.add_argument("--workers", type=_count, metavar="N", help="processes; else all cores")
+    sweep.add_argument(
+        "--workers", type=_count, metavar="N", help="number of processes (default: all cores)"
+    )
     sweep.add_argument("-o", "--output", metavar="FILE", help="table; else DECK_sweep.csv")
     sweep.add_argument("--plot", metavar="FILE", help="picture of the first measure")
-    sweep.add_argument("--again", action="store_true", help="run rows that are kept again")
+    sweep.add_argument("--again", action="store_true", help="run stored rows again")
     _reading(sweep)
 
-    demo = command("demo", "Run an example that comes with Corota; needs no file and no network.")
+    demo = command("demo", "Run a built-in example; needs no file and no network.")
     demo.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
-    demo.add_argument("--list", action="store_true", help="name the examples and run none")
+    demo.add_argument("--list", action="store_true", help="list the examples")
     demo.add_argument(
         "-o", "--output", metavar="DIR", default="", help="folder; else corota-demo/NAME"
     )
 
-    check = command("check", "Read and validate without solving; count and warn.")
+    check = command("check", "Check a deck or mesh without solving it.")
     check.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
     _reading(check)
 
-    plot = command("plot", "Draw pictures of results (.vtkhdf), or of a model with --model.")
+    plot = command("plot", "Draw results (.vtkhdf), or a model with --model.")
     plot.add_argument("file", help="result file, or deck or mesh with --model")
     plot.add_argument(
         "-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4 .html"
     )
     plot.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
-    plot.add_argument("--frame", type=int, default=-1, help="frame from 0; -1 is the last")
-    plot.add_argument("--scale", type=float, default=1.0, help="factor of the displacements")
+    plot.add_argument(
+        "--frame", type=int, default=-1, help="index of the frame, from 0 (default: -1, the last)"
+    )
+    plot.add_argument("--scale", type=float, default=1.0, help="scale factor of the displacements")
     plot.add_argument("--element", dest="per_cell", action="store_true", help="element averages")
     plot.add_argument("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
     plot.add_argument("--model", action="store_true", help="mesh, sets, supports and loads")
@@ -222,37 +230,41 @@ def make_parser() -> Parser:
     plot.add_argument(
         "--last-iterate",
         action="store_true",
-        help="where the last attempt of a run that stopped ended; what is out of balance as RF",
+        help="the last attempt of a run that stopped; RF shows the residual",
     )
     plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
     plot.add_argument(
         "--width", type=float, default=0.0, metavar="MM", help="of the picture, such as 85"
     )
 
-    report = command("report", "Write a page for a browser from the files of a job.")
-    report.add_argument("job", help="stem of the job's files, or any of them")
-    report.add_argument("-o", "--output", metavar="FILE", help="page (.html); else JOB.html")
-    report.add_argument("--title", default="", help="heading; else the name of the job")
+    report = command("report", "Write an HTML report from the files of a job.")
+    report.add_argument("job", help="name of the job, or any of its files")
+    report.add_argument("-o", "--output", metavar="FILE", help="report (.html; default: JOB.html)")
+    report.add_argument("--title", default="", help="heading (default: the name of the job)")
     report.add_argument(
         "--limit",
         type=float,
         default=9.5,
         metavar="MB",
-        help="size of the page; what does not fit is thinned, with a note (9.5)",
+        help="largest size of the page (default: 9.5); longer results are thinned, with a note",
     )
 
-    watch = command("watch", "Show a run at work, in a browser or in the terminal.")
-    watch.add_argument("job", help="stem of the job's files, its deck, or any of them")
-    watch.add_argument("-o", "--output", metavar="DIR", help="folder of the files; else the job's")
-    watch.add_argument("--terminal", action="store_true", help="lines instead of a page")
+    watch = command("watch", "Watch a run in progress, in a browser or in the terminal.")
+    watch.add_argument("job", help="name of the job, its deck, or any of its files")
+    watch.add_argument(
+        "-o", "--output", metavar="DIR", help="folder of the files (default: that of the job)"
+    )
+    watch.add_argument(
+        "--terminal", action="store_true", help="print lines instead of serving a page"
+    )
     watch.add_argument("--open", action="store_true", help="open the page in a browser")
     watch.add_argument("--port", type=_port, default=0, metavar="PORT", help="else any free one")
 
-    view = command("view", "Look at results in a window: time, fields, warp (extra `view`).")
+    view = command("view", "Show results in an interactive window (extra `view`).")
     view.add_argument("file", help="result file")
     view.add_argument("-o", "--output", metavar="FILE", help="write a .png and open no window")
     view.add_argument("--field", default="", help="variable: MISES S11 U2 ...")
-    view.add_argument("--scale", type=float, default=1.0, help="factor of the displacements")
+    view.add_argument("--scale", type=float, default=1.0, help="scale factor of the displacements")
 
     info = command("info", "Describe a deck, a mesh or a result file.")
     info.add_argument("file")
@@ -260,7 +272,7 @@ def make_parser() -> Parser:
 
     convert = command("convert", "Convert a mesh to a deck (.inp), or results to another format.")
     convert.add_argument("source")
-    convert.add_argument("target", nargs="?", help="the ending names the format")
+    convert.add_argument("target", nargs="?", help="the file extension selects the format")
     convert.add_argument(
         "--paraview",
         action="store_true",
@@ -268,16 +280,22 @@ def make_parser() -> Parser:
     )
     convert.add_argument("--field", default="", help="variable of the colors in ParaView")
     convert.add_argument(
-        "--scale", type=float, default=1.0, help="factor of the displacements in ParaView"
+        "--scale", type=float, default=1.0, help="scale factor of the displacements in ParaView"
     )
     _reading(convert)
 
-    verify = command("verify", "Measure the problems of the verification catalogue.")
-    verify.add_argument("names", nargs="*", metavar="NAME", help="names or patterns; else all")
-    verify.add_argument("--list", action="store_true", help="name the problems and measure none")
-    verify.add_argument("--full", action="store_true", help="convergence studies too; minutes")
-    verify.add_argument("--pages", metavar="DIR", help="write a page a problem (plotting extra)")
-    verify.add_argument("--jobs", type=_count, metavar="N", help="processes; else all cores")
+    verify = command("verify", "Solve the problems of the verification catalogue.")
+    verify.add_argument("names", nargs="*", metavar="NAME", help="names or patterns (default: all)")
+    verify.add_argument("--list", action="store_true", help="list the problems")
+    verify.add_argument(
+        "--full", action="store_true", help="also run the convergence studies (minutes)"
+    )
+    verify.add_argument(
+        "--pages", metavar="DIR", help="write a page for each problem (extra `plot`)"
+    )
+    verify.add_argument(
+        "--jobs", type=_count, metavar="N", help="number of processes (default: all cores)"
+    )
     return parser
 
 
@@ -298,16 +316,16 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         default=[],
         type=_value,
-        help="another value of a *PARAMETER of the deck, repeatable",
+        help="value of a *PARAMETER of the deck, repeatable",
     )
     parser.add_argument(
         "--as-written",
         action="store_true",
-        help="take reduced integration literally: CPS4R becomes Q4R instead of Q4I",
+        help="use reduced integration as written: CPS4R becomes Q4R instead of Q4I",
     )
-    parser.add_argument("--lenient", action="store_true", help="unknown keywords are warnings")
+    parser.add_argument("--lenient", action="store_true", help="treat unknown keywords as warnings")
     parser.add_argument(
-        "--allow-include", action="store_true", help="*INCLUDE may leave the folder of the deck"
+        "--allow-include", action="store_true", help="allow *INCLUDE outside the folder of the deck"
     )
 
 

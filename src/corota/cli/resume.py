@@ -32,8 +32,8 @@ def run(args: Any, terminal: Terminal) -> int:
     deck = job.suffix == ".inp" and job.exists()
     if deck and known and source_of(job)["sha256"] != known:
         raise FileError(
-            f"{job}: the deck has changed since {saved.path} was written: run it again, or go on "
-            f"with the old one by: corota resume {saved.path}"
+            f"{job}: the deck has changed since {saved.path} was written: run it again, or "
+            f"continue with the old one: corota resume {saved.path}"
         )
     model, steps = rebuilt(saved)
     terminal.line(f"From {saved.path}: {saved.state.where}")

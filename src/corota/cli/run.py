@@ -47,7 +47,7 @@ class Stop(BaseObserver):
         if self.asked:
             raise KeyboardInterrupt
         self.asked, self.stop = signal.Signals(number).name, True
-        self.terminal.warning("stopping after this increment; once more stops at once")
+        self.terminal.warning("stopping after this increment; press again to stop at once")
 
     def save(self, number: int, frame: object) -> None:
         """Ask for a checkpoint after this increment."""
@@ -241,7 +241,9 @@ def _tell_checkpoint(files: JobFiles, terminal: Terminal) -> None:
     """Say how to go on, if there is something to go on from."""
     path = files.folder / f"{files.name}.ckpt"
     if files.error is None and files.checkpointed is not None and path.exists():
-        terminal.line(f"Checkpoint of {files.checkpointed.where}; go on with: corota resume {path}")
+        terminal.line(
+            f"Checkpoint of {files.checkpointed.where}; continue with: corota resume {path}"
+        )
 
 
 def _tell_files(files: JobFiles, terminal: Terminal) -> None:

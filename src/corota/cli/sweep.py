@@ -63,8 +63,8 @@ def run(args: Any, terminal: Terminal) -> int:
         terminal.warning(f"row {number} ({values}): {found['error'][number]}")
     ended = len(found) - len(found.failed)
     terminal.line(
-        f"{ended} of {len(found)} rows in {duration(time.perf_counter() - begin)}: {table} "
-        f"(rows are kept in {store}; the same command goes on from there)"
+        f"{ended} of {len(found)} rows in {duration(time.perf_counter() - begin)}: {table} (rows "
+        f"are kept in {store}; the same command continues from there)"
     )
     if args.plot:
         by = found.parameters[1] if len(found.parameters) == 2 and not args.sample else ""

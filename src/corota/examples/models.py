@@ -73,7 +73,7 @@ def clip() -> Model:
     model.section(element="Q4I", material=polymer, thickness=4.0)
     corners = [(20.5, 2.2), (20.5, 5.0), (23.0, 5.0), (23.0, 2.2)]
     catch = RigidCurve.polyline(corners, closed=True, fillet=1.0)
-    # The fillet is as small as a few edges of the hook: see "Rounds of the size of an element".
+    # The fillet is as small as a few edges of the hook: see "Fillets of the size of an element".
     model.contact("hook", catch, method="node_to_segment", friction=0.2, name="catch")
     push = Static(first_increment=0.05)
     push.fix("left", x=10.0)
@@ -107,7 +107,7 @@ def bistable() -> Model:
 
 
 def seal() -> Model:
-    """Half a rubber tube pressed into a groove until its inner walls touch each other."""
+    """Half a rubber tube pressed into a groove until its inner walls are in contact."""
     mesh = meshes.annulus(3.2, 4.0, n_radial=3, n_around=40, angle=180.0, start=-90.0)
     rib = meshes.add_node(mesh, 0.0, 5.5, name="rib")
     model = Model(mesh, name="seal")

@@ -190,7 +190,7 @@ def to_triangles(mesh: Mesh, diagonal: Literal["right", "left"] = "right") -> Me
     split: list[Ints] = [np.zeros(0, bool)]
     for block in mesh.cells:
         if block.kind == "quad8":
-            raise InputError("quad8 cells have no centre node to cut through; use quad9")
+            raise InputError("quad8 cells have no center node to cut through; use quad9")
         if block.kind in _TRIANGLE:
             parts = [block.nodes[:, list(t)] for t in _SPLIT[diagonal][block.kind]]
             nodes = np.stack(parts, axis=1).reshape(2 * len(block), -1)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 #: Local node numbers of the edges of each cell kind: (first, last[, middle]).
-#: Corners counter-clockwise, then mid-sides 1-2, 2-3, ..., then the centre.
+#: Corners counter-clockwise, then mid-sides 1-2, 2-3, ..., then the center.
 EDGES: dict[str, tuple[tuple[int, ...], ...]] = {
     "tri3": ((0, 1), (1, 2), (2, 0)),
     "tri6": ((0, 1, 3), (1, 2, 4), (2, 0, 5)),

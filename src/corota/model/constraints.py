@@ -78,7 +78,7 @@ class Coupling(Brief):
 
     def __post_init__(self) -> None:
         if not self.dofs or not set(self.dofs) <= {0, 1, 2}:
-            raise InputError("a coupling takes dofs out of 0, 1 and 2", self.where)
+            raise InputError("the dofs of a coupling are 0, 1 and 2", self.where)
         if self.kind not in ("kinematic", "distributing"):
             raise InputError(f"no coupling {self.kind!r}: kinematic or distributing", self.where)
         if self.weights is not None:
@@ -108,7 +108,7 @@ class LocalAxes(Brief):
 
     def __post_init__(self) -> None:
         if not np.isfinite([self.angle, *(self.centre or ())]).all():
-            raise InputError("the angle and the centre of local axes must be finite", self.where)
+            raise InputError("the angle and the center of local axes must be finite", self.where)
 
 
 @dataclass

@@ -264,7 +264,7 @@ class PressureLaw(Brief):
 
 @dataclass
 class ContactPair(Brief):
-    """Two surfaces, or a surface and a rigid curve, that may touch.
+    """Two surfaces, or a surface and a rigid curve, that may come into contact.
 
     Parameters
     ----------
@@ -282,9 +282,9 @@ class ContactPair(Brief):
         Gap at the start [length], whatever the coordinates say.
     start : {"keep", "adjust", "ramp"}
         Overlap of the coordinates at the start: pushed out in the first increment, taken as
-        the touching state without strain, or pushed out over the first step.
+        the state of contact without strain, or pushed out over the first step.
     adjust : float
-        With ``start="adjust"``: gaps up to this at the start [length] are taken as touching too.
+        With ``start="adjust"``: gaps up to this at the start [length] count as contact, too.
     adjust_nodes : str or array_like of int, optional
         With ``start="adjust"``: these slave nodes only, whatever their gap.
     smooth : bool
@@ -336,8 +336,8 @@ class ContactPair(Brief):
             raise InputError("the clearance of a contact pair must be finite", self.where)
         if self.smooth and (self.itself or isinstance(self.master, RigidCurve)):
             raise InputError(
-                "only a master of element edges can be smoothed: a rigid curve is what it is drawn "
-                "as (give it fillets), and a surface that touches itself keeps its edges",
+                "only a master of element edges can be smoothed; give a rigid curve fillets "
+                "instead, and self-contact keeps its edges",
                 self.where,
             )
         if not self.name:
@@ -345,7 +345,7 @@ class ContactPair(Brief):
 
     @property
     def itself(self) -> bool:
-        """Whether the surface touches itself."""
+        """Whether it is self-contact of one surface."""
         if isinstance(self.master, RigidCurve) or isinstance(self.slave, str) != isinstance(
             self.master, str
         ):

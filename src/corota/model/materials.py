@@ -139,7 +139,7 @@ class Material(Brief):
         """
         raise InputError(
             f"a material of type {type(self).__name__} has no elastic constants for thermal "
-            "strain or initial stress; take them into the function itself",
+            "strain or initial stress; include them in the function itself",
             self.where,
         )
 

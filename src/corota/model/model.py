@@ -365,7 +365,7 @@ class Model(Loading, LineSections, InitialFields):
         smooth: bool = False,
         name: str = "",
     ) -> None:
-        """Let two edge sets touch, or an edge set and a rigid curve; see ``docs/contact.md``.
+        """Define contact of two edge sets, or of one and a rigid curve; see ``docs/contact.md``.
 
         The parameters are those of :class:`corota.model.contact.ContactPair`; the same set twice is
         contact of a surface with itself.

@@ -116,8 +116,8 @@ class Mises(Material):
         if self.yield_curve is not None:
             if self.isotropic != 0.0:
                 raise InputError(
-                    "yield_curve is the isotropic hardening itself: leave out isotropic, or give "
-                    "yield_stress instead of the curve",
+                    "yield_curve already defines the isotropic hardening: leave out isotropic, "
+                    "or give yield_stress instead of the curve",
                     self.where,
                 )
             self._check_curve([(float(s), float(p)) for s, p in self.yield_curve])
@@ -133,7 +133,7 @@ class Mises(Material):
             self._not_negative(f"gamma of back-stress {number}", gamma)
         if len(self.back_stresses) > MAX_BACK_STRESSES:
             raise InputError(
-                f"at most {MAX_BACK_STRESSES} back-stresses are held, not "
+                f"at most {MAX_BACK_STRESSES} back-stresses are supported, not "
                 f"{len(self.back_stresses)}; fit the curve with fewer",
                 self.where,
             )
@@ -166,7 +166,7 @@ class Mises(Material):
             if i and stress < curve[i - 1][0]:
                 raise InputError(
                     f"the yield stress may not fall, but {stress:g} follows {curve[i - 1][0]:g}; "
-                    "softening depends on the mesh and is not offered",
+                    "softening depends on the mesh and is not supported",
                     where,
                 )
 

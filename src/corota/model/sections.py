@@ -105,15 +105,15 @@ class Section(Brief):
             )
         if self.mean_dilatation and self.plane != "strain":
             raise InputError(
-                "mean dilatation is for plane strain; in plane stress the thickness is free to "
-                "change and nothing locks: leave it out",
+                "mean dilatation is for plane strain; in plane stress the thickness can change "
+                "and nothing locks: omit it",
                 self.where,
             )
         fact = elements.known(self.element)
         if self.mean_dilatation and fact and fact.n_internal_modes > 1:
             raise InputError(
-                f"{self.element} does not lock: its incompatible modes give the volume its "
-                "freedom, and with mean dilatation they would have no stiffness; leave it out",
+                f"{self.element} does not lock because of its incompatible modes, which would "
+                "have no stiffness with mean dilatation: omit it",
                 self.where,
             )
         if self.mean_dilatation and not (

@@ -414,8 +414,8 @@ class SteadyState(Step):
         check_damping(self.damping, self.rayleigh, self.where)
         if self.direct and (self.residual or _any_share(self.damping)):
             raise InputError(
-                "direct=True has no modes to damp or to add to: give damping by rayleigh=, "
-                "materials or dashpots",
+                "direct=True uses no modes, so modal damping has no effect; give damping by "
+                "rayleigh=, materials or dashpots",
                 self.where,
             )
 

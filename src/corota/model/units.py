@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from corota.errors import InputError, Location
 from corota.names import did_you_mean
 
-#: Kind of unit to its names, each with its size in metres, newtons, kilograms, seconds, kelvins.
+#: Kind of unit to its names, each with its size in meters, newtons, kilograms, seconds, kelvins.
 KNOWN: dict[str, dict[str, float]] = {
     "length": {
         "m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9,
@@ -120,8 +120,8 @@ class Units:
         fitting = [n for n, size in KNOWN["mass"].items() if abs(size / wanted - 1.0) <= SAME]
         proper = f"the mass in {fitting[0]}" if fitting else f"masses of {wanted:g} kg"
         raise InputError(
-            f"units that do not fit: {self.force} is not {self.mass}*{self.length}/{time}^2; "
-            f"beside {self.length}, {self.force} and {time} take {proper}",
+            f"inconsistent units: {self.force} is not {self.mass}*{self.length}/{time}^2; beside "
+            f"{self.length}, {self.force} and {time} take {proper}",
             where,
         )
 

@@ -1,4 +1,4 @@
-"""Contact along its line: pressure and shear traction, and who touches whom."""
+"""Contact along its line: pressure, shear traction, and the state of every node."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -115,7 +115,7 @@ class Viewer:
         self.draw()
 
     def warp(self, scale: float) -> None:
-        """Change the factor of the displacements."""
+        """Change the scale factor of the displacements."""
         self.scale = float(scale)
         self.draw()
 

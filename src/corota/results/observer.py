@@ -65,7 +65,7 @@ class BaseObserver:
         """Give up an attempt; ``dt`` is the next one's increment."""
 
     def note(self, step: int, text: str) -> None:
-        """Hear what a step does that was not asked for in so many words."""
+        """Receive a notice of what a step does by itself, such as a switch to arc length."""
 
     def end(self, results: Results, error: Exception | None) -> None:
         """Finish, with the error if there was one."""

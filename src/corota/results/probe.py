@@ -168,7 +168,7 @@ def place(
     if node is not None:
         found = np.flatnonzero(mesh.node_labels == node)
         if not len(found):
-            raise InputError(f"there is no node {node}; labels of nodes are meant")
+            raise InputError(f"there is no node {node}; give the label of a node")
         return Place(results, f"node {node}", found)
     if point is not None:
         inside = Interpolation(mesh, point)
@@ -274,11 +274,11 @@ def chained(mesh: Mesh, edges: Ints) -> Ints:
     ends = {int(s[-1]) for s in sides}
     starts = [n for n in begins if n not in ends] or [int(sides[0][0])]
     if len(starts) > 1 or len(begins) < len(sides):
-        raise InputError("these edges are no single line; give points of a path instead")
+        raise InputError("these edges do not form one line; give points of a path instead")
     chain, at = [starts[0]], starts[0]
     for _ in sides:
         if at not in begins:
-            raise InputError("these edges are no single line; give points of a path instead")
+            raise InputError("these edges do not form one line; give points of a path instead")
         chain += begins[at][1:].tolist()
         at = chain[-1]
     return np.array(chain, dtype=np.int64)

@@ -109,9 +109,7 @@ class Results(Brief):
             If there is none.
         """
         if not -len(self.frames) <= index < len(self.frames):
-            raise InputError(
-                f"no frame {index}; the results hold {len(self.frames)}, counted from 0"
-            )
+            raise InputError(f"no frame {index}; there are {len(self.frames)}, counted from 0")
         return self.frames[index]
 
     def variables(self, index: int = -1) -> list[str]:

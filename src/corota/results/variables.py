@@ -318,7 +318,7 @@ def invariant(name: str, tensor: Floats) -> Floats:
 
 
 def available(fields: Iterable[PointFields]) -> list[str]:
-    """Names that can be asked of point fields: components, invariants and scalars."""
+    """Names of variables of point fields: components, invariants and scalars."""
     have = {name for block in fields for name in block.values}
     found = [name for name, (tensor, _) in COMPONENTS.items() if tensor in have]
     found += [name for name, (tensor, _) in INVARIANTS.items() if tensor in have]

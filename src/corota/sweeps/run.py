@@ -170,8 +170,8 @@ def _spread(
                 take(futures[future], future.result())
         except BrokenExecutor:
             raise ResourceError(
-                "the workers of the sweep died; a script must call sweep under "
-                "'if __name__ == \"__main__\":', and each worker needs memory for its own run"
+                "the workers of the sweep stopped; a script must call sweep under 'if __name__ "
+                '== "__main__":\', and each worker needs memory for its own run'
             ) from None
         except BaseException:
             for future in futures:

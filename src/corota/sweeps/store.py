@@ -55,7 +55,9 @@ class Store:
                 outcome = Outcome(**found["outcome"])
                 self._known[found["digest"]] = outcome
             except (ValueError, KeyError, TypeError):
-                raise FileError(f"{path}:{number}: no row of a sweep; name another file") from None
+                raise FileError(
+                    f"{path}:{number}: not a row of a sweep; name another file"
+                ) from None
         self._cut = len(self._whole) < len(text)
 
     def find(self, row: Mapping[str, Any]) -> Outcome | None:

@@ -69,7 +69,7 @@ class Value:
 
     @property
     def ok(self) -> bool:
-        """Whether the error is within the tolerance; never for what is no number."""
+        """Whether the error is within the tolerance; never for what is not a number."""
         return self.error <= self.tolerance
 
 
@@ -139,7 +139,7 @@ class Problem:
         Where the problem and its reference values are from.
     certainty : str
         How sure the reference is: ``analytic``; ``computed independently`` by another program
-        on the same discretisation or a much finer one; ``published`` and not checked by us;
+        on the same discretization or a much finer one; ``published`` and not checked by us;
         ``converged here`` on finer meshes, which shows consistency and no more.
     why : str
         Reason of the tolerances.

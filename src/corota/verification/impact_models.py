@@ -59,7 +59,7 @@ class Impact:
 def bar(element: str = "Q4I", cells: int = 200, unit: float = 1.0, **contact: Any) -> Model:
     """Build the bar, just touching the wall x = 0, on its way into it.
 
-    `unit` is one metre in the unit of length; masses stay, so stresses scale with 1 / unit.
+    `unit` is one meter in the unit of length; masses stay, so stresses scale with 1 / unit.
     """
     length = LENGTH * unit
     height = length / cells * 2.0
@@ -179,7 +179,7 @@ def ring(
     """Build the ring, or a bar upright, nearly touching the wall y = 0.
 
     `around` counts the elements along the ring or bar; `sideways` and `spin` are velocities along
-    the wall and about the centre, `contact` goes to the pair; `unit` is one metre in the unit of
+    the wall and about the centre, `contact` goes to the pair; `unit` is one meter in the unit of
     length. Masses stay, so stresses scale with 1 / unit (force = mass length / time^2).
     """
     if body == "bar":

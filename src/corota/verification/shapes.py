@@ -1,6 +1,6 @@
 """Shape functions and quadrature from their definitions, independent of the compiled core.
 
-Cells of 3, 4, 6, 8 and 9 nodes, numbered as everywhere: corners, mid-sides, centre.
+Cells of 3, 4, 6, 8 and 9 nodes, numbered as everywhere: corners, mid-sides, center.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

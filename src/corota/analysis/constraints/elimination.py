@@ -48,7 +48,7 @@ def local_axes(model: Model) -> dict[int, Floats]:
                 if not np.any(arm):
                     label = model.mesh.node_labels[node]
                     raise ModelError(
-                        f"node {label} lies on the centre of its axes: it has no radial "
+                        f"node {label} lies at the center of its axes and has no radial "
                         "direction; leave it out",
                         item.where,
                     )
@@ -380,8 +380,8 @@ class Constraints:
             relation = self.owner[dof]
             place = f" ({relation.where})" if relation.where is not None else ""
             raise ModelError(
-                f"{self.builder.name(dof)} is held, but {relation.what}{place} determines it "
-                f"already; hold {relation.instead} instead",
+                f"{self.builder.name(dof)} is supported, but {relation.what}{place} determines "
+                f"it already; support {relation.instead} instead",
                 where,
             )
 
@@ -389,8 +389,8 @@ class Constraints:
         """Refuse forces at dofs that nothing carries."""
         for dof in dofs[self.inert[dofs]].tolist():
             raise ModelError(
-                f"{self.builder.name(dof)} belongs to no element and to no constraint and "
-                "cannot carry a force",
+                f"{self.builder.name(dof)} belongs to no element and no constraint, so it cannot "
+                "carry a force",
                 where,
             )
 

@@ -56,8 +56,8 @@ def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]
             if item.kind == "distributing" and len(loose):
                 label = model.mesh.node_labels[loose[0]]
                 raise ModelError(
-                    f"node {label} of the distributing coupling belongs to no element; leave "
-                    "it out",
+                    f"node {label} of the distributing coupling belongs to no element; remove it "
+                    "from the coupling",
                     item.where,
                 )
             extra[loose] = np.maximum(extra[loose], 2)
@@ -75,7 +75,7 @@ def reference_nodes(model: Model) -> Ints:
     }
     for node in found:
         if not 0 <= node < model.mesh.n_nodes:
-            raise ModelError(f"a rigid curve has the reference node index {node}: there is none")
+            raise ModelError(f"a rigid curve has reference node index {node}: there is none")
     return np.array(sorted(found), np.int64)
 
 
@@ -249,7 +249,7 @@ class Builder:
         along = points[item.last] - points[item.first]
         length = float(np.hypot(*along))
         if not length > 0.0:
-            raise ModelError(f"{what} has no direction: they are at one place", item.where)
+            raise ModelError(f"{what} has no direction: they have the same position", item.where)
         nodes = np.unique(_nodes(self.model, item.nodes))
         nodes = nodes[~np.isin(nodes, ends)]
         if not len(nodes):
@@ -314,7 +314,7 @@ class Builder:
         arm = points[nodes] - mean
         if not np.any(weight @ arm**2 > 0.0):
             raise ModelError(
-                f"{self._described(item)} needs nodes at two places at least to find a rotation",
+                f"{self._described(item)} needs nodes at two places at least to define a rotation",
                 item.where,
             )
         masters = (self.start[nodes][:, None] + np.arange(2)).ravel()

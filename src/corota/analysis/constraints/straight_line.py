@@ -72,7 +72,7 @@ class OnLine(Relation):
         size = float(self.bound @ across)
         if not abs(size) > CLOSEST * float(np.hypot(*t)):
             raise ElementFailure(
-                f"{self.what} has turned so far that the displacement it determines is along it"
+                f"{self.what} has rotated so far that it no longer determines that displacement"
             )
         return n, d, size
 

@@ -187,7 +187,7 @@ class Pardiso:
         )
         self._mkl.MKL_Set_Num_Threads_Local(previous)
         if error.value == -2:
-            raise ResourceError("PARDISO has not enough memory for the factorisation")
+            raise ResourceError("PARDISO has not enough memory for the factorization")
         if error.value == -4:
             raise SingularError("matrix is singular: a pivot vanished")
         if error.value:

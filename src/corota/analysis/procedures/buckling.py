@@ -141,8 +141,8 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
         theta = theta[theta * system.length > largest_move]
         if not len(theta):
             raise ModelError(
-                f"the load of buckling step {number} makes nothing buckle: no positive factor; "
-                "is it a tension?",
+                f"the load of buckling step {number} gives no positive factor; does it cause "
+                "tension only?",
                 step.where,
             )
         factors = 1.0 / theta
@@ -218,7 +218,7 @@ def _derivative(
     """
     largest_move = _moved(system, response, loads)
     if not np.isfinite(largest_move):
-        raise ConvergenceError("the perturbing load moves nothing")
+        raise ConvergenceError("the perturbing load causes no displacement")
     # Where nothing moves, rigid bodies carry the load: what it does to their stiffness is linear.
     size = DIFFERENCE * system.length / largest_move if largest_move else 1.0
 
@@ -241,8 +241,8 @@ def _derivative(
     ahead -= 2.0 * values
     if np.abs(ahead).max() > CORNER * np.abs(change).max():
         raise UnsupportedError(
-            "the tangent jumps about this state (plastic flow, contact): linear buckling has "
-            "no meaning there; follow the path instead (path=ArcLength(...))"
+            "the tangent changes abruptly at this state (plastic flow, contact), so linear "
+            "buckling has no meaning; follow the path instead (path=ArcLength(...))"
         )
     change /= 2.0 * size
     # Entries of the load stiffness join the full tangent, since constraints reduce them too.
@@ -252,7 +252,7 @@ def _derivative(
         at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
         change += _unknowns(system, replace(at, link=system.constraints.link(u)), zero)
     if largest_move == 0.0 and not change.any():
-        raise ConvergenceError("the perturbing load moves nothing")
+        raise ConvergenceError("the perturbing load causes no displacement")
     return change
 
 

@@ -58,7 +58,7 @@ def factors_with_contact(
     factor = base.factor(k, True)
     if factor.negative < 0:
         raise UnsupportedError(
-            "the pivots of this state with contact do not tell whether it is stable: follow its "
+            "the pivots of this state with contact do not show whether it is stable; follow its "
             "path instead (path=ArcLength(...))"
         )
     if factor.negative > 0:
@@ -71,7 +71,7 @@ def factors_with_contact(
     moved = float(np.abs(base.expand(z)[system.counted]).max(initial=0.0))
     moved = max(moved, system.free.largest(loads.heating) * system.length)
     if not np.isfinite(moved) or moved == 0.0:
-        raise ConvergenceError("the perturbing load moves nothing")
+        raise ConvergenceError("the perturbing load causes no displacement")
     change = _change(base, z, loads, moved)
     a = base.sub(change)
     n = a.shape[0]
@@ -90,7 +90,7 @@ def factors_with_contact(
     real = (np.abs(theta.imag) <= REAL * np.abs(theta)) & (theta.real * system.length > moved)
     order = np.argsort(-theta.real[real])[:count]
     if not len(order):
-        raise ModelError("the load makes nothing buckle: no positive factor; is it a tension?")
+        raise ModelError("the load gives no positive factor; does it cause tension only?")
     shapes = base.expand(base.from_active(x[:, real][:, order].real))
     return 1.0 / theta.real[real][order], shapes
 
@@ -117,8 +117,8 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
     geometric_stiffness = ahead + behind - 2.0 * base.stiffness
     if abs(geometric_stiffness).max() > CORNER * abs(change).max():
         raise UnsupportedError(
-            "the tangent jumps about this state (plastic flow, contact): linear buckling has no "
-            "meaning there; follow the path instead (path=ArcLength(...))"
+            "the tangent changes abruptly at this state (plastic flow, contact), so linear "
+            "buckling has no meaning; follow the path instead (path=ArcLength(...))"
         )
     change = change / (2.0 * size)
     own = system.pattern.zeros()

@@ -96,7 +96,7 @@ def _refuse_idle(system: System, idle: NDArray[np.bool_], what: str) -> None:
     if idle.any():
         raise ModelError(
             f"{system.describe(int(np.flatnonzero(idle)[0]))} {what}: central differences cannot "
-            "move it; add a point mass, hold it, or use an implicit scheme"
+            "move it; add a point mass, fix it, or use an implicit scheme"
         )
 
 
@@ -118,14 +118,14 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
     system = loop.system
     if system.model.dashpots or any(step.rayleigh) or material_pairs(system):
         raise InputError(
-            "central differences take no damping: use an implicit scheme, or remove dashpots and "
-            "rayleigh",
+            "central differences do not support damping; use an implicit scheme, or remove "
+            "dashpots and rayleigh",
             step.where,
         )
     if system.link.couples:
         raise UnsupportedError(
-            "central differences take no constraints and no local axes: eliminated dofs couple "
-            "the masses of others, and the mass is no diagonal any more; use an implicit scheme",
+            "central differences do not support constraints and local axes, because eliminated "
+            "dofs make the mass matrix non-diagonal; use an implicit scheme",
             step.where,
         )
     stepper = ExplicitStepper(loop, step, stops)
@@ -224,8 +224,8 @@ class ExplicitStepper:
             return step.first_increment
         if not np.isfinite(stable):
             raise ModelError(
-                "nothing that is free to move has stiffness at the start, so there is no stable "
-                "increment to take: give increments, or use an implicit scheme",
+                "no free dof has stiffness at the start, so there is no stable increment; give "
+                "increments, or use an implicit scheme",
                 step.where,
             )
         return min(SAFETY * stable, step.largest_increment)

@@ -70,11 +70,11 @@ def frequency_step(
         values, shapes = unsymmetric_modes(lin, step.modes)
         if np.any(lin.damping().data):
             state.notes.append(
-                f"the damping of the model is left out of frequency step {number}; "
-                "complex_modes=True (*COMPLEX FREQUENCY) takes it in"
+                f"the damping of the model is ignored in frequency step {number}; "
+                "complex_modes=True (*COMPLEX FREQUENCY) includes it"
             )
     if not len(values):
-        raise ModelError(f"nothing that can move in frequency step {number} has mass", step.where)
+        raise ModelError(f"no free dof in frequency step {number} has mass", step.where)
     modes = _modes(lin, values, shapes, number, step.complex_modes or not lin.symmetric)
     state.modes.append(modes)
     state.linear = lin
@@ -121,9 +121,9 @@ def _name_instability(modes: Modes, state: State, number: int, symmetric: bool |
         rate, f = modes.growth[k], modes.factors[k]
         flutter = 2.0 * math.pi * f > GROWS * rate
         how = (
-            f"flutter: mode {k + 1} swings at {f:.6g} per time and grows at the rate {rate:.6g}"
+            f"flutter: mode {k + 1} oscillates at {f:.6g} per time and grows at the rate {rate:.6g}"
             if flutter
-            else f"divergence: mode {k + 1} grows at the rate {rate:.6g} without swinging"
+            else f"divergence: mode {k + 1} grows at the rate {rate:.6g} without oscillation"
         )
         note = f"the state of frequency step {number} is unstable by {how} per time"
         state.notes.append(note)

@@ -154,7 +154,7 @@ def _amplitudes(
     if loose.any():
         raise ModelError(
             f"{system.describe(int(np.flatnonzero(loose)[0]))} is moved out of phase in step "
-            f"{number}, but not held: hold it in phase too, with the value 0",
+            f"{number}, but has no support in phase: give it one with the value 0",
             step.where,
         )
     shape = (len(frequencies), system.n_dofs)
@@ -243,7 +243,8 @@ def _complex_gather(lin: LinearMotion, force: Complex) -> Complex:
 
 def _resonance(step: Any, number: int, w: float) -> ModelError:
     return ModelError(
-        f"frequency {w / (2.0 * math.pi):g} hits an undamped mode in step {number}: give a damping",
+        f"frequency {w / (2.0 * math.pi):g} is that of an undamped mode in step {number}: give a "
+        "damping",
         step.where,
     )
 

@@ -50,7 +50,7 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
         return None
     return int(block.cells[cell]), (
         f"the plastic strain differs by {spread:.2g} within a {section.element} element, and its "
-        f"material hardens by less ({slope:.3g}) than its stress ({stress[-1]:.3g}): incompatible "
-        "modes let flow run into half an element then, and a finer mesh makes it worse; take Q4S, "
-        "whose modes are stable, or Q8R"
+        f"material hardens by less ({slope:.3g}) than its stress ({stress[-1]:.3g}): "
+        "incompatible modes then localize the plastic flow in half an element, and a finer mesh "
+        "makes it worse; use Q4S, whose modes are stable, or Q8R"
     )

@@ -138,7 +138,7 @@ def leave(system: System, state: State, step_time: float) -> None:
         state.at = system.evaluate(state.u, step_time)
     except ElementFailure:
         # A linear response may be so large that elements fold; what follows will say so.
-        state.notes.append("the linear response is too large for the elements to be evaluated")
+        state.notes.append("the linear response is too large to evaluate the elements")
 
 
 def _courses(system: System, lin: LinearMotion, n: int, dt: float) -> tuple[Patterns, Patterns]:

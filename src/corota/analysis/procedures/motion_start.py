@@ -35,8 +35,8 @@ def check_density(system: System) -> None:
         material = block.section.material
         if material.rho <= 0.0 and not elements.find(block.section.element).spring:
             raise ModelError(
-                f"material {material.name or material.law!r} has no density, which motion needs; "
-                "add one (*DENSITY, rho=)",
+                f"material {material.name or material.law!r} has no density, which dynamics "
+                "needs; add one (*DENSITY, rho=)",
                 material.where or block.section.where,
             )
 
@@ -145,8 +145,8 @@ def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
     for name, time in system.conditions.support_kinks():
         state.notes.append(
             f"the amplitude {name!r} of a support changes its velocity at once at step time "
-            f"{time:.4g}: acceleration and reaction are a pulse there, as high as the increment "
-            "is short; round it off if that is not meant"
+            f"{time:.4g}: acceleration and reaction have a pulse there, whose height depends on "
+            "the increment; smooth the amplitude if that is not intended"
         )
     return a
 

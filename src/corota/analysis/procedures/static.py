@@ -242,22 +242,22 @@ class StaticStepper(NewtonStepper):
             if outcome.converged and first and not contact.presses:
                 # Bodies that nothing holds float where they were: that is no first equilibrium.
                 system.contact_term.restore()
-                outcome.reason = "no contact has come to bear"
+                outcome.reason = "no contact has closed"
                 continue
             if outcome.converged and early and not contact.near(outcome.u):
                 system.contact_term.restore()
                 return ""
             if outcome.converged and first:
                 state.notes.append(
-                    f"step time {target:.6g}: at the start only contact holds the bodies, and it "
-                    f"did not press yet; this is the first equilibrium ({outcome.note})"
+                    f"step time {target:.6g}: at the start the bodies are supported by contact "
+                    f"alone, which was still open; this is the first equilibrium ({outcome.note})"
                 )
             elif outcome.converged:
                 jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
                 if not contact.near(outcome.u):
                     state.notes.append(
                         f"step time {target:.6g}: the equilibrium ended (a snap, or a node past "
-                        f"a corner) and the bodies moved on to another, by up to {jump:.3g} "
+                        f"a corner) and the bodies moved on to another one, by up to {jump:.3g} "
                         f"({outcome.note}); it may be one of several: Dynamic follows the motion"
                     )
             if outcome.converged:
@@ -265,7 +265,7 @@ class StaticStepper(NewtonStepper):
                 return Attempt(target, outcome, contact)
         return (
             "; relaxation from the last converged state found no equilibrium nearby: the bodies "
-            "snap or fold, which Dynamic follows"
+            "snap or fold; use Dynamic to follow that"
         )
 
     def go_along_path(self) -> bool:
@@ -302,9 +302,10 @@ class StaticStepper(NewtonStepper):
         def keep(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
             if len(kept) == 1:
                 text = (
-                    f"load control stalls at load factor {kept[0]:.6g}; arc length takes over from "
-                    f"increment {before + 1} (column 'arc length' of the histories): the load "
-                    "factor adapts, and step time only counts on within the period"
+                    f"load control stalls at load factor {kept[0]:.6g}; arc length takes over "
+                    f"from increment {before + 1} (column 'arc length' of the histories): from "
+                    "there the load factor is an unknown, and step time only counts the "
+                    "increments within the period"
                 )
                 state.notes.append(f"step {number}: {text}")
                 observers.note(number, text)

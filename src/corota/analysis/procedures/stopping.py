@@ -45,8 +45,8 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
         forces and _yields(system)
     )
     return (
-        f"limit point at load factor {factor:.6g} of step {number}{yielding}: in equilibrium the "
-        "structure carries no more this way. The states up to it are kept; to go on, "
+        f"limit point at load factor {factor:.6g} of step {number}{yielding}: the structure "
+        "cannot carry more load in this equilibrium. The states up to it are kept; to continue, "
         + (", ".join(ways[:-1]) + f", or {ways[-1]}" if len(ways) > 1 else ways[0])
     )
 
@@ -71,7 +71,7 @@ def collapse(
     how = f", where displacements grow {grown:.0f} times as fast as at first" * (grown > SOFT)
     return (
         f"plastic collapse: the limit load of step {number} is reached at load factor "
-        f"{factor:.6g}{how}; yielding makes the structure a mechanism that carries no more"
+        f"{factor:.6g}{how}; yielding makes the structure a mechanism that cannot carry more"
     )
 
 
@@ -113,9 +113,9 @@ def explained(
         where += f"; largest residual at {system.describe(norms.worst)}"
     if outcome.negative > 0:
         where += (
-            f". The tangent has {outcome.negative} negative pivot"
-            f"{'s' if outcome.negative > 1 else ''}: a limit or bifurcation point lies just "
-            f"ahead, the structure cannot carry more this way{instead}"
+            f". The tangent has {outcome.negative} negative "
+            f"pivot{'s' if outcome.negative > 1 else ''}: a limit or bifurcation point is just "
+            f"ahead, where the structure cannot carry more{instead}"
         )
     elif collapses:
         where += ". To see beyond, prescribe a displacement instead of the load"

@@ -58,8 +58,10 @@ class Attachments:
             node = self.system.model.mesh.node_labels[nodes[int(np.argmax(dofs < 0))]]
             kind = "rotation" if dof == 2 else "displacement"
             raise ModelError(
-                f"the {what} at node {node} needs a {kind}, which no element there has: put it "
-                "on a node of an element" + (" with drilling rotations" if dof == 2 else "")
+                f"the {what} at node {node} "
+                f"needs a {kind}, which no "
+                "element there has; put it on "
+                "a node of an element" + (" with drilling rotations" if dof == 2 else "")
             )
         return dofs
 

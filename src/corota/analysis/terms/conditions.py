@@ -510,7 +510,8 @@ class Conditions:
                 dof = f"{name} (dof {(1, 2, 6)[item.dof]})"
                 if item.where is not None:  # a deck: as CalculiX does, but not without a word
                     self.notes.append(
-                        f"{item.where}: node {label} is given {what}, in {dof}; the later counts"
+                        f"{item.where}: node {label} is given {what}, in {dof}; the later one is "
+                        "used"
                     )
                     break
                 raise ModelError(

@@ -341,7 +341,7 @@ def spin(system: System) -> float:
         }
     if len(rates) > 1:
         raise UnsupportedError(
-            "bodies that turn at several speeds have no common frame of reference: give one "
+            "bodies that rotate at different speeds have no common frame of reference; give one "
             "centrifugal load to the whole model"
         )
     return float(sum(rates))

@@ -144,8 +144,8 @@ class FreeStrains:
                 elif block.section.plane == "stress" and stress[..., 2].any():
                     label = mesh.cell_labels[block.cells[np.argmax(stress[..., 2].any(axis=1))]]
                     raise ModelError(
-                        f"element {label} is in plane stress and takes no initial stress through "
-                        "the thickness (zz)",
+                        f"element {label} is in plane stress and cannot have an initial stress "
+                        "through the thickness (zz)",
                         item.where,
                     )
         return found

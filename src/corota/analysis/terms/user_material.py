@@ -28,7 +28,7 @@ MAX_CALLS = 30
 
 
 #: What failed where the function of a material returns what is not finite.
-NO_NUMBER = "the function of the material gives stress or tangent that is no number"
+NO_NUMBER = "the material function returned a stress or tangent that is not a number"
 
 
 @dataclass
@@ -120,7 +120,7 @@ class UserBlocks:
                 return
             seen = now
         raise ElementFailure(
-            "the internal modes of elements with a Python material did not settle"
+            "the internal modes of elements with a Python material did not converge"
             + ("; use Q4, Q8 or OPT there, or another scheme" if between else "")
         )
 

@@ -459,7 +459,7 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
     ("SPRING", "ORIENTATION"): "give the springs global directions",
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
-    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces that touch may part; join them by *TIE",
+    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces in contact may separate; join them by *TIE",
     ("FRICTION", "ROUGH"): "give a large friction coefficient",
     ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
     ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",

@@ -1,6 +1,6 @@
 """Lee's frame: two legs of 120 that snap through and back under a force on the beam.
 
-E = 720, legs 2 deep and 3 wide, hinged at both ends on their centre lines, the force 24 from the
+E = 720, legs 2 deep and 3 wide, hinged at both ends on their center lines, the force 24 from the
 corner, nu = 0.3. Here it is a solid of Q8; the reference is the exact Timoshenko beam. Measured
 are both limit loads and the displacements there, by arc length with default settings.
 """

@@ -28,7 +28,7 @@ from corota.verification.motion_models import column
 LENGTH, DEPTH, GRAVITY = 1.0, 0.02, 9.81
 #: Period of a point mass on a rigid rod of this length [time].
 MASS_PERIOD = float(4.0 * ellipk(0.5) * np.sqrt(LENGTH / GRAVITY))
-#: Angle of the centre above the pin's level at the start, from hanging.
+#: Angle of the center above the pin's level at the start, from hanging.
 START = 0.5 * np.pi + np.arctan(DEPTH / LENGTH)
 PERIOD = float(
     4.0

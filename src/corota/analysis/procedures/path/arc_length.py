@@ -95,7 +95,7 @@ class PathStepper:
     """
 
     kind = "path"
-    advice = "allow more, or name another end of the path"
+    advice = "allow more, or define another end of the path"
 
     def __init__(self, loop: IncrementLoop, factor: float, increment: int) -> None:
         self.loop, self.system, self.state = loop, loop.system, loop.state
@@ -155,7 +155,7 @@ class PathStepper:
         if not (np.any(force[~system.conditions.constrained]) or np.any(move) or heats):
             raise ModelError(
                 f"step {self.loop.number} follows a path, but nothing in it grows with the load "
-                "factor: give it a load or a moving support of its own",
+                "factor; add a load or a moving support to the step",
                 step.where,
             )
         return Point(start, self.factor, at)

@@ -85,7 +85,7 @@ def switch(tracer: PathTracer, critical: Critical) -> Increment:
     critical.branches = [branch.direction for branch in found]
     if wanted > len(found):
         raise PathStalled(
-            f"branch {wanted} was asked for, but {len(found)} leave the bifurcation point"
+            f"branch {wanted} was requested, but {len(found)} leave the bifurcation point"
         )
     return _take(tracer, found[wanted - 1])
 

@@ -248,7 +248,7 @@ class PathTracer(ABC):
 
     def _cut(self, size: float, reason: str) -> float:
         if self.plan.fixed and self.guess is None:
-            raise PathStalled(f"the increments are fixed (DIRECT), so none may be cut; {reason}")
+            raise PathStalled(f"the increments are fixed (DIRECT) and cannot be cut; {reason}")
         self.guess = None
         size *= CUT
         if self.attempt >= MAX_ATTEMPTS:

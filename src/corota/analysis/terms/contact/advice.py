@@ -39,10 +39,10 @@ def fillet_note(pair: Pair) -> str:
         return ""
     return (
         f"contact pair {pair.item.name!r}: the smallest round corner of the rigid curve has the "
-        f"radius {radius:.4g}, {radius / edge:.2g} slave edges (median {edge:.4g}); the force will "
-        f"be jagged while nodes go round it one by one. Take method='node_to_segment' "
-        f"(TYPE=NODE TO SURFACE), which measures such rounds against edges, slave edges of at "
-        f"most {radius / EDGES:.3g} where they meet it, or a larger radius"
+        f"radius {radius:.4g}, {radius / edge:.2g} slave edges (median {edge:.4g}); the force "
+        "will be jagged while nodes pass it one by one. Use method='node_to_segment' (TYPE=NODE "
+        "TO SURFACE), which measures such rounds against edges; or use slave edges of at most "
+        f"{radius / EDGES:.3g} where they meet it, or a larger radius"
     )
 
 
@@ -56,9 +56,9 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
         return ""
     return (
         f"contact pair {pair.item.name!r}: the master turns by {math.degrees(turn):.0f} degrees "
-        f"from edge to edge at node {labels[node]}; the force will jump as contact passes such "
-        "nodes. Where the boundary is meant to be round, take it as a curve (smooth=True, SMOOTH "
-        "of *CONTACT PAIR) or finer edges"
+        f"from edge to edge at node {labels[node]}; the force will jump when contact passes such "
+        "nodes. Where the boundary should be round, treat it as a curve (smooth=True, SMOOTH of "
+        "*CONTACT PAIR) or refine its edges"
     )
 
 

@@ -170,8 +170,8 @@ class ContactTerm:
         """
         if self.pairs and step.procedure not in WITH_CONTACT:
             raise UnsupportedError(
-                f"a {step.procedure} step takes no contact pairs or ties; leave them out, or use "
-                f"{' or '.join(WITH_CONTACT)} steps",
+                f"a {step.procedure} step does not support contact pairs or ties; remove them, "
+                f"or use {' or '.join(WITH_CONTACT)} steps",
                 step.where,
             )
         self.number += 1
@@ -230,8 +230,8 @@ class ContactTerm:
                     "once (start='ramp' spreads it over the step)"
                     if explicit
                     else "is pushed out in the first increment (start='ramp' spreads "
-                    "it over the step, start='adjust' takes it as touching without strain)",
-                    "adjust": "counts as touching, without strain",
+                    "it over the step, start='adjust' treats it as in contact)",
+                    "adjust": "is treated as in contact without strain",
                     "ramp": "is pushed out over the first step",
                 }["keep" if adjusted and not moved[deepest] else item.start]
                 label = self.system.model.mesh.node_labels[pair.nodes[deepest]]

@@ -456,9 +456,9 @@ class ContactEquations:
         ]
         if open_pairs:
             raise SingularError(
-                f"{error}; contact pair {open_pairs[0]!r} is open: hold the body until it "
-                "touches, start in contact (start='adjust'), or let it be damped "
-                "(stabilise=True, *CONTACT CONTROLS, STABILIZE)",
+                f"{error}; contact pair {open_pairs[0]!r} is open: support the body until it is "
+                "in contact, start in contact (start='adjust'), or damp it (stabilise=True, "
+                "*CONTACT CONTROLS, STABILIZE)",
                 error.equation,
                 error.mode,
             ) from None
@@ -689,7 +689,7 @@ class ContactEquations:
         still = self.pivoted and not self.relaxing and self.inner is self.system
         if still and not self.near(z[: self.n]):
             return (
-                "the equilibrium found lies far from the last one: the bodies would jump in this "
+                "the equilibrium found is far from the last one: the bodies would jump in this "
                 "increment"
             )
         for pair, terms, (p, q) in self._pairs(at.contact_state):
@@ -737,8 +737,8 @@ class ContactEquations:
         if self.loose and not self.presses and FLOATS not in self.contact_term.told:
             self.contact_term.told.add(FLOATS)
             notes.append(
-                f"no contact presses, and {self.loose}: where that body rests is arbitrary until "
-                "contact or a support holds it"
+                f"no contact is closed, and {self.loose}: where that body rests is arbitrary "
+                "until contact or a support constrains it"
             )
         for number in sorted(self.border.dropped - self.contact_term.told):
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)

@@ -1,4 +1,4 @@
-"""Where contact changes its states along a path, to first order: the predictor goes round kinks.
+"""Where contact changes its states along a path, to first order: the predictor passes kinks.
 
 From an equilibrium the direction of the path holds until the first gap closes, the first pressure
 vanishes or the first traction reaches the bound of friction. From there the direction is that of

@@ -1,6 +1,6 @@
 """An increment with contact that Newton's method does not find, by relaxation to rest.
 
-The equilibrium that an increment starts from may end: a node goes round a corner, a hook snaps. The
+The equilibrium that an increment starts from may end: a node passes a corner, a hook snaps. The
 bodies then move through states that are not in equilibrium until they rest again. Here they creep:
 springs hold every node where the creep has come to, all conditions of contact are met with them,
 the springs are released, and so on with ever softer ones (a proximal point method). The last

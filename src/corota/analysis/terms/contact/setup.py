@@ -246,8 +246,8 @@ def _check_pair(
         cell = mesh.cell_labels[int(slave.edges[int(np.argmax(both)), 0])]
         raise ModelError(
             f"{kind} {item.name!r}: {int(both.sum())} edges are on both surfaces, {slave.name!r} "
-            f"and {master.name!r}, the first at element {cell}; leave them out of one, or name "
-            "the same surface twice for contact with itself",
+            f"and {master.name!r}, the first at element {cell}; remove them from one, or name "
+            "the same surface twice for self-contact",
             item.where,
         )
     if isinstance(item, Tie):
@@ -256,9 +256,8 @@ def _check_pair(
     if len(shared):
         raise ModelError(
             f"contact pair {item.name!r}: surfaces {slave.name!r} and {master.name!r} share node "
-            f"{mesh.node_labels[shared[0]]}, so they cannot separate there; leave its edges out of "
-            "one of them, give the bodies their own nodes, or use contact of one surface with "
-            "itself",
+            f"{mesh.node_labels[shared[0]]}, so they cannot separate there; remove its edges "
+            "from one of them, give each body its own nodes, or use self-contact of one surface",
             item.where,
         )
     out_s, out_m = _normals(mesh.points, slave), _normals(mesh.points, master)
@@ -268,8 +267,8 @@ def _check_pair(
     if facing <= 0.0 or not towards:
         raise ModelError(
             f"contact pair {item.name!r}: no edge of {slave.name!r} faces any edge of "
-            f"{master.name!r} (their outward normals point away from each other); name the sides "
-            "that face each other",
+            f"{master.name!r} (their outward normals point away from each other); select the "
+            "sides that face each other",
             item.where,
         )
 

@@ -57,10 +57,10 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     label = system.model.mesh.node_labels[pair.slave.nodes[nearest, 0]]
     name = f" {curve.name!r}" if curve.name else ""
     raise ModelError(
-        f"contact pair {pair.item.name!r}: the slave surface starts wholly on the wrong side of "
-        f"the rigid curve{name}: node {label} is nearest, {-distance[nearest]:.4g} behind it. The "
-        "deformable body belongs on the left of the curve's direction of travel; give its points "
-        "in the other order (corota plot draws the rigid body shaded)",
+        f"contact pair {pair.item.name!r}: the whole slave surface starts on the wrong side of "
+        f"the rigid curve{name}: node {label} is nearest, {-distance[nearest]:.4g} behind it. "
+        "The deformable body belongs on the left of the curve's direction of travel; give its "
+        "points in the other order (corota plot draws the rigid body shaded)",
         pair.item.where,
     )
 

@@ -102,7 +102,7 @@ def instance(deck: Deck, card: Card) -> None:
         ax, ay, _, bx, by, bz, degrees = (float(v or 0.0) for v in values)
         az = float(values[2] or 0.0)
         if bz == az or abs(bx - ax) + abs(by - ay) > 1e-9 * abs(bz - az):
-            deck.row_error(card, rows[1], 0, "the axis of the turn must be normal to the plane")
+            deck.row_error(card, rows[1], 0, "the axis of rotation must be normal to the plane")
             return
         found.centre, found.angle = (ax, ay), math.radians(degrees) * (1 if bz > az else -1)
     for row in rows[2:]:

@@ -41,7 +41,7 @@ def profile(deck: Deck, card: Card, found: Surface) -> None:
         kind = key(row.get(0))
         count = {"START": 2, "LINE": 2, "CIRCL": 4}.get(kind)
         if count is None:
-            why = "parabolas are not offered: take arcs" if kind == "PARAB" else ""
+            why = "parabolas are not supported: use arcs" if kind == "PARAB" else ""
             text = f"expected START, LINE or CIRCL, found {row.get(0)!r}"
             deck.row_error(card, row, 0, text, why)
             return
@@ -109,7 +109,7 @@ def contact_pair(deck: Deck, card: Card) -> None:
         deck.note(f"{card.where}: no TYPE: surface to surface (mortar) is taken")
     method = TYPES.get(deck.choice(card, "TYPE", TYPES, "MORTAR"), "mortar")
     if card.has("SMALLSLIDING"):
-        deck.note(f"{card.where}: SMALL SLIDING: sliding is always finite here")
+        deck.note(f"{card.where}: SMALL SLIDING: sliding is always finite")
     smooth = deck.parameter_number(card, "SMOOTH", 0.0, 0.0) > 0.0
     start, adjust, nodes = "keep", 0.0, ""
     if card.has("ADJUST"):
@@ -157,7 +157,7 @@ def inclusions(deck: Deck, card: Card) -> None:
                 card,
                 row,
                 0,
-                "a surface against all others cannot be told from the rest",
+                "contact of one surface with all others is not supported",
                 "name both surfaces of each pair",
             )
         else:
@@ -189,7 +189,7 @@ def formulation(deck: Deck, card: Card) -> None:
 
 def _general(deck: Deck, card: Card) -> GeneralDraft | None:
     if deck.general is None:
-        deck.error(card, card.where, "the card belongs under *CONTACT, and none stands before it")
+        deck.error(card, card.where, "the card belongs under *CONTACT, but there is none before it")
     return deck.general
 
 
@@ -238,7 +238,7 @@ def _open(deck: Deck, card: Card) -> InteractionDraft | None:
         deck.error(
             card,
             card.where,
-            "the card belongs under a *SURFACE INTERACTION, and none stands before it",
+            "the card belongs under a *SURFACE INTERACTION, but there is none before it",
         )
     return deck.interaction
 
@@ -320,7 +320,7 @@ def clearance(deck: Deck, card: Card) -> None:
 def contact_controls(deck: Deck, card: Card) -> None:
     """``*CONTACT CONTROLS, STABILIZE[, SLAVE=, MASTER=]``: damp bodies that nothing else holds."""
     if not card.has("STABILIZE"):
-        deck.note(f"{card.where}: {card.spelled} is ignored: contact needs no control")
+        deck.note(f"{card.where}: {card.spelled} is ignored: contact needs no control parameters")
         return
     if card.value("STABILIZE") or list(card.rows()):
         deck.note(f"{card.where}: {card.spelled}: the factor is not used; the damping is chosen")
@@ -341,7 +341,7 @@ def contact_interference(deck: Deck, card: Card) -> None:
         deck.error(card, card.where, "SHRINK is expected", hint="or use *CLEARANCE, VALUE=")
         return
     if len(deck.steps) != 1 or deck.step is None:
-        deck.error(card, card.where, "the card belongs into the first step")
+        deck.error(card, card.where, "the card belongs in the first step")
         return
     for row in _pair_rows(deck, card):
         slave, master = row.get(0), row.get(1) or row.get(0)

@@ -67,7 +67,7 @@ def dynamic(deck: Deck, card: Card) -> None:
                 card.at(name),
                 f"{name}={given:g} does not belong to ALPHA={alpha:g} of the scheme, which takes "
                 f"{value:g}",
-                hint="leave BETA and GAMMA out, or give ALPHA alone",
+                hint="omit BETA and GAMMA",
             )
             return
     explicit = card.has("EXPLICIT")
@@ -86,9 +86,9 @@ def dynamic(deck: Deck, card: Card) -> None:
     quasi_static = use == "QUASI-STATIC" and not explicit
     if use != "TRANSIENTFIDELITY" and not explicit:
         what = (
-            "generalized-alpha with rho_inf = 0, loads that grow over the step"
+            "generalized-alpha with rho_inf = 0 and loads ramped over the step"
             if quasi_static
-            else "HHT with the most dissipation, ALPHA = -1/3"
+            else "HHT with the largest dissipation, ALPHA = -1/3"
         )
         deck.note(f"{card.where}: APPLICATION={card.value('APPLICATION')} is {what}")
     now.make = Dynamic

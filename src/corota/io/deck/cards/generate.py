@@ -213,7 +213,7 @@ def _mirrored(deck: Deck, card: Card, points: Floats, given: list[Floats]) -> Fl
         axis = np.cross(axis, numbers[6:9] - a)
     size = float(np.linalg.norm(axis))
     if size == 0.0:
-        deck.error(card, card.where, "the points of the reflection lie on one place or line")
+        deck.error(card, card.where, "the points of the reflection coincide or lie on one line")
         return None
     axis = axis / size
     along = ((points - a) @ axis)[:, None] * axis
@@ -386,7 +386,7 @@ def system(deck: Deck, card: Card) -> None:
         c = np.array([-x[1], x[0], 0.0])
     y = c - x * (c @ x) / (x @ x) if x.any() else c
     if not (x.any() and y.any()):
-        deck.row_error(card, rows[0], 3, "the points of the axes lie on one place or line")
+        deck.row_error(card, rows[0], 3, "the points of the axes coincide or lie on one line")
         return
     x, y = x / np.linalg.norm(x), y / np.linalg.norm(y)
     deck.system = (a[:3], np.stack([x, y, np.cross(x, y)]))

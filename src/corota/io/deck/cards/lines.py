@@ -351,7 +351,7 @@ def _spring(deck: Deck, draft: LineDraft, type_: str, cells: Ints) -> Section | 
     nonlinear = card.has("NONLINEAR")
     if not rows or (len(rows) > 1 and not nonlinear):
         where = rows[1] if rows else draft.rows[-1]
-        deck.row_error(card, where, 0, "one line with the stiffness is expected after the dofs")
+        deck.row_error(card, where, 0, "one line with the stiffness must follow the dofs")
         return None
     names = ("the force", "the elongation") if nonlinear else ("the stiffness",)
     pairs = []

@@ -161,7 +161,7 @@ def open_material(deck: Deck, card: Card) -> MaterialDraft | None:
         deck.error(
             card,
             card.where,
-            "the card belongs to a material, and no *MATERIAL stands right before it",
+            "the card belongs to a material, but there is no *MATERIAL right before it",
         )
     return deck.material
 
@@ -269,7 +269,7 @@ def orientation(deck: Deck, card: Card) -> None:
         if axis is None or turn is None:
             return
         if axis != 3 and turn != 0.0:
-            deck.row_error(card, rows[1], 0, "only a turn about axis 3 stays in the plane")
+            deck.row_error(card, rows[1], 0, "only a rotation about axis 3 stays in the plane")
             return
         angle += math.radians(turn)
     for row in rows[2:]:

@@ -93,7 +93,7 @@ def _node_row(deck: Deck, card: Card, row: Row) -> tuple[int, tuple[float, float
     y = deck.real(card, row, 2, "y", 0.0)
     z = deck.real(card, row, 3, "z", 0.0)
     if not any(row.get(i) for i in range(1, len(row))):
-        deck.note(f"{row.where}: a node without coordinates lies in the origin")
+        deck.note(f"{row.where}: a node without coordinates is at the origin")
     if label is not None and x is not None and y is not None and z is not None:
         return label, (x, y, z)
     return None

@@ -136,7 +136,7 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
         )
         return
     if frequency == 0:
-        deck.note(f"{card.where}: {card.spelled} with FREQUENCY=0 asks for nothing")
+        deck.note(f"{card.where}: {card.spelled} with FREQUENCY=0 requests nothing")
     elif variables:
         deck.step.outputs.append(
             Output(

@@ -27,8 +27,8 @@ def static(deck: Deck, card: Card) -> None:
     """``*STATIC``, or ``*STATIC, RIKS``: the path by arc length."""
     if card.has("STABILIZE"):
         deck.note(
-            f"{card.where}: {card.spelled}: no artificial damping is added: what is found is the "
-            "equilibrium itself, with no energy lost to damping"
+            f"{card.where}: {card.spelled}: no artificial damping is added; the solution is the "
+            "equilibrium without dissipated energy"
         )
     if not card.has("RIKS"):
         inp_cards_step.static(deck, card)
@@ -132,7 +132,7 @@ def controls(deck: Deck, card: Card) -> None:
     kind = key(card.value("PARAMETERS"))
     rows = list(card.rows())
     if not kind and (card.has("ANALYSIS") or card.has("TYPE")):
-        deck.note(f"{card.where}: *CONTROLS has no effect here: increments adapt by themselves")
+        deck.note(f"{card.where}: *CONTROLS has no effect: increments adapt automatically")
         return
     if kind in _WITHOUT_EFFECT:
         deck.notes.append(f"{card.where}: *CONTROLS, PARAMETERS={kind} has no effect here")
@@ -164,8 +164,8 @@ def controls(deck: Deck, card: Card) -> None:
             deck.controls[option] = count
     _take_controls(deck)
     deck.notes.append(
-        f"{card.where}: of *CONTROLS only a residual tolerance tighter than 1e-9 and the "
-        "largest number of iterations are taken; increments adapt by themselves"
+        f"{card.where}: of *CONTROLS only a residual tolerance tighter than 1e-9 and the largest "
+        "number of iterations are used; increments adapt automatically"
     )
 
 

@@ -69,8 +69,9 @@ def step(deck: Deck, card: Card) -> None:
             nlgeom = True
         elif nlgeom:
             deck.notes.append(
-                f"{card.where}: NLGEOM=NO after a step with NLGEOM has no effect: large rotations "
-                "stay in force, or the structure would jump to the solution of the linear theory"
+                f"{card.where}: NLGEOM=NO after a step with NLGEOM has no effect: large "
+                "rotations stay on, because the structure would jump to the solution of the "
+                "linear theory"
             )
     limit = deck.parameter_integer(card, "INC", 100, 1)
     ramp = deck.choice(card, "AMPLITUDE", ("RAMP", "STEP"), "RAMP") == "RAMP"
@@ -99,7 +100,7 @@ def end_step(deck: Deck, card: Card) -> None:
                 deck.step.card,
                 deck.step.card.at("PERTURBATION"),
                 "a linear perturbation of a loaded state is not part of this version",
-                hint="leave PERTURBATION out: loads then go on from the step before",
+                hint="leave PERTURBATION out: loads then continue from the step before",
             )
     deck.step = None
 
@@ -312,7 +313,7 @@ def boundary(deck: Deck, card: Card) -> None:
     keep = card.has("FIXED")
     if deck.step is None and (keep or RATES[kind]):
         name = "FIXED" if keep else "TYPE"
-        text = f"{card.parameters[name].name} belongs into a step"
+        text = f"{card.parameters[name].name} belongs in a step"
         deck.error(card, card.at(name), text, hint="put the card between *STEP and *END STEP")
         return
     for row in card.rows():

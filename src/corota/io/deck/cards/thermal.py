@@ -74,7 +74,9 @@ def _temperature(deck: Deck, card: Card, row: Row) -> float | None:
         return None
     for index in range(2, len(row)):
         if row.get(index):
-            deck.row_error(card, row, index, "a gradient over the thickness has no place here")
+            deck.row_error(
+                card, row, index, "a temperature gradient through the thickness is not supported"
+            )
             return None
     return deck.real(card, row, 1, "the temperature")
 
@@ -114,7 +116,7 @@ def initial_stress(deck: Deck, card: Card) -> None:
             continue
         given = [float(v or 0.0) for v in numbers]
         if any(given[4:]):
-            deck.row_error(card, row, first + 4, "shear out of the plane has no place here")
+            deck.row_error(card, row, first + 4, "shear stress out of the plane is not supported")
             continue
         if count == 3:  # xx, yy, xy
             given = [given[0], given[1], 0.0, given[2]]
@@ -150,8 +152,8 @@ def build_initial(
                     draft.card,
                     draft.row,
                     1,
-                    "the points of an element have different stresses; their order is another "
-                    "one here",
+                    "the points of an element have different stresses, and their order differs "
+                    "here",
                     "give each element one stress",
                 )
                 continue

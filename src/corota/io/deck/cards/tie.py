@@ -191,7 +191,7 @@ def distributing_coupling(deck: Deck, card: Card) -> None:
 def _kind(deck: Deck, card: Card, kind: str) -> None:
     tie = deck.ties[-1] if deck.ties else None
     if tie is None or tie.ready or not tie.surface:
-        deck.error(card, card.where, "the card belongs to a *COUPLING, and none stands before it")
+        deck.error(card, card.where, "the card belongs to a *COUPLING, but there is none before it")
         return
     tie.kind, tie.ready = kind, True
     dofs: list[int] = []
