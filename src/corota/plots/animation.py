@@ -146,30 +146,28 @@ def animate(
             figure.set_dpi(dpi)
             ax = figure.add_subplot()
             pad = 0.04 * float((high - low).max())
-            last, image, settled = -1, None, False
+            painted = paint(ax, mpl, drawing, int(chosen[0]), scale, edges, True, limits)
+            ax.set_xlim(low[0] - pad, high[0] + pad)
+            ax.set_ylim(low[1] - pad, high[1] + pad)
+            # The longest title makes the layout of all.
+            ax.set_title(frame_title(results, int(chosen[-1]), scale), loc="left")
+            bar = figure.colorbar(
+                painted,
+                ax=ax,
+                location="bottom" if below else "right",
+                shrink=0.75 if below else 0.8,
+                aspect=38 if below else 28,
+                pad=0.04,
+            )
+            label_bar(bar, name, per_cell, limits, results.model.unit_system)
+            stage = _Stage(figure, ax)
+            last, image = -1, None
             for i in chosen.tolist():
                 if i != last:
-                    ax.clear()
-                    painted = paint(ax, mpl, drawing, i, scale, edges, True, limits)
-                    ax.set_xlim(low[0] - pad, high[0] + pad)
-                    ax.set_ylim(low[1] - pad, high[1] + pad)
+                    stage.clear()
+                    paint(ax, mpl, drawing, i, scale, edges, True, limits)
                     ax.set_title(frame_title(results, i, scale), loc="left")
-                    if not settled:
-                        bar = figure.colorbar(
-                            painted,
-                            ax=ax,
-                            location="bottom" if below else "right",
-                            shrink=0.75 if below else 0.8,
-                            aspect=38 if below else 28,
-                            pad=0.04,
-                        )
-                        label_bar(bar, name, per_cell, limits, results.model.unit_system)
-                        figure.canvas.draw()
-                        figure.set_layout_engine("none")  # else the axes move with the titles
-                        settled = True
-                    figure.canvas.draw()
-                    image = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
-                    last = i
+                    image, last = stage.picture(), i
                 yield image
 
     hidden = target.with_name(f".{target.stem}.next{target.suffix.lower()}")
@@ -183,23 +181,59 @@ def animate(
     return target
 
 
+class _Stage:
+    """Axes whose ticks, labels and color bar are drawn once, and what is painted in them anew.
+
+    Parameters
+    ----------
+    figure, ax
+        With a first picture in them, which settles the layout.
+    """
+
+    def __init__(self, figure: Any, ax: Any) -> None:
+        self._figure, self._ax = figure, ax
+        figure.canvas.draw()
+        figure.set_layout_engine("none")  # else the axes move with the titles
+        self.clear()
+        self._ax.set_title("", loc="left")
+        figure.canvas.draw()
+        self._empty = figure.canvas.copy_from_bbox(figure.bbox)
+
+    def clear(self) -> None:
+        """Take away what was painted."""
+        for artist in [*self._ax.collections, *self._ax.lines, *self._ax.patches]:
+            artist.remove()
+
+    def picture(self) -> Any:
+        """What is painted now, on the empty axes: 8-bit colors, shape (height, width, 3)."""
+        canvas = self._figure.canvas
+        canvas.restore_region(self._empty)
+        painted = [*self._ax.collections, *self._ax.lines, *self._ax.patches]
+        for artist in sorted(painted, key=lambda one: one.get_zorder()):
+            self._ax.draw_artist(artist)
+        self._ax.draw_artist(self._ax._left_title)
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
 def _gif(pictures: Iterator[Any], path: Path, rate: int) -> None:
     """Pictures one after the other; Pillow keeps what differs from the one before."""
     from PIL import Image
 
     palette: Any = None
+    nearest = np.zeros(0, np.uint8)
 
     def reduced() -> Iterator[Any]:
-        nonlocal palette
+        nonlocal palette, nearest
         last, held = None, palette
         for image in pictures:
             if image is not last:
-                whole = Image.fromarray(image)
                 if palette is None:
-                    palette = whole.quantize(PALETTE)
-                    held = palette
-                else:
-                    held = whole.quantize(palette=palette, dither=Image.Dither.NONE)
+                    # The first picture has all colors: they are in its bar.
+                    palette = Image.fromarray(image).quantize(PALETTE)
+                    nearest = _nearest(np.array(palette.getpalette()).reshape(-1, 3))
+                short = image.astype(np.int64) >> 3
+                held = Image.fromarray(nearest[short @ [1024, 32, 1]], "P")
+                held.putpalette(palette.getpalette())
                 last = image
             assert held is not None
             yield held.copy()
@@ -214,6 +248,15 @@ def _gif(pictures: Iterator[Any], path: Path, rate: int) -> None:
         loop=0,
         optimize=False,
     )
+
+
+def _nearest(palette: Ints) -> NDArray[np.uint8]:
+    """Index of the nearest color of a palette for each color of five bits a channel."""
+    level = np.arange(32) * (255.0 / 31.0)
+    every = np.stack(np.meshgrid(level, level, level, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    pieces = np.array_split(every, 32)
+    found = [((piece - palette) ** 2).sum(axis=-1).argmin(axis=1) for piece in pieces]
+    return np.concatenate(found).astype(np.uint8)
 
 
 def _mp4(pictures: Iterator[Any], path: Path, rate: int) -> None:
