@@ -161,11 +161,12 @@ def animate(
             )
             label_bar(bar, name, per_cell, limits, results.model.unit_system)
             stage = _Stage(figure, ax)
-            last, image = -1, None
+            last, image = int(chosen[0]), None
             for i in chosen.tolist():
                 if i != last:
                     stage.clear()
                     paint(ax, mpl, drawing, i, scale, edges, True, limits)
+                if i != last or image is None:
                     ax.set_title(frame_title(results, i, scale), loc="left")
                     image, last = stage.picture(), i
                 yield image
@@ -194,22 +195,28 @@ class _Stage:
         self._figure, self._ax = figure, ax
         figure.canvas.draw()
         figure.set_layout_engine("none")  # else the axes move with the titles
-        self.clear()
+        painted = self._painted()
+        for artist in painted:
+            artist.set_visible(False)
         self._ax.set_title("", loc="left")
         figure.canvas.draw()
         self._empty = figure.canvas.copy_from_bbox(figure.bbox)
+        for artist in painted:
+            artist.set_visible(True)
+
+    def _painted(self) -> list[Any]:
+        return [*self._ax.collections, *self._ax.lines, *self._ax.patches]
 
     def clear(self) -> None:
         """Take away what was painted."""
-        for artist in [*self._ax.collections, *self._ax.lines, *self._ax.patches]:
+        for artist in self._painted():
             artist.remove()
 
     def picture(self) -> Any:
         """What is painted now, on the empty axes: 8-bit colors, shape (height, width, 3)."""
         canvas = self._figure.canvas
         canvas.restore_region(self._empty)
-        painted = [*self._ax.collections, *self._ax.lines, *self._ax.patches]
-        for artist in sorted(painted, key=lambda one: one.get_zorder()):
+        for artist in sorted(self._painted(), key=lambda one: one.get_zorder()):
             self._ax.draw_artist(artist)
         self._ax.draw_artist(self._ax._left_title)
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
