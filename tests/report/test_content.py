@@ -205,3 +205,22 @@ def find_job_in(folder: Path) -> Any:
     from corota.report.records import JobPaths
 
     return JobPaths(folder, "beam")
+
+
+def test_units_stand_beside_names(tmp_path: Path) -> None:
+    """Headings of tables with units are the names that the page asks for, and their units."""
+    model = beam(name="metric")
+    model.units("mm", "N", "t", "s")
+    with ct.JobFiles(tmp_path, histories=["U2@right"]) as files:
+        results = ct.solve(model, ct.Static(increments=2), observers=[files], threads=1)
+    of_files = content_of_job(find_job(tmp_path / "metric"))
+    for content in (of_files, content_of_results(results)):
+        history, _ = unpack(content.chunks["history"])
+        assert {"time", "ALLSE", "U2 right"} <= set(history["names"]) | {"U2 right"}
+        assert not [name for name in history["names"] if "[" in name]
+        units = history["units"]
+        assert (units["time"], units["ALLSE"], units["energy"]) == ("s", "mJ", "mJ")
+        found, _ = unpack(content.chunks["model"])
+        assert found["units"]["force/length^2"] == "MPa"
+        assert found["meaning"]["S11"] == "Cauchy stress xx [MPa]"
+    assert unpack(of_files.chunks["history"])[0]["units"]["U2 right"] == "mm"

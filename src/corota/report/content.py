@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from corota.mesh import EDGES
 from corota.model import elements
 from corota.model.description import describe, rigid_curves
 from corota.model.summary import model_lines
+from corota.model.units import Units
 from corota.report.chunk import pack
 from corota.report.fields import NodalArrays
 from corota.report.records import ITERATION, Records, records_of_files, records_of_results
@@ -42,6 +44,11 @@ MOST_FRAMES = 240
 FEW_FRAMES = 40
 #: Bits behind the point, of pages that hold many frames and of those of huge models.
 BITS, FEWER_BITS = 14, 10
+#: Dimensions of what the tables of the model show.
+DIMENSIONS = (
+    *("length", "time", "force", "force*length", "force/length^2", "force/length^3"),
+    *("mass", "mass/length^3", "length/time^2"),
+)
 #: Rows of the course of the run, and iterations, at most.
 MOST_ROWS, MOST_ITERATIONS = 5000, 20000
 
@@ -176,6 +183,7 @@ def facts_of(
     facts: dict[str, Any] = {"job": name, "provenance": provenance or {}}
     if results is not None:
         facts["info"] = results.info
+        facts["units"] = str(results.model.unit_system)
         facts["critical points"] = [str(point) for point in results.critical_points]
         if isinstance(results, FileResults):
             facts["file"] = results.attributes
@@ -214,6 +222,8 @@ def model_chunk(results: Results, level: int = 9) -> bytes:
     described = getattr(results, "description", None)
     if described is None:
         described = describe(model, results.steps)
+    units = model.unit_system
+    derived = {name: item.meaning for name, item in DERIVED.items()}
     header = {
         "name": model.name,
         "lines": model_lines(model),
@@ -222,7 +232,8 @@ def model_chunk(results: Results, level: int = 9) -> bytes:
         "pairs": surfaces,
         "rigid": rigid_curves(model),
         "description": described,
-        "meaning": {**vf.MEANING, **{n: d.meaning for n, d in DERIVED.items()}},
+        "meaning": {n: vf.described(n, units) for n in (*vf.MEANING, *derived)},
+        "units": {of: units.label(of) for of in DIMENSIONS},
         "averaging": vf.AVERAGING,
         "line elements": list(elements.line_names()),
     }
@@ -268,6 +279,7 @@ def history_chunk(
     header = {
         "facts": facts,
         "names": records.names,
+        "units": {**units_of(records.names, str(facts.get("units", ""))), **records.units},
         "iteration names": ITERATION,
         "cut backs": records.cut_backs,
         "steps": records.steps,
@@ -282,6 +294,23 @@ def history_chunk(
         "iteration numbers": chosen,
     }
     return pack(header, arrays, level)
+
+
+def units_of(names: Sequence[str], told: str) -> dict[str, str]:
+    """Units of columns and of what axes are called, of those that have one.
+
+    Parameters
+    ----------
+    names : sequence of str
+    told : str
+        The units of the model, such as ``mm, N, t, s``.
+    """
+    units = Units.of(*filter(None, told.split(", ")))
+    of = {name: vf.dimension(name) for name in names}
+    of |= {name: "force" for name in names if re.search(r": (force|friction) [xy]$", name)}
+    of |= {"energy": "energy", "force": "force", "time": "time", "time increment": "time"}
+    found = {name: units.label(dimension) for name, dimension in of.items()}
+    return {name: unit for name, unit in found.items() if unit and unit != "rad"}
 
 
 def thinned(count: int, most: int) -> Ints:

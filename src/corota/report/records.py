@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ import numpy as np
 from corota.errors import FileError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
@@ -99,7 +101,7 @@ class Records:
     Parameters
     ----------
     names : list of str
-        Headings of the rows.
+        Headings of the rows, without units.
     rows : list of list of float
         One for each increment, in the order of `names`.
     iterations : list of tuple
@@ -108,6 +110,8 @@ class Records:
         ``step, increment, attempt, reason, dt``, and ``after``: how many iterations came before.
     steps : list of dict
     notes : list of str
+    units : dict of str to str
+        Units of the headings that tell one.
     start, end : dict
         Records of the start and the end; the end is empty while the run goes on.
     """
@@ -121,6 +125,7 @@ class Records:
     start: dict[str, Any] = field(default_factory=dict)
     end: dict[str, Any] = field(default_factory=dict)
     increments: list[dict[str, Any]] = field(default_factory=list)
+    units: dict[str, str] = field(default_factory=dict)
 
     def take(self, record: dict[str, Any]) -> None:
         """Add a record of the log."""
@@ -158,6 +163,19 @@ class Records:
     def table(self) -> Floats:
         """Rows as an array, shape (n, number of names)."""
         return np.array(self.rows, dtype=np.float64).reshape(len(self.rows), len(self.names))
+
+
+def without_units(headings: Sequence[str]) -> tuple[list[str], dict[str, str]]:
+    """Names of columns, and the units of those that tell one.
+
+    Examples
+    --------
+    >>> without_units(["time [s]", "load factor"])
+    (['time', 'load factor'], {'time': 's'})
+    """
+    parts = [re.fullmatch(r"(.+?)(?: \[([^][]+)\])?", text) for text in headings]
+    names = [found[1] if found else "" for found in parts]
+    return names, {found[1]: found[2] for found in parts if found and found[2]}
 
 
 def _number(value: Any) -> float:
@@ -216,7 +234,7 @@ class JobRecords:
                 continue  # a line that the end of a process cut
         rows = self._table.lines()
         if rows and self._table.anew:
-            self.records.names = next(csv.reader(rows[:1]))
+            self.records.names, self.records.units = without_units(next(csv.reader(rows[:1])))
             self.records.rows = []
             rows = rows[1:]
         width = len(self.records.names)

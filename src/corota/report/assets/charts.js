@@ -17,10 +17,10 @@ export class Charts {
     this.charts = [];
     this.pick = (row) => this.#show(history.column("step")[row], history.column("increment")[row]);
     this.#path();
-    this.#course("Energies", this.#energies(), { y: "energy", y2: "balance error [%]" });
-    this.#course("Contact forces", this.#contact(), { y: "force" });
+    this.#course("Energies", this.#energies(), { y: history.label("energy"), y2: "balance error [% of largest]" });
+    this.#course("Contact forces", this.#contact(), { y: history.label("force") });
     this.#convergence();
-    this.#course("Increments", this.#increments(), { y: "iterations", y2: "time increment" });
+    this.#course("Increments", this.#increments(), { y: "iterations", y2: history.label("time increment") });
     this.#probe();
     scene.addEventListener("frame", () => this.mark());
     scene.addEventListener("frames", () => this.mark());
@@ -89,8 +89,8 @@ export class Charts {
     this.#live(() => {
       const [vertical, horizontal] = selects.map((select) => select.value);
       chart.show([{ label: vertical, x: history.column(horizontal), y: history.column(vertical), rows: this.#rows }], {
-        x: horizontal,
-        y: vertical,
+        x: history.label(horizontal),
+        y: history.label(vertical),
       });
     });
     for (const select of selects) select.addEventListener("change", () => this.again[0]());
@@ -116,15 +116,15 @@ export class Charts {
     this.#live(() => {
       const time = history.column("time");
       chart.show(
-        names.map(({ name, label, second, factor = 1, dash }) => ({
+        names.map(({ name, label, second, values, dash }) => ({
           label: label ?? name,
           x: time,
-          y: history.column(name).map((v) => factor * v),
+          y: values ? values() : history.column(name),
           second,
           dash,
           rows: this.#rows,
         })),
-        { x: "time", ...labels },
+        { x: history.label("time"), ...labels },
       );
     });
   }
@@ -136,9 +136,19 @@ export class Charts {
     if (!names.length) names = history.names.filter((name) => OLD_ENERGY.test(name) && has(name));
     const found = names.map((name) => ({ name }));
     if (found.length && history.column("energy balance error") && has("energy balance error")) {
-      found.push({ name: "energy balance error", label: "balance error [%]", second: true, factor: 100, dash: [5, 4] });
+      const values = () => this.#balance(found.slice(0, -1).map(({ name }) => name));
+      found.push({ name: "energy balance error", label: "balance error [%]", second: true, values, dash: [5, 4] });
     }
     return found;
+  }
+
+  /** The error is stored relative to the largest energy so far: at the start that is next to nothing. */
+  #balance(names) {
+    const { history } = this;
+    const columns = names.map((name) => history.column(name));
+    let largest = 0;
+    const peaks = columns[0].map((_, i) => (largest = Math.max(largest, ...columns.map((c) => Math.abs(c[i]) || 0))));
+    return history.column("energy balance error").map((v, i) => (largest > 0 ? (100 * v * peaks[i]) / largest : v));
   }
 
   #contact() {
@@ -223,6 +233,7 @@ export class Charts {
       }
       this.probeChart.root.hidden = false;
       const label = `${scene.field.name} at node ${scene.model.nodeLabels[node]}`;
+      const unit = /\[.*\]/.exec(scene.field.meaning ?? "")?.[0] ?? "";
       const frames = scene.shown.filter((frame) => frame.kind !== "iterate");
       this.probeChart.head.firstChild.textContent = label;
       this.probeChart.show(
@@ -233,7 +244,7 @@ export class Charts {
           rows: frames.map((_, i) => i),
           dots: frames.length < 80,
         }],
-        { x: scene.kind === "mode" ? "mode" : "time", y: scene.field.name },
+        { x: scene.kind === "mode" ? "mode" : this.history.label("time"), y: `${scene.field.name} ${unit}`.trim() },
       );
       this.probeChart.mark(scene.index);
     };

@@ -8,6 +8,7 @@ export class History {
   take(chunk) {
     const { arrays } = chunk;
     this.names = chunk.names;
+    this.units = chunk.units ?? {};
     this.facts = chunk.facts;
     this.cutBacks = chunk["cut backs"];
     this.steps = chunk.steps;
@@ -22,6 +23,11 @@ export class History {
     this.iterationCount = arrays.iterations.shape[0];
     this.iterationNumbers = arrays["iteration numbers"].data;
     this.columns = new Map();
+  }
+
+  /** A name with its unit, where that is told. */
+  label(name) {
+    return this.units[name] ? `${name} [${this.units[name]}]` : name;
   }
 
   /** Values of a column over the rows; null where there is no such column. */

@@ -23,6 +23,17 @@ function panel(title, open, ...content) {
   return body.length ? el("details", { open }, el("summary", {}, title), ...body) : null;
 }
 
+/** A number with its unit, where that is told. */
+const withUnit = (value, unit) => (unit ? `${show(value)} ${unit}` : show(value));
+
+/** Dimensions of constants of materials and of the values of loads. */
+const CONSTANTS = { rho: "mass/length^3" };
+for (const name of ["E", "E1", "E2", "E3", "G12", "G", "yield_stress", "isotropic"]) CONSTANTS[name] = "force/length^2";
+const LOADS = {
+  force: "force", moment: "force*length", pressure: "force/length^2", traction: "force/length^2",
+  shear: "force/length^2", gravity: "length/time^2", body: "force/length^3",
+};
+
 const list = (items) => (items.length ? el("ul", {}, ...items.map((text) => el("li", {}, text))) : null);
 
 export class Tables {
@@ -71,7 +82,7 @@ export class Tables {
     if (!sections.length) return el("pre", {}, this.model.lines.join("\n"));
     const materials = this.model.description.materials;
     const rows = sections.map((s) => [
-      s.where, s.element, s.line ? "" : s.plane, materials[s.material].name || materials[s.material].type, s.thickness, s["local strain"],
+      s.where, s.element, s.line ? "" : s.plane, materials[s.material].name || materials[s.material].type, withUnit(s.thickness, this.model.units.length), s["local strain"],
       [s.orientation ? `orientation ${format(s.orientation)}` : "", s.profile ? `profile ${s.profile.map((v) => format(v)).join(", ")}` : "",
         s["mean dilatation"] ? "mean dilatation" : ""].filter(Boolean).join("; "),
     ]);
@@ -84,14 +95,15 @@ export class Tables {
   #materials() {
     const materials = this.model.description.materials ?? [];
     if (!materials.length) return null;
-    const rows = materials.map((m) => [m.name || "unnamed", m.type, Object.entries(m.constants).map(([k, v]) => `${k} ${show(v)}`).join(", ")]);
+    const rows = materials.map((m) => [m.name || "unnamed", m.type, Object.entries(m.constants).map(([k, v]) => `${k} ${withUnit(v, this.model.units[CONSTANTS[k]])}`).join(", ")]);
     const curves = materials.filter((m) => m.curve).map((m) => this.#curve(`Hardening of ${m.name || m.type}`, m.curve));
     return el("div", {}, table(["name", "law", "constants"], rows, "Materials"), el("div", { class: "row" }, ...curves));
   }
 
   #supports() {
     const rows = (this.model.description.supports ?? []).map((s) => [
-      s.step || "every", s.where, s.nodes.length, DIRECTIONS[s.dof], s.value, s.amplitude]);
+      s.step || "every", s.where, s.nodes.length, DIRECTIONS[s.dof],
+      withUnit(s.value, s.value && s.dof < 2 ? this.model.units.length : ""), s.amplitude]);
     return rows.length ? table(["step", "where", "nodes", "direction", "value", "amplitude"], rows, "Supports") : null;
   }
 
@@ -99,7 +111,8 @@ export class Tables {
     const rows = (this.model.description.loads ?? []).map((l) => {
       const distinct = [...new Set(l.value)];
       const value = distinct.length > 3 ? `${format(Math.min(...l.value))} … ${format(Math.max(...l.value))}` : (l.edges || l.kind === "gravity" || l.kind === "centrifugal" ? l.value : distinct).map((v) => format(v)).join(", ");
-      return [l.step || "every", l.kind + (l.total ? " (total)" : ""), l.where, l.dof === undefined ? "" : DIRECTIONS[l.dof], value, l.amplitude];
+      return [l.step || "every", l.kind + (l.total ? " (total)" : ""), l.where, l.dof === undefined ? "" : DIRECTIONS[l.dof],
+        withUnit(value, this.model.units[l.total && l.kind === "traction" ? "force" : LOADS[l.kind]]), l.amplitude];
     });
     return rows.length ? table(["step", "kind", "where", "direction", "value", "amplitude"], rows, "Loads") : null;
   }
@@ -155,7 +168,7 @@ export class Tables {
         ...names.map((name) => history.column(name)[i])]);
       const more = history.count > shown
         ? el("button", { onclick: () => { shown += 10 * PAGE; update(); } }, `More of ${history.count} rows`) : null;
-      body.replaceChildren(table(["", ...names], rows), ...(more ? [more] : []));
+      body.replaceChildren(table(["", ...names.map((name) => history.label(name))], rows), ...(more ? [more] : []));
     };
     this.updateIncrements = update;
     update();
