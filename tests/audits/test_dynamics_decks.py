@@ -12,55 +12,21 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import corota as ct
-from support.particles import chain_matrices, linear_motion
+from support.particles import CHAIN_CARDS, MASSES, STIFFNESS, chain_matrices, linear_motion
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore:central differences took"),
     pytest.mark.filterwarnings("ignore:the increment .* is long for the amplitude"),
 ]
-STIFFNESS, MASSES = [100.0, 200.0, 50.0], [1.0, 2.0, 0.5]
-CHAIN = """*NODE, NSET=ALL
-1, 0., 0.
-2, 1., 0.
-3, 2., 0.
-4, 3., 0.
-*NSET, NSET=TIP
-4
-*NSET, NSET=BASE
-1
-*ELEMENT, TYPE=SPRINGA, ELSET=S1
-1, 1, 2
-*ELEMENT, TYPE=SPRINGA, ELSET=S2
-2, 2, 3
-*ELEMENT, TYPE=SPRINGA, ELSET=S3
-3, 3, 4
-*SPRING, ELSET=S1
-
-100.
-*SPRING, ELSET=S2
-
-200.
-*SPRING, ELSET=S3
-
-50.
-*ELEMENT, TYPE=MASS, ELSET=M1
-11, 2
-*ELEMENT, TYPE=MASS, ELSET=M2
-12, 3
-*ELEMENT, TYPE=MASS, ELSET=M3
-13, 4
-*MASS, ELSET=M1
-1.
-*MASS, ELSET=M2
-2.
-*MASS, ELSET=M3
-.5
-*BOUNDARY
+CHAIN = (
+    CHAIN_CARDS
+    + """*BOUNDARY
 1, 2
 2, 2
 3, 2
 4, 2
 """
+)
 HELD = "*BOUNDARY\n1, 1\n"
 
 

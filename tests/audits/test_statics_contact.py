@@ -122,8 +122,13 @@ def test_block_drawn_up_and_let_down_a_slope(element: str, method: Any) -> None:
     model = ct.Model(mesh)
     model.section("all", element=element, material=ct.Elastic(E=5e3, nu=0.2, rho=rho), thickness=t)
     R = rotation(a)
-    model.contact("bottom", ct.RigidCurve.line(R @ [-3.0, 0], R @ [6.0, 0]), friction=mu,
-                  method=method, name="slope")  # fmt: skip
+    model.contact(
+        "bottom",
+        ct.RigidCurve.line(R @ [-3.0, 0], R @ [6.0, 0]),
+        friction=mu,
+        method=method,
+        name="slope",
+    )
     model.gravity(y=-g)
     hold = int(np.argmin(np.linalg.norm(mesh.points - mesh.points.mean(axis=0), axis=1)))
     steps = [ct.Static(increments=2), ct.Static(increments=6), ct.Static(increments=6)]
@@ -225,9 +230,11 @@ def test_heated_bar_closes_a_gap_yields_and_comes_free(
     R = rotation(math.radians(angle))
     model = ct.Model(mesh)
     model.section(
-        "a", element=pair[0], thickness=tA,
+        "a",
+        element=pair[0],
+        thickness=tA,
         material=ct.Mises(E=E, nu=0.0, yield_stress=sy, kinematic=K, expansion=alpha),
-    )  # fmt: skip
+    )
     model.section("b", element=pair[1], material=ct.Elastic(E=EB, nu=0.0), thickness=tB)
     for edge, d in (("a.left", drill[0]), ("b.right", drill[1])):
         model.local_axes(edge, angle=math.radians(angle))
@@ -260,8 +267,10 @@ def test_heated_bar_closes_a_gap_yields_and_comes_free(
         else:
             e = brentq(
                 lambda e, T=T: e * L - g + slope * float(bar.stress(np.array([e - alpha * T]))[0]),
-                -0.1, 0.1, xtol=1e-16,
-            )  # fmt: skip
+                -0.1,
+                0.1,
+                xtol=1e-16,
+            )
         s = float(bar.stress(np.array([e - alpha * T]), commit=True)[0])
         S = frame.fields[0].values["S"].reshape(-1, 4)
         axial = S[:, 0] * R[0, 0] ** 2 + S[:, 1] * R[1, 0] ** 2 + 2 * S[:, 3] * R[0, 0] * R[1, 0]
@@ -295,8 +304,9 @@ def test_snap_through_onto_a_block(element: str, method: Any, flows: bool) -> No
     mesh = ct.Mesh(
         np.vstack([mesh.points, [[-b, -h], [b, -h], [0.0, 0.0]]]),
         [*mesh.cells, Cells("line2", np.array([[n, n + 2], [n + 1, n + 2]]), np.array([90, 91]))],
-        node_sets=mesh.node_sets, edge_sets=mesh.edge_sets,
-    )  # fmt: skip
+        node_sets=mesh.node_sets,
+        edge_sets=mesh.edge_sets,
+    )
     apex = n + 2
     cells = mesh.n_cells - 2
     model = ct.Model(mesh)
@@ -386,8 +396,12 @@ def test_laws_of_pressure_in_series_with_blocks(element: str, method: Any, kind:
     high = ct.mesh.rectangle(1.0, H, 2, 2, CELL[element], origin=(0.0, H + gap))
     mesh = ct.mesh.assembly(low=low, high=high)
     model = ct.Model(mesh)
-    model.section("all" if "all" in mesh.cell_sets else list(range(mesh.n_cells)), element=element,
-                  material=ct.Elastic(E=E, nu=0.0), thickness=t)  # fmt: skip
+    model.section(
+        "all" if "all" in mesh.cell_sets else list(range(mesh.n_cells)),
+        element=element,
+        material=ct.Elastic(E=E, nu=0.0),
+        thickness=t,
+    )
     model.fix("low.bottom")
     model.contact("high.bottom", "low.top", law=law, method=method, name="j")
     ways = [-0.1, -0.25, -0.02, -0.2]
@@ -424,8 +438,9 @@ def test_shrink_fit_with_heat_and_spin(element: str, slave: str, start: Any) -> 
     mesh = ct.mesh.assembly(inner=inner, outer=outer)
     model = ct.Model(mesh)
     model.section("inner", element=element, material=ct.Elastic(E=Ei, nu=nu, rho=rho))
-    model.section("outer", element=element,
-                  material=ct.Elastic(E=Eo, nu=nu, rho=rho, expansion=alpha))  # fmt: skip
+    model.section(
+        "outer", element=element, material=ct.Elastic(E=Eo, nu=nu, rho=rho, expansion=alpha)
+    )
     for body in ("inner", "outer"):
         model.fix(f"{body}.start", x=None)
         model.fix(f"{body}.end", y=None)
@@ -551,8 +566,9 @@ def test_punch_on_a_column_with_friction_and_flow_is_symmetric(element: str, met
     top = ct.mesh.add_node(mesh, 0.5, 1.0, "top plate")
     model = ct.Model(mesh)
     steel = ct.Mises(E=200.0, nu=0.3, yield_stress=2.0, isotropic=20.0)
-    model.section("all", element=element, material=steel, plane="strain",
-                  local_strain="logarithmic")  # fmt: skip
+    model.section(
+        "all", element=element, material=steel, plane="strain", local_strain="logarithmic"
+    )
     model.contact("bottom", ct.RigidCurve.line((-2, 0), (3, 0)), friction=0.2, method=method)
     plate = ct.RigidCurve.line((3, 1.0), (-2, 1.0), reference=top)
     model.contact("top", plate, friction=0.2, method=method, name="p")

@@ -306,13 +306,15 @@ def test_cantilever_far_bent_by_load_on_its_length(element: str, what: str) -> N
     def make(x: float) -> Any:
         if what == "pressure":
             return rod(
-                EI, EA, L,
+                EI,
+                EA,
+                L,
                 lambda _x, _y, a, g, c: (
                     -x * p * (g + c * h / 2) * np.sin(a),
                     x * p * (g + c * h / 2) * np.cos(a),
                 ),
                 lambda *_: (0.0, 0.0, 0.0),
-            )  # fmt: skip
+            )
         if what == "weight":
             return rod(EI, EA, L, lambda *_: (0.0, x * w), lambda *_: (0.0, 0.0, 0.0))
 
@@ -330,8 +332,9 @@ def test_cantilever_far_bent_by_load_on_its_length(element: str, what: str) -> N
         n = 60
         points = np.column_stack([np.linspace(0, L, n + 1), np.zeros(n + 1)])
         points = np.vstack([points, [L + arm[0], arm[1]]])
-        cells = Cells("line2", np.column_stack([np.arange(n), np.arange(1, n + 1)]),
-                      np.arange(1, n + 1))  # fmt: skip
+        cells = Cells(
+            "line2", np.column_stack([np.arange(n), np.arange(1, n + 1)]), np.arange(1, n + 1)
+        )
         used = points if what == "bracket" else points[:-1]
         mesh = ct.Mesh(used, [cells])
         model = ct.Model(mesh)
@@ -396,19 +399,25 @@ def test_a_beam_goes_on_where_a_strip_ends(element: str) -> None:
 
     z, _ = solve_rod(6, make)
     n = 30
-    solid = ct.mesh.rectangle(L / 2, h, 30, 2 if element != "Q8" else 1, CELL[element],
-                              origin=(0.0, -h / 2))  # fmt: skip
+    solid = ct.mesh.rectangle(
+        L / 2, h, 30, 2 if element != "Q8" else 1, CELL[element], origin=(0.0, -h / 2)
+    )
     first = solid.n_nodes
     xs = np.linspace(L / 2, L, n + 1)
     points = np.vstack([solid.points, np.column_stack([xs, 0 * xs]), anchor])
     number = solid.n_cells
-    beams = Cells("line2", first + np.column_stack([np.arange(n), np.arange(1, n + 1)]),
-                  number + 1 + np.arange(n))  # fmt: skip
+    beams = Cells(
+        "line2",
+        first + np.column_stack([np.arange(n), np.arange(1, n + 1)]),
+        number + 1 + np.arange(n),
+    )
     stay = Cells("line2", np.array([[first + n, first + n + 1]]), np.array([number + n + 1]))
     mesh = ct.Mesh(
-        points, [*solid.cells, beams, stay],
-        node_sets=solid.node_sets, edge_sets=solid.edge_sets,
-    )  # fmt: skip
+        points,
+        [*solid.cells, beams, stay],
+        node_sets=solid.node_sets,
+        edge_sets=solid.edge_sets,
+    )
     model = ct.Model(mesh)
     steel = ct.Elastic(E=E, nu=0.0)
     model.section(np.arange(number), element=element, material=steel)
@@ -517,8 +526,13 @@ def test_distributing_load_at_a_turned_end(element: str) -> None:
     grip = ct.mesh.add_node(mesh, 0.0, 0.5, "grip")
     ref = ct.mesh.add_node(mesh, 4.0, 1.5, "ref")
     model = ct.Model(mesh)
-    model.section("all", element=element, material=ct.Elastic(E=500.0, nu=0.3), thickness=0.5,
-                  local_strain="logarithmic")  # fmt: skip
+    model.section(
+        "all",
+        element=element,
+        material=ct.Elastic(E=500.0, nu=0.3),
+        thickness=0.5,
+        local_strain="logarithmic",
+    )
     model.rigid("left", grip)
     model.couple("right", ref, kind="distributing")
     F = np.array([0.5, -0.8])

@@ -47,13 +47,22 @@ def part(
     model = ct.Model(mesh)
     # Density such that weight is a force per volume of 0.3 at an acceleration of 3.
     steel = ct.Mises(
-        E=1000.0 * stress, nu=0.3, yield_stress=3.0 * stress, isotropic=30.0 * stress,
-        kinematic=20.0 * stress, rho=0.1, expansion=1e-4,
-    )  # fmt: skip
+        E=1000.0 * stress,
+        nu=0.3,
+        yield_stress=3.0 * stress,
+        isotropic=30.0 * stress,
+        kinematic=20.0 * stress,
+        rho=0.1,
+        expansion=1e-4,
+    )
     model.section(
-        "all", element=element, material=steel, plane=plane, thickness=0.5 * length,
+        "all",
+        element=element,
+        material=steel,
+        plane=plane,
+        thickness=0.5 * length,
         local_strain="logarithmic",
-    )  # fmt: skip
+    )
     ground = ct.RigidCurve.line(R @ [-3.0, 0.0] * length, R @ [5.0, 0.0] * length)
     model.contact("bottom", ground, friction=0.3, name="g")
     g = R @ [0.0, -3.0 * stress / length]
@@ -329,9 +338,13 @@ def test_a_law_in_python_is_the_law_inside(element: str, strain: str) -> None:
         end = ct.mesh.add_node(mesh, 4.0, 0.5, "end")
         model = ct.Model(mesh)
         model.section(
-            "all", element=element, material=law, plane="strain", local_strain=strain,
+            "all",
+            element=element,
+            material=law,
+            plane="strain",
+            local_strain=strain,
             thickness=0.5,
-        )  # fmt: skip
+        )
         model.fix("left", rotation=True if element in DRILLING else None)
         model.rigid("right", end)
         model.force([end], y=-0.03)

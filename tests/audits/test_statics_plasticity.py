@@ -132,9 +132,13 @@ def test_tube_with_pressure_and_heat_over_four_steps(plane: str, hardening: str)
         )
         model = ct.Model(mesh)
         steel = ct.Mises(
-            E=m["E"], nu=0.3, yield_stress=1.0, isotropic=m["H"], kinematic=m["K"],
+            E=m["E"],
+            nu=0.3,
+            yield_stress=1.0,
+            isotropic=m["H"],
+            kinematic=m["K"],
             expansion=alpha,
-        )  # fmt: skip
+        )
         model.section("all", element=element, material=steel, plane=plane, thickness=t)
         model.fix("start", x=None)
         model.fix("end", y=None)
@@ -208,9 +212,11 @@ def test_axial_force_and_bending_beyond_yield(element: str) -> None:
         for i in range(1, 21):
             F, kk = N0 + (N1 - N0) * i / 20, k0 + (k1 - k0) * i / 20
             e0 = brentq(
-                lambda e, kk=kk, F=F: bar.stress(e - kk * y) @ dA - F, e0 - 0.1, e0 + 0.1,
+                lambda e, kk=kk, F=F: bar.stress(e - kk * y) @ dA - F,
+                e0 - 0.1,
+                e0 + 0.1,
                 xtol=1e-15,
-            )  # fmt: skip
+            )
             bar.stress(e0 - kk * y, commit=True)
         s = bar.stress(e0 - kk * y)
         answers.append((e0, -(s * y) @ dA))
@@ -353,9 +359,7 @@ def test_held_plate_heated_beyond_yield_and_cooled(element: str, strain: str, tu
     E, nu, sy, H, K, alpha = 1000.0, 0.25, 1.0, 50.0, 100.0, 1e-3
     mesh = ct.mesh.distort(ct.mesh.rectangle(2.0, 1.5, 2, 2, CELL[element]), 0.2, seed=3)
     model = ct.Model(mesh)
-    steel = ct.Mises(
-        E=E, nu=nu, yield_stress=sy, isotropic=H, kinematic=K, expansion=alpha
-    )  # fmt: skip
+    steel = ct.Mises(E=E, nu=nu, yield_stress=sy, isotropic=H, kinematic=K, expansion=alpha)
     model.section("all", element=element, material=steel, thickness=0.3, local_strain=strain)
     nodes = np.arange(mesh.n_nodes) if element in DRILLING else boundary(mesh)
     drill = element in DRILLING
@@ -418,9 +422,12 @@ def test_strain_along_one_axis_in_plane_strain(element: str) -> None:
     mesh = ct.mesh.distort(ct.mesh.rectangle(2.0, 1.0, 2, 2, CELL[element]), 0.15, seed=5)
     model = ct.Model(mesh)
     model.section(
-        "all", element=element, material=ct.Mises(E=E, nu=nu, yield_stress=sy), plane="strain",
+        "all",
+        element=element,
+        material=ct.Mises(E=E, nu=nu, yield_stress=sy),
+        plane="strain",
         thickness=t,
-    )  # fmt: skip
+    )
     drill = element in DRILLING
     nodes = np.arange(mesh.n_nodes)
     steps = []
@@ -609,10 +616,13 @@ def test_a_turn_between_plastic_cycles_changes_nothing(element: str, strain: str
         R = rotation(turn)
         place = R @ (xb + u) - xb
         return [
-            Fixed([a], 0, 0.0), Fixed([a], 1, 0.0), Fixed([a], 2, turn),
-            Fixed([b], 0, float(place[0])), Fixed([b], 1, float(place[1])),
+            Fixed([a], 0, 0.0),
+            Fixed([a], 1, 0.0),
+            Fixed([a], 2, turn),
+            Fixed([b], 0, float(place[0])),
+            Fixed([b], 1, float(place[1])),
             Fixed([b], 2, spin + turn),
-        ]  # fmt: skip
+        ]
 
     bends = [
         (np.array([-0.1, 0.5]), 0.25),

@@ -34,9 +34,7 @@ def bracket(first: str, second: str, plane: Any) -> tuple[Any, Any, int, int]:
     )
     model = ct.Model(mesh)
     steel = ct.Elastic(E=200.0, nu=0.3)
-    wood = ct.Orthotropic(
-        E1=150.0, E2=60.0, E3=80.0, nu12=0.25, nu13=0.2, nu23=0.3, G12=40.0
-    )  # fmt: skip
+    wood = ct.Orthotropic(E1=150.0, E2=60.0, E3=80.0, nu12=0.25, nu13=0.2, nu23=0.3, G12=40.0)
     model.section("a", element=first, material=wood, thickness=0.6, plane=plane, orientation=0.5)
     model.section("b", element=second, material=steel, thickness=0.4, plane=plane)
     model.beam([n], material=steel, area=0.1, inertia=0.01, shear_area=0.08)
@@ -89,8 +87,14 @@ def test_energy_rises_by_the_work_of_a_step(element: str, strain: str) -> None:
     mesh = ct.mesh.distort(ct.mesh.rectangle(4.0, 1.0, 6, 2, CELL[element]), 0.1, seed=6)
     end = ct.mesh.add_node(mesh, 4.5, 1.0, "end")
     model = ct.Model(mesh)
-    model.section("all", element=element, material=ct.Elastic(E=80.0, nu=0.3), thickness=0.5,
-                  local_strain=strain, plane="strain")  # fmt: skip
+    model.section(
+        "all",
+        element=element,
+        material=ct.Elastic(E=80.0, nu=0.3),
+        thickness=0.5,
+        local_strain=strain,
+        plane="strain",
+    )
     model.fix("left", rotation=True if element in DRILLING else None)
     model.rigid("right", end)
     # Three states near each other.
@@ -178,12 +182,24 @@ def test_lamina_in_turned_axes_and_turned_later(element: str) -> None:
         grip = ct.mesh.add_node(mesh, *(R @ [0.0, 0.5]), name="grip")
         end = ct.mesh.add_node(mesh, *(R @ [4.0, 0.5]), name="end")
         wood = ct.Orthotropic(
-            E1=150.0, E2=30.0, E3=50.0, nu12=0.25, nu13=0.2, nu23=0.3, G12=20.0,
+            E1=150.0,
+            E2=30.0,
+            E3=50.0,
+            nu12=0.25,
+            nu13=0.2,
+            nu23=0.3,
+            G12=20.0,
             expansion=(1e-3, 4e-3, 2e-3),
-        )  # fmt: skip
+        )
         model = ct.Model(mesh)
-        model.section("all", element=element, material=wood, thickness=0.6, plane="strain",
-                      orientation=math.radians(30.0 + angle))  # fmt: skip
+        model.section(
+            "all",
+            element=element,
+            material=wood,
+            thickness=0.6,
+            plane="strain",
+            orientation=math.radians(30.0 + angle),
+        )
         model.rigid("left", grip)
         model.rigid("right", end)
         model.pressure("top", 0.15)

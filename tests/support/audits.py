@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 import corota as ct
+from corota.mesh.data import Cells
 
 CELL = {
     "T3": "tri3",
@@ -41,7 +42,8 @@ def run(path: Path, text: str, **options: Any) -> Any:
     """Run a deck and leave its files beside it."""
     path.write_text(text)
     model = ct.read(path, **options)
-    return ct.solve(model, observers=[ct.JobFiles(path.parent, path.stem)], threads=1)
+    files = ct.JobFiles(path.parent, path.stem, points=True)
+    return ct.solve(model, observers=[files], threads=1)
 
 
 def deck_mesh(mesh: Any, kind: str) -> str:
@@ -107,3 +109,68 @@ class Bar:
             self.ep, self.beta = self.ep + flow, self.beta + self.K * flow
             self.p = self.p + dp
         return s - self.E * flow
+
+
+def tables(path: Path) -> dict[str, list[np.ndarray]]:
+    """Read the tables of a .dat file: rows of numbers below each heading, by its first word."""
+    found: dict[str, list[np.ndarray]] = {}
+    rows: list[list[float]] = []
+    head = ""
+    for line in [*path.read_text().splitlines(), "end"]:
+        words = line.split()
+        if not words:
+            continue
+        try:
+            rows.append([float(w) for w in words])
+        except ValueError:
+            if rows:
+                found.setdefault(head, []).append(np.array(rows))
+            rows, head = [], line.strip().split(" for ")[0].split(" (")[0]
+    return found
+
+
+BARS = """*NODE
+1, 0., 0.
+2, 2., 0.
+3, 4., 0.
+*ELEMENT, TYPE=T2D2, ELSET=all
+1, 1, 2
+2, 2, 3
+*NSET, NSET=ends
+1
+*MATERIAL, NAME=m
+*ELASTIC
+100., 0.
+*DENSITY
+0.5
+*EXPANSION
+1e-3
+*SOLID SECTION, ELSET=all, MATERIAL=m
+0.2
+*AMPLITUDE, NAME=tri
+0., 0., 0.5, 1., 1., 0.4
+*AMPLITUDE, NAME=tot, TIME=TOTAL TIME
+0., 0., 1., 1., 3., -1.
+*BOUNDARY
+1, 1, 2
+2, 2, 2
+3, 2, 2
+"""
+
+
+def line_mesh(points: np.ndarray, pairs: list[tuple[int, int]]) -> Any:
+    from corota.mesh import Mesh
+
+    cells = [Cells("line2", np.array(pairs), np.arange(1, len(pairs) + 1))]
+    return Mesh(np.asarray(points, float), cells, np.arange(1, len(points) + 1))
+
+
+def rows_of(path: Path, head: str) -> list[list[str]]:
+    """Rows of text below each heading of a .dat file."""
+    found: list[list[str]] = []
+    for line in path.read_text().splitlines():
+        if line.strip().startswith(head):
+            found.append([])
+        elif found and line[:10].strip().isdigit():
+            found[-1].append(line)
+    return found

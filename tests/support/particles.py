@@ -11,6 +11,46 @@ from corota.mesh.data import Cells
 from corota.model.loads import Amplitude
 
 LIGHT = 1e-13  # density of lines that carry point masses
+IMPLICIT = ["newmark", "hht", "generalized_alpha", "energy_momentum"]
+#: A chain of three particles on springs from a base, in models and in decks.
+STIFFNESS, MASSES = [100.0, 200.0, 50.0], [1.0, 2.0, 0.5]
+CHAIN_CARDS = """*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 2., 0.
+4, 3., 0.
+*NSET, NSET=TIP
+4
+*NSET, NSET=BASE
+1
+*ELEMENT, TYPE=SPRINGA, ELSET=S1
+1, 1, 2
+*ELEMENT, TYPE=SPRINGA, ELSET=S2
+2, 2, 3
+*ELEMENT, TYPE=SPRINGA, ELSET=S3
+3, 3, 4
+*SPRING, ELSET=S1
+
+100.
+*SPRING, ELSET=S2
+
+200.
+*SPRING, ELSET=S3
+
+50.
+*ELEMENT, TYPE=MASS, ELSET=M1
+11, 2
+*ELEMENT, TYPE=MASS, ELSET=M2
+12, 3
+*ELEMENT, TYPE=MASS, ELSET=M3
+13, 4
+*MASS, ELSET=M1
+1.
+*MASS, ELSET=M2
+2.
+*MASS, ELSET=M3
+.5
+"""
 
 
 def network(points, lines=(), dots=()):
@@ -106,4 +146,23 @@ def linear_motion(k, m, c, load, end, breaks, start=None):
 def without_first_support(model):
     """A chain whose support is left to the steps."""
     model.supports = [f for f in model.supports if not (f.dof == 0 and list(f.nodes) == [0])]
+    return model
+
+
+def wheel(where=((0.5, 0.0), (-0.2, 0.4), (0.1, -0.3)), masses=(1.0, 2.0, 0.5), inertia=0.0):
+    """Three particles rigidly joined to a reference node in the origin, off their center."""
+    points = np.vstack([[0.0, 0.0], where])
+    model = network(points, [[1, 2], [2, 3]])
+    bars(model, [0, 1], 1.0, 1.0)
+    for i, m in enumerate(masses):
+        model.point_mass([i + 1], m)
+    if inertia:
+        model.point_mass([0], LIGHT, inertia=inertia)
+    model.rigid([1, 2, 3], 0)
+    return model, points[1:], np.asarray(masses)
+
+
+def column(n, length, young, inertia, area=1.0, rho=1.0):
+    model = network([[i * length / n, 0.0] for i in range(n + 1)], [[i, i + 1] for i in range(n)])
+    model.beam(list(range(n)), material=ct.Elastic(E=young, rho=rho), area=area, inertia=inertia)
     return model
