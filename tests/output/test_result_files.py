@@ -295,11 +295,11 @@ RUN = """
 import sys, time
 sys.path.insert(0, {here!r})
 import conftest as c
-from corota.io import job
+from corota.io import job, task_queue
 from corota.model.materials import Elastic
 from corota.model import Model
 from corota.model.steps import Static
-job.BEAT = 0.02
+task_queue.BEAT = 0.02
 model = Model(c.strip(40, 20), "beam")
 model.section("EALL", element="Q4I", material=Elastic(E=1000.0, nu=0.3), thickness=0.1)
 model.fix("LEFT")

@@ -13,7 +13,7 @@ import pytest
 import corota as ct
 from benchmarks.restart_cases import DECKS, MODELS
 from corota.cli import main
-from corota.io import atomic_file, job
+from corota.io import atomic_file, job, task_queue
 from corota.io.checksum import fletcher32
 from corota.io.result_reader import read_results
 
@@ -144,13 +144,13 @@ def test_frames_that_wait_for_the_disk_are_bounded(tmp_path, monkeypatch):
     waiting = []
 
     def slow(self, frame, attempts):
-        waiting.append(self._waiting)
+        waiting.append(self._queue._waiting)
         time.sleep(0.005)
         true(self, frame, attempts)
 
     true = job.JobFiles._write
     monkeypatch.setattr(job.JobFiles, "_write", slow)
-    monkeypatch.setattr(job, "MOST_WAITING", 100_000)
+    monkeypatch.setattr(task_queue, "MOST_WAITING", 100_000)
     model = MODELS["central differences"]()
     results = ct.solve(model, observers=[job.JobFiles(tmp_path)], threads=1)
     one = max(

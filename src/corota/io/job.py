@@ -6,9 +6,7 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
-import threading
 import time
-from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,12 +27,13 @@ from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.dat import check_requests, dat_blocks
 from corota.io.tables.dat_modes import buckling_table, eigenvalue_tables
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
+from corota.io.task_queue import TaskQueue
 from corota.io.writers import STREAMS, Job
 from corota.names import choose
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from os import PathLike
     from types import TracebackType
 
@@ -46,10 +45,6 @@ if TYPE_CHECKING:
     from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
 
-#: Files are brought up to date at most so often; a killed run loses no more than this [s].
-BEAT = 0.25
-#: Work waiting for the writer, above which the analysis waits for it.
-MOST_WAITING = 64 << 20
 #: Endings of all files of a job.
 ENDINGS = (
     *("dat", "sta", "cvg", "jsonl", "csv", "vtkhdf", "pvd", "npz", "vtu"),
@@ -64,7 +59,7 @@ CHECKPOINT_WAIT = 100.0
 class JobFiles(BaseObserver):
     """Observer that writes ``<job>.vtkhdf .dat .sta .cvg .csv .jsonl`` into a folder.
 
-    Every accepted increment is on disk within :data:`BEAT` seconds, in files that are readable
+    Every accepted increment is on disk within a quarter of a second, in files that are readable
     at every moment: text grows by whole pieces, the result file by exchange of complete copies.
 
     Parameters
@@ -137,19 +132,12 @@ class JobFiles(BaseObserver):
     ) -> None:
         self.folder, self.name = Path(folder), name
         self.paths: list[Path] = []
-        self.error: Exception | None = None
-        self.seconds = 0.0
+        self._queue = TaskQueue(self._commit)
         self._formats = [choose(form, STREAMS, "result format") for form in formats]
         self._extra = histories
         chosen = fields if isinstance(fields, str) else tuple(fields)
         self._form = FileOptions(points, single, chosen, compression)
         self._profile = profile or {}
-        self._tasks: deque[tuple[Callable[[], None], int]] = deque()
-        self._waiting = 0
-        self._wake, self._free = threading.Event(), threading.Condition()
-        self._stop = False
-        self._thread: threading.Thread | None = None
-        self._busy_until = 0.0
         self._last_tried = (0.0, 0)
         self._stored: tuple[Any, list[Any], str] | tuple[()] | None = None
         self._largest = 0.0
@@ -170,6 +158,11 @@ class JobFiles(BaseObserver):
         self._held: FolderLock | None = None
         self._end_request: StopRequest | None = None
         self.run = os.urandom(6).hex() if resume is None else resume.run
+
+    @property
+    def error(self) -> Exception | None:
+        """Why writing stopped."""
+        return self._queue.error
 
     # Called by the analysis.
     def start(self, model: Model, steps: list[Step]) -> None:
@@ -196,7 +189,7 @@ class JobFiles(BaseObserver):
             raise full(error, self.folder) from None
         if not self._closed:
             raise InputError("these files are being written already; make JobFiles for each run")
-        self._stop, self._newest = False, None
+        self._newest = None
         self.paths.clear()
         self._held = FolderLock(self.folder / f".{name}.lock")
         self._end_request = StopRequest(stop_file(self.folder, name))
@@ -256,9 +249,8 @@ class JobFiles(BaseObserver):
         self._big: list[Stream] = []
         big = [(form, self._path(name, form.partition("-")[0])) for form in self._formats]
         self._closed = False
-        self._thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
-        self._thread.start()
-        self._put(lambda: self._open(big))  # takes as long as solving a small job
+        self._queue.start()
+        self._queue.put(lambda: self._open(big))  # takes as long as solving a small job
         self._events = Events(self._log, self.run)
         if resumed is None:
             self._events.start(model, steps)
@@ -365,7 +357,7 @@ class JobFiles(BaseObserver):
             "tried": list(self._last_tried),
         }
         size = sum(array.nbytes for array in checkpoint.arrays)
-        self._put(lambda: self._checkpoint(checkpoint, known, keep), size)
+        self._queue.put(lambda: self._checkpoint(checkpoint, known, keep), size)
 
     def _checkpoint(self, checkpoint: Checkpoint, known: dict[str, Any], keep: str) -> None:
         """Bring the files to the disk, then the checkpoint that refers to them."""
@@ -432,7 +424,7 @@ class JobFiles(BaseObserver):
         self._largest = max(self._largest, info.correction)
         self._last_tried = (info.dt, info.iteration)
         line = cvg_line(info, self._largest)
-        self._put(lambda: self._text["cvg"].append(line))
+        self._queue.put(lambda: self._text["cvg"].append(line))
         self._events.iteration(info)
 
     def increment(self, frame: Frame) -> None:
@@ -442,40 +434,40 @@ class JobFiles(BaseObserver):
         self._reached = (frame.time, frame.step_time)
         size = 8 * (frame.U.size * 6 + sum(b.volume.size * 24 for b in frame.fields))
         self._events.increment(frame)
-        self._put(lambda: self._write(frame, attempts), size)
+        self._queue.put(lambda: self._write(frame, attempts), size)
 
     def cut_back(self, step: int, increment: int, attempt: int, reason: str, dt: float) -> None:
         self._cuts[step, increment] = attempt
         tried, count = self._last_tried
         line = sta_failed(step, increment, attempt, count, self._reached, tried)
-        self._put(lambda: self._text["sta"].append(line))
+        self._queue.put(lambda: self._text["sta"].append(line))
         self._events.cut_back(step, increment, attempt, reason, dt)
 
     def end(self, results: Results, error: Exception | None) -> None:
         """Write what waits and close; raise what went wrong unless the analysis failed first."""
         if self._closed:
             return
-        self._drain()
-        if self.error is None:
-            self._finish(self._end_step)
+        self._queue.drain()
+        if self._queue.error is None:
+            self._queue.attempt(self._end_step)
         profile = results.info.setdefault("profile", {})
         for phase, seconds in self._profile.items():
             profile.setdefault(phase, seconds)
         results.info["seconds held by output"] = profile.get("write", 0.0)
-        profile["write"] = self.seconds
-        self._finish(lambda: self._events.end(results, error))
+        profile["write"] = self._queue.seconds
+        self._queue.attempt(lambda: self._events.end(results, error))
         if results.modes and "vtkhdf" in self._formats:
             from corota.io.modes import write_modes
 
             path = self._path(self.name or self.model.name, "modes.vtkhdf")
-            self._finish(lambda: write_modes(results, path))
+            self._queue.attempt(lambda: write_modes(results, path))
         for big in self._big:
             for modes in results.modes:
-                self._finish(lambda big=big, modes=modes: big.add_modes(modes))  # type: ignore[misc]
+                self._queue.attempt(lambda big=big, modes=modes: big.add_modes(modes))  # type: ignore[misc]
         self._iterate(results)
         self.close(results.info, done=error is None)
-        if self.error is not None and error is None:
-            raise self.error
+        if self._queue.error is not None and error is None:
+            raise self._queue.error
 
     def _iterate(self, results: Results) -> None:
         """Write where the last attempt ended; after a run that converged there is no such file."""
@@ -487,7 +479,7 @@ class JobFiles(BaseObserver):
             return
         path = self.folder / name
         self.paths.append(path)
-        self._finish(lambda: write_iterate(results, path))
+        self._queue.attempt(lambda: write_iterate(results, path))
 
     def close(self, info: dict[str, Any] | None = None, done: bool = False) -> None:
         """Write what waits and close the files; errors stay in :attr:`error`.
@@ -497,16 +489,16 @@ class JobFiles(BaseObserver):
         """
         if self._closed:
             return
-        self._drain()
+        self._queue.drain()
         self._closed = True
-        if self.error is None:
-            self._finish(self._end_step)
+        if self._queue.error is None:
+            self._queue.attempt(self._end_step)
         for big in self._big:
-            self._finish(lambda big=big: big.close(info))  # type: ignore[misc]
+            self._queue.attempt(lambda big=big: big.close(info))  # type: ignore[misc]
         for text in self._text.values():
             text.close()
         self._csv.close()
-        if done and self.error is None:
+        if done and self._queue.error is None:
             name = self.name or self.model.name
             gone = [self._previous(name, ending) for ending in ("vtkhdf", "pvd")]
             if not self._every and not any(step.restart for step in self.steps):
@@ -531,68 +523,13 @@ class JobFiles(BaseObserver):
         self.close()
 
     # The writer's side.
-    def _put(self, task: Callable[[], None], size: int = 200) -> None:
-        if self.error is not None:
-            raise self.error
-        if self._thread is None:
-            task()
-            return
-        with self._free:
-            while self._waiting > MOST_WAITING and self.error is None:
-                self._wake.set()
-                self._free.wait(1.0)
-            self._waiting += size
-        self._tasks.append((task, size))
-        if time.perf_counter() >= self._busy_until:
-            self._wake.set()
-
     def _log(self, record: dict[str, Any]) -> None:
-        self._put(lambda: self._text["jsonl"].append(json_line(record)))
+        self._queue.put(lambda: self._text["jsonl"].append(json_line(record)))
 
-    def _finish(self, task: Callable[[], None]) -> None:
-        try:
-            task()
-        except Exception as error:  # the first error is the one to report
-            self.error = self.error or error
-
-    def _work(self) -> None:
-        while not self._stop or self._tasks:
-            if not self._stop:
-                self._wake.wait(BEAT if self._tasks else None)
-            self._wake.clear()
-            self._busy_until = time.perf_counter() + BEAT
-            self._empty()
-
-    def _empty(self) -> None:
-        """Do what waits, then bring the result files up to date."""
-        begin, done, frames = time.thread_time(), 0, False
-        late = time.perf_counter() + BEAT
-        while self._tasks:
-            task, size = self._tasks.popleft()
-            if self.error is None:
-                self._finish(task)
-            done += size
-            frames = frames or size > 200
-            # An analysis that goes on faster than this must not keep the files from the disk.
-            if done > MOST_WAITING // 4 or time.perf_counter() > late:
-                break
-        if frames and self.error is None:
-            for big in self._big:
-                self._finish(big.commit)
-        with self._free:
-            self._waiting -= done
-            self._free.notify_all()
-        self.seconds += time.thread_time() - begin
-
-    def _drain(self) -> None:
-        if self._thread is None:
-            return
-        self._stop = True
-        self._wake.set()
-        self._thread.join()
-        self._thread = None
-        while self._tasks:
-            self._empty()
+    def _commit(self) -> None:
+        """Bring the result files up to date."""
+        for big in self._big:
+            big.commit()
 
     def _write(self, frame: Frame, attempts: int) -> None:
         check_frame(frame)
@@ -630,4 +567,4 @@ class JobFiles(BaseObserver):
             big.add(frame)
 
 
-__all__ = ["BEAT", "JobFiles"]
+__all__ = ["JobFiles"]

@@ -129,6 +129,12 @@ class Material(Brief):
     law = ""
     #: Whether the law has plastic flow.
     flows = False
+    #: Whether stress is a linear function of strain.
+    linear = False
+    #: Whether the answer depends on the path of the strain.
+    remembers = True
+    #: Whether it has axes of its own.
+    oriented = False
     #: Whether trusses and beams take it.
     for_lines = False
 
@@ -193,6 +199,7 @@ class Elastic(Material):
     nu: float = 0.0
 
     law = "elastic"
+    linear, remembers = True, False
     for_lines = True
 
     def __post_init__(self) -> None:
@@ -240,6 +247,7 @@ class Orthotropic(Material):
     G12: float
 
     law = "orthotropic"
+    linear, remembers, oriented = True, False, True
 
     def __post_init__(self) -> None:
         for name in ("E1", "E2", "E3", "G12"):

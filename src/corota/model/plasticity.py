@@ -5,18 +5,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from corota.display import Brief
 from corota.errors import InputError
-from corota.model.materials import Material, _positive, isotropic_compliance
+from corota.model.materials import _positive, isotropic_compliance
+from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    import numpy as np
+    from numpy.typing import NDArray
 
     from corota.errors import Location
 
@@ -50,7 +50,7 @@ class Voce(Brief):
 
 
 @dataclass
-class Mises(Material):
+class Mises(LawOfTheCore):
     """J2 plasticity, integrated implicitly, in plane stress and plane strain.
 
     Parameters
@@ -106,7 +106,6 @@ class Mises(Material):
     rows: Sequence[Location] = field(default=(), kw_only=True, compare=False, repr=False)
 
     law = "mises"
-    flows = True
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)
@@ -176,6 +175,13 @@ class Mises(Material):
         linear = [(float(self.kinematic), 0.0)] if self.kinematic else []
         return linear + [(float(c), float(gamma)) for c, gamma in self.chaboche]
 
+    @property
+    def first_yield(self) -> float:
+        if self.yield_curve is not None:
+            return float(self.yield_curve[0][0])
+        assert self.yield_stress is not None
+        return self.yield_stress
+
     def compliance(self) -> Floats:
         return isotropic_compliance(self.E, self.nu)
 
@@ -191,88 +197,3 @@ class Mises(Material):
             law = self.isotropic
             return [*numbers, 2.0, self.yield_stress, law.Q, law.b, law.H]
         return [*numbers, 0.0, self.yield_stress, float(self.isotropic)]
-
-    def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
-        """Answer of a single point to a strain path, one implicit step per row.
-
-        Parameters
-        ----------
-        strain : array_like, shape (n, 3)
-            Rows xx, yy, xy (engineering shear).
-        plane : {"stress", "strain"}
-
-        Returns
-        -------
-        dict of ndarray
-            ``stress`` (n, 3), ``tangent`` (n, 3, 3), ``zz`` (n, 2; strain and stress through
-            the thickness), ``PEEQ``, ``YRATIO``, ``PWORK``, ``PDISS`` (n,).
-        """
-        from corota import _core
-
-        path = np.ascontiguousarray(np.atleast_2d(np.asarray(strain, float)))
-        n = len(path)
-        raw: dict[str, Any] = _core.material_path(
-            self.law, self.parameters(), plane, path, np.zeros(0)
-        )
-        shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
-        shapes["state"] = (n, -1)
-        return {key: values.reshape(shapes.get(key, (n,))) for key, values in raw.items()}
-
-    def uniaxial(self, strain: ArrayLike) -> Floats:
-        """Uniaxial stress along a path of axial strains.
-
-        Parameters
-        ----------
-        strain : array_like, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Axial stress [force/length^2]; the transverse one is zero.
-        """
-        from corota import _core
-
-        state = np.zeros(0)
-        side = 0.0
-        out = []
-        for axial in np.asarray(strain, float):
-            for _ in range(50):
-                point = np.array([[axial, side, 0.0]])
-                raw = _core.material_path(self.law, self.parameters(), "stress", point, state)
-                step = raw["stress"][1] / raw["tangent"][4]
-                if abs(raw["stress"][1]) <= 1e-12 * (abs(raw["stress"][0]) + 1e-12 * self.E):
-                    break
-                side -= step
-            state = raw["state"]
-            out.append(raw["stress"][0])
-        return np.array(out)
-
-    def plot_uniaxial(self, strain: ArrayLike | None = None, ax: Any = None) -> Any:
-        """Draw uniaxial stress against strain.
-
-        Parameters
-        ----------
-        strain : array_like, shape (n,), optional
-            Path of axial strains; by default one loop over ten times the yield strain.
-        ax : matplotlib.axes.Axes, optional
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
-        import matplotlib.pyplot as plt
-
-        if strain is None:
-            first = self.yield_curve[0][0] if self.yield_curve else self.yield_stress
-            assert first is not None
-            top = 10.0 * first / self.E
-            strain = np.concatenate(
-                [np.linspace(0, top, 60), np.linspace(top, -top, 120), np.linspace(-top, top, 120)]
-            )
-        path = np.asarray(strain, float)
-        ax = ax or plt.figure().add_subplot()
-        ax.plot(path, self.uniaxial(path))
-        ax.set_xlabel("strain")
-        ax.set_ylabel("stress [force/length^2]")
-        ax.set_title(self.name or "uniaxial answer")
-        return ax

@@ -87,6 +87,13 @@ class Section(Brief):
                 "local_strain='logarithmic' (LOCAL STRAIN=LOGARITHMIC)",
                 self.where,
             )
+        element = elements.find(self.element)
+        if element.stabilized and self.material.flows and not self.material.remembers:
+            raise InputError(
+                f"the hourglass of {element.name} would stay elastic under deformation "
+                "plasticity and the part too stiff in bending: take Q4I or Q8R",
+                self.where,
+            )
         pairs = np.asarray(self.table, dtype=np.float64).reshape(-1, 2)
         rising = (np.diff(pairs[:, 0]) > 0.0).all() and len(pairs) != 1
         if not (np.isfinite(pairs).all() and rising):

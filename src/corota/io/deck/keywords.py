@@ -6,12 +6,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from corota.io.deck.cards import amplitudes as amplitudes
 from corota.io.deck.cards import assembly as assembly
 from corota.io.deck.cards import attachments as attachments
 from corota.io.deck.cards import contact as contact
 from corota.io.deck.cards import dynamic as dynamic
 from corota.io.deck.cards import generate as generate
 from corota.io.deck.cards import lines as lines
+from corota.io.deck.cards import loads as loads
 from corota.io.deck.cards import material as material
 from corota.io.deck.cards import mesh as mesh
 from corota.io.deck.cards import output as output
@@ -19,6 +21,7 @@ from corota.io.deck.cards import path as path
 from corota.io.deck.cards import plastic as plastic
 from corota.io.deck.cards import pretension as pretension
 from corota.io.deck.cards import step as step
+from corota.io.deck.cards import supports as supports
 from corota.io.deck.cards import thermal as thermal
 from corota.io.deck.cards import tie as tie
 from corota.io.deck.deck import nearest
@@ -132,11 +135,11 @@ KEYWORDS: dict[str, Keyword] = {
     "SPRING": Keyword(lines.spring, "ELSET NONLINEAR", place="model"),
     "ORIENTATION": Keyword(material.orientation, "NAME SYSTEM", "DEFINITION", place="model"),
     "AMPLITUDE": Keyword(
-        step.amplitude,
+        amplitudes.amplitude,
         "NAME TIME SHIFTX SHIFTY DEFINITION VALUE FIXEDINTERVAL BEGIN",
         "SMOOTH",
     ),
-    "TIMEPOINTS": Keyword(step.time_points, "NAME TIME GENERATE"),
+    "TIMEPOINTS": Keyword(amplitudes.time_points, "NAME TIME GENERATE"),
     "STEP": Keyword(
         step.step,
         "NLGEOM INC AMPLITUDE PERTURBATION",
@@ -238,11 +241,11 @@ KEYWORDS: dict[str, Keyword] = {
         _FILE,
         "NSET SLAVE MASTER VARIABLE CPSET SURFACE",
     ),
-    "BOUNDARY": Keyword(step.boundary, "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"),
-    "CLOAD": Keyword(step.cload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
-    "DLOAD": Keyword(step.dload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE CONSTANTRESULTANT"),
+    "BOUNDARY": Keyword(supports.boundary, "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"),
+    "CLOAD": Keyword(loads.cload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
+    "DLOAD": Keyword(loads.dload, "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE CONSTANTRESULTANT"),
     "DSLOAD": Keyword(
-        step.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
+        loads.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
     ),
     "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
     "NODEPRINT": Keyword(output.node_print, f"NSET {_PRINT} GLOBAL", "SUMMARY"),

@@ -3,14 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.errors import InputError
 from corota.io.deck.cards.plastic import build_mises
+from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
-from corota.model.materials import Elastic, Orthotropic
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -39,28 +39,13 @@ def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
 
 
 def _law(draft: MaterialDraft) -> Material:
-    c = draft.constants
-    common = _common(draft)
-    if draft.law == "ISOTROPIC":
-        return Elastic(c[0], c[1], **common)
-    if draft.law == "LAMINA":
-        # A lamina says nothing of the third direction: it is taken as the second one.
-        values = [c[0], c[1], c[1], c[2], c[2], 0.0, c[3]]
-    elif draft.law == "ENGINEERINGCONSTANTS":
-        values = c[:7]
-    else:
-        values = _from_stiffness(draft)
-    return Orthotropic(*values, **common)
-
-
-def _common(draft: MaterialDraft) -> dict[str, Any]:
-    """What a draft says that all materials have."""
-    return {
-        "rho": draft.rho,
-        "rayleigh": draft.damping,
-        "name": draft.name,
-        "where": draft.law_where,
-    }
+    return LAWS[draft.law].make(
+        *draft.constants,
+        rho=draft.rho,
+        rayleigh=draft.damping,
+        name=draft.name,
+        where=draft.law_where,
+    )
 
 
 def settle_temperature(deck: Deck, temperature: float | None) -> None:
@@ -115,14 +100,3 @@ def share_damping(deck: Deck) -> None:
     for step in deck.steps:
         if step.options.get("rayleigh") == deck.damping:
             step.options["rayleigh"] = tuple(a + b for a, b in zip(pair, deck.damping, strict=True))
-
-
-def _from_stiffness(draft: MaterialDraft) -> list[float]:
-    """Engineering constants from D1111, D1122, D2222, D1133, D2233, D3333, D1212."""
-    d11, d12, d22, d13, d23, d33, g12 = draft.constants[:7]
-    stiffness = np.array([[d11, d12, d13], [d12, d22, d23], [d13, d23, d33]])
-    if not np.all(np.linalg.eigvalsh(stiffness) > 0.0):
-        raise InputError("the stiffness is not positive definite", draft.law_where)
-    s = np.linalg.inv(stiffness)
-    e1, e2, e3 = 1.0 / np.diag(s)
-    return [e1, e2, e3, -s[0, 1] * e1, -s[0, 2] * e1, -s[1, 2] * e2, g12]

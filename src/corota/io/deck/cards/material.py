@@ -7,41 +7,25 @@ import math
 from typing import TYPE_CHECKING
 
 from corota.io.deck.drafts import Draft, MaterialDraft, SectionDraft
+from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 from corota.model.local_strain import ALIASES, LOCAL_STRAINS, local_strain
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
+    from corota.io.deck.laws import DeckLaw
     from corota.io.deck.lexer import Card, Row
 
-#: Constants of each ``TYPE=`` of ``*ELASTIC``, in the order of the data lines.
-ELASTIC_TYPES: dict[str, tuple[str, ...]] = {
-    "ISOTROPIC": ("Young's modulus", "Poisson's ratio"),
-    "LAMINA": ("E1", "E2", "nu12", "G12", "G13", "G23"),
-    "ENGINEERINGCONSTANTS": (
-        "E1",
-        "E2",
-        "E3",
-        "nu12",
-        "nu13",
-        "nu23",
-        "G12",
-        "G13",
-        "G23",
-    ),
-    "ORTHOTROPIC": (
-        "D1111",
-        "D1122",
-        "D2222",
-        "D1133",
-        "D2233",
-        "D3333",
-        "D1212",
-        "D1313",
-        "D2323",
-    ),
+#: Names of ``TYPE=`` of ``*ELASTIC``, and what they stand for.
+ELASTIC_TYPES = {
+    "": "ISOTROPIC",
+    "ISO": "ISOTROPIC",
+    "ISOTROPIC": "ISOTROPIC",
+    "ORTHO": "ORTHOTROPIC",
+    "ORTHOTROPIC": "ORTHOTROPIC",
+    "ENGINEERINGCONSTANTS": "ENGINEERINGCONSTANTS",
+    "LAMINA": "LAMINA",
 }
-_OPTIONAL = {"Poisson's ratio": 0.0, "G13": 0.0, "G23": 0.0, "D1313": 0.0, "D2323": 0.0}
 
 
 def material(deck: Deck, card: Card) -> None:
@@ -59,76 +43,79 @@ def material(deck: Deck, card: Card) -> None:
 
 def elastic(deck: Deck, card: Card) -> None:
     """``*ELASTIC[, TYPE=]``: the constants of the law."""
+    law = ELASTIC_TYPES.get(key(card.value("TYPE")))
+    if law is None:
+        deck.choice(card, "TYPE", ("ISO", "ORTHO", "ENGINEERING CONSTANTS", "LAMINA"), "")
+        return
+    _law(deck, card, law)
+
+
+def _law(deck: Deck, card: Card, name: str) -> None:
+    """Read the constants of a law into the open material."""
     found = open_material(deck, card)
     if found is None:
         return
-    law = key(card.value("TYPE")) or "ISOTROPIC"
-    law = {"ISO": "ISOTROPIC", "ORTHO": "ORTHOTROPIC"}.get(law, law)
-    if law not in ELASTIC_TYPES:
-        deck.choice(card, "TYPE", ("ISO", "ORTHO", "ENGINEERING CONSTANTS", "LAMINA"), "")
-        return
-    rows = list(card.rows())
-    names = ELASTIC_TYPES[law]
+    rows, law = list(card.rows()), LAWS[name]
     if not rows:
-        deck.error(card, card.where, f"a data line is missing: {', '.join(names)}")
+        deck.error(card, card.where, f"a data line is missing: {', '.join(law.constants)}")
         return
     if found.law:
         deck.error(
             card, card.where, f"material {found.name} already has constants ({found.law_where})"
         )
         return
-    found.law, found.law_where, found.law_card = law, rows[0].where, card
-    _constants(deck, card, rows, found, names)
+    found.law, found.law_where, found.law_card = name, rows[0].where, card
+    _constants(deck, card, rows, found, law)
 
 
-def _constants(
-    deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, names: tuple[str, ...]
-) -> None:
-    per_row = 2 if names[0] == "Young's modulus" else 8
-    n_rows = -(-len(names) // per_row)
+def _constants(deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, law: DeckLaw) -> None:
+    names, per_row = law.constants, law.per_row
+    n_rows, needed = -(-len(names) // per_row), len(names) - law.optional
     for index, name in enumerate(names):
         row_number, column = divmod(index, per_row)
         if row_number >= len(rows):
-            if name not in _OPTIONAL:
+            if index < needed:
                 deck.row_error(card, rows[-1], len(rows[-1]), f"{name} is missing")
                 break
-            found.constants.append(_OPTIONAL[name])
+            found.constants.append(0.0)
             continue
-        value = deck.real(card, rows[row_number], column, name, _OPTIONAL.get(name))
+        value = deck.real(card, rows[row_number], column, name, None if index < needed else 0.0)
         if value is None:
             break
         found.constants.append(value)
     if len(found.constants) < len(names):
         found.law_card = None
-    if law_depends(rows, n_rows):
-        if per_row != 2:
-            deck.row_error(
-                card,
-                rows[n_rows],
-                0,
-                "only isotropic constants may depend on temperature",
-                "give one set of constants",
-            )
-            return
-        for row in rows:
-            values = [
-                deck.real(card, row, i, name, 0.0)
-                for i, name in enumerate((*names, "the temperature"))
-            ]
-            if None in values:
-                return
-            found.table.append([float(v or 0.0) for v in values])
+    if len(rows) > n_rows:
+        _by_temperature(deck, card, rows, found, law)
         return
     for number, row in enumerate(rows):
         used = per_row if number + 1 < n_rows else len(names) - per_row * (n_rows - 1)
         deck.extra_fields(card, row, used + 1)
         if row.get(used):
-            deck.note(f"{row.where}: the temperature {row.get(used)} in *ELASTIC is ignored")
+            deck.note(f"{row.where}: the temperature {row.get(used)} in {card.spelled} is ignored")
 
 
-def law_depends(rows: list[Row], n_rows: int) -> bool:
-    """Whether there are constants for more than one temperature."""
-    return len(rows) > n_rows
+def _by_temperature(
+    deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, law: DeckLaw
+) -> None:
+    """Rows of constants and temperature."""
+    if not law.follows_temperature:
+        deck.row_error(
+            card,
+            rows[-(-len(law.constants) // law.per_row)],
+            0,
+            "only isotropic constants may depend on temperature",
+            "give one set of constants",
+        )
+        return
+    for row in rows:
+        values = [
+            deck.real(card, row, i, name, 0.0)
+            for i, name in enumerate((*law.constants, "the temperature"))
+        ]
+        if None in values:
+            return
+        found.table.append([float(v or 0.0) for v in values])
 
 
 def density(deck: Deck, card: Card) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from corota.errors import InputError, UnsupportedError
 from corota.io.atomic_file import replace_text
+from corota.io.deck.laws import law_cards
 from corota.io.deck.write.contact import contact_cards, step_cards, surfaces
 from corota.io.deck.write.lines import LINE_TYPES, line_cards
 from corota.io.deck.write.mesh import TYPES
@@ -20,7 +21,6 @@ from corota.io.deck.write.thermal import expansion_cards, initial_cards, tempera
 from corota.mesh import EDGES
 from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied, kind_of
-from corota.model.materials import Elastic, Orthotropic
 from corota.model.steps import Static
 
 if TYPE_CHECKING:
@@ -177,13 +177,8 @@ class _Writer:
         while name in self._materials.values():
             name += "_"
         self._materials[index] = name
-        if type(material) is Elastic:
-            law = f"*ELASTIC\n{_number(material.E)}, {_number(material.nu)}\n"
-        elif type(material) is Orthotropic:
-            values = [_number(v) for v in material.parameters()[:7]] + [_number(material.G12)] * 2
-            law = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n"
-            law += ", ".join(values[:8]) + f"\n{values[8]}\n"
-        else:
+        law = law_cards(material, _number)
+        if law is None:
             raise UnsupportedError(
                 f"a material of type {type(material).__name__} cannot be written to a deck"
             )

@@ -1,0 +1,260 @@
+"""Supports and loads of a model from those of a deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+
+from corota.io.deck import numerals
+from corota.io.deck.build.base_motion import base_motion
+from corota.io.deck.cards.thermal import build_temperature
+from corota.io.deck.deck import nearest
+from corota.mesh.parts import cells_of
+from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from corota.io.deck.build.targets import Targets
+    from corota.io.deck.drafts import Draft, StepDraft
+    from corota.mesh.data import Ints
+    from corota.model.loads import Load
+
+
+class LoadBuilder:
+    """Makes supports and loads.
+
+    Parameters
+    ----------
+    targets : Targets
+    """
+
+    def __init__(self, targets: Targets) -> None:
+        self.targets, self.deck, self.sets = targets, targets.deck, targets.sets
+        self.meshes, self.model, self.mesh = targets.meshes, targets.model, targets.mesh
+
+    def supports(self, drafts: list[Draft], step: StepDraft | None = None) -> list[Fixed]:
+        found = []
+        for draft in drafts:
+            nodes, amplitude = self.targets.nodes(draft), self.targets.amplitude(draft)
+            if draft.order and step is not None and amplitude is not None:
+                amplitude = base_motion(self.deck, self.model, draft, amplitude, step)
+            if nodes is None or amplitude is None or draft.kind == "nothing":
+                continue
+            if draft.index == 2:
+                if not self._rotating(nodes).any():
+                    if draft.silent or draft.value[0] == 0.0:
+                        continue
+                    self._no_rotation(draft)
+                    continue
+                if not isinstance(nodes, str):
+                    nodes = nodes[self.targets.rotating[nodes]]
+            value, where = draft.value[0], draft.row.where
+            if draft.order == 2 and any(
+                np.isin(self.mesh.node_indices(v.nodes), self.mesh.node_indices(nodes)).any()
+                for v in self.model.velocities
+            ):
+                self.deck.row_error(
+                    draft.card,
+                    draft.row,
+                    0,
+                    "nodes with a prescribed acceleration start from rest; these have an initial "
+                    "velocity",
+                    "give TYPE=VELOCITY",
+                )
+                continue
+            found.append(Fixed(nodes, draft.index, value, amplitude, where, keep=draft.keep))
+        return found
+
+    def _rotating(self, nodes: str | Ints) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+        indices = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
+        return cast("np.ndarray[tuple[int], np.dtype[np.bool_]]", self.targets.rotating[indices])
+
+    def _no_rotation(self, draft: Draft) -> None:
+        self.deck.row_error(
+            draft.card,
+            draft.row,
+            1,
+            f"{draft.target}: its elements have no rotation (dof 6)",
+            "use elements Q4D or OPT, or map them: --element CPS4=Q4D",
+        )
+
+    def loads(self, draft: Draft) -> list[Load]:
+        if draft.kind == "surface shear":
+            return list(self._shear(draft))
+        if draft.kind == "volume":
+            return list(self._volume_force(draft))
+        load = self._load(draft)
+        return [] if load is None else [load]
+
+    def _shear(self, draft: Draft) -> Iterator[Load]:
+        """Shear along the edges of a surface, towards a direction."""
+        name, amplitude = self._edges_of(draft), self.targets.amplitude(draft)
+        if name is None or amplitude is None:
+            return
+        edges = self.mesh.edge_sets[name] if isinstance(name, str) else name
+        ends = np.array([nodes[:2] for nodes in self.mesh.edge_nodes(edges)])
+        along = self.mesh.points[ends[:, 1]] - self.mesh.points[ends[:, 0]]
+        along = np.asarray(along / np.hypot(along[:, :1], along[:, 1:]), np.float64)
+        size = math.hypot(*draft.value)
+        if size == 0.0:
+            yield EdgeLoad(edges, "shear", (0.0,), amplitude, where=draft.row.where)
+            return
+        share = along @ (np.array(draft.value) / size)
+        if (np.abs(share) < 1e-6).any():
+            self.deck.row_error(
+                draft.card, draft.row, 3, "the direction of the shear is normal to an edge"
+            )
+            return
+        for sign in (-1.0, 1.0):
+            mine = edges[np.sign(share) == sign]
+            if len(mine):
+                yield EdgeLoad(mine, "shear", (sign * size,), amplitude, where=draft.row.where)
+
+    def _load(self, draft: Draft) -> Load | None:
+        amplitude = self.targets.amplitude(draft)
+        where = draft.row.where
+        if draft.kind == "force":
+            nodes = self.targets.nodes(draft)
+            if nodes is None or amplitude is None:
+                return None
+            if draft.index == 2 and not self._rotating(nodes).all():
+                self._no_rotation(draft)
+                return None
+            force = NodalForce(nodes, draft.index, draft.value[0], amplitude, where)
+            force.follower = draft.card.has("FOLLOWER") and self._turns(draft, nodes)
+            return force
+        if draft.kind == "temperature":
+            nodes = self.targets.nodes(draft)
+            if nodes is None or amplitude is None:
+                return None
+            return build_temperature(draft, nodes, amplitude)
+        if draft.kind.startswith("surface "):
+            edges = self._edges_of(draft)
+            if edges is None or amplitude is None:
+                return None
+            kind = draft.kind.removeprefix("surface ")
+            return EdgeLoad(
+                edges,
+                cast("Literal['pressure', 'traction', 'following traction']", kind),
+                draft.value,
+                amplitude,
+                where=where,
+            )
+        return self._cell_load(draft, amplitude)
+
+    def _turns(self, draft: Draft, nodes: str | Ints) -> bool:
+        """Whether a force can turn with its nodes; told where it cannot and should."""
+        if draft.index == 2:
+            return False
+        if self._rotating(nodes).all():
+            return True
+        if any(step.nlgeom for step in self.deck.steps):
+            self.deck.error(
+                draft.card,
+                draft.card.at("FOLLOWER"),
+                f"FOLLOWER: {draft.target} has no rotation to turn with",
+                hint="load the edges: *DSLOAD with P, or TRVEC, which follow them",
+            )
+        else:
+            self.deck.note(
+                f"{draft.card.where}: without NLGEOM a force keeps its direction, FOLLOWER or not"
+            )
+        return False
+
+    def _cell_load(self, draft: Draft, amplitude: str | None) -> Load | None:
+        where, root = draft.row.where, self.meshes.views[0]
+        if not draft.target and draft.kind != "pressure":
+            return None if amplitude is None else self._body(draft, "", amplitude)
+        if numerals.is_integer(draft.target):
+            root = self.targets.numbering(root, draft.target, "cells")
+        found = self.sets.elements(root, draft.target, draft.row.at(0), draft.card, draft.row.text)
+        if found is None or amplitude is None:
+            return None
+        if not len(found.cells):
+            # Lines of a meshing program are no elements here; a set of them alone is empty too.
+            self.deck.row_error(draft.card, draft.row, 0, f"element set {draft.target} is empty")
+            return None
+        if draft.kind == "pressure":
+            edges = self.sets.faces(
+                found.cells, draft.index, draft.card, draft.row.at(1), draft.row.text
+            )
+            if edges is None or not len(edges):
+                return None  # the side of a quadrilateral that is one node
+            return EdgeLoad(edges, "pressure", draft.value, amplitude, where=where)
+        full = self.sets.full_name(self.sets.elsets, root, draft.target)
+        name = self.sets.spelled(self.sets.elsets, full) if full else ""
+        return self._body(draft, name or found.cells, amplitude)
+
+    def _volume_force(self, draft: Draft) -> Iterator[Load]:
+        """A force per volume as gravity: the core takes forces per mass."""
+        amplitude, root = self.targets.amplitude(draft), self.meshes.views[0]
+        cells = np.arange(self.mesh.n_cells)
+        if draft.target:
+            if numerals.is_integer(draft.target):
+                root = self.targets.numbering(root, draft.target, "cells")
+            row = draft.row
+            found = self.sets.elements(root, draft.target, row.at(0), draft.card, row.text)
+            if found is None:
+                return
+            cells = found.cells
+        if amplitude is None:
+            return
+        rho = np.full(self.mesh.n_cells, -1.0)
+        for section in self.model.sections:
+            rho[cells_of(self.mesh, section.cells)] = section.material.rho
+        for density in np.unique(rho[cells]).tolist():
+            if density == 0.0:
+                self.deck.row_error(
+                    draft.card,
+                    draft.row,
+                    1,
+                    "a force per volume is taken per mass, and a material here has no density",
+                    "give *DENSITY; statics does not depend on its value",
+                )
+                return
+            if density > 0.0:
+                value = (draft.value[0] / density, draft.value[1] / density)
+                mine = cells[rho[cells] == density]
+                yield BodyForce(mine, "gravity", value, amplitude, draft.row.where)
+
+    def _edges_of(self, draft: Draft) -> str | Ints | None:
+        """Name of a surface, or edges of one face of elements."""
+        if draft.index < 0:
+            return self._edge_set(draft)
+        root, row = self.meshes.views[0], draft.row
+        if numerals.is_integer(draft.target):
+            root = self.targets.numbering(root, draft.target, "cells")
+        found = self.sets.elements(root, draft.target, row.at(0), draft.card, row.text)
+        if found is None:
+            return None
+        edges = self.sets.faces(found.cells, draft.index, draft.card, row.at(1), row.text)
+        return edges if edges is not None and len(edges) else None
+
+    def _body(self, draft: Draft, cells: str | Ints, amplitude: str) -> BodyForce:
+        kind = cast("Literal['gravity', 'centrifugal']", draft.kind)
+        if kind == "gravity":
+            along = (draft.value[2], draft.value[3]) if len(draft.value) > 2 else None
+            return BodyForce(
+                cells, kind, draft.value[:2], amplitude, draft.row.where, direction=along
+            )
+        return BodyForce(cells, kind, draft.value, amplitude, draft.row.where)
+
+    def _edge_set(self, draft: Draft) -> str | None:
+        name = self.sets.mesh_name(self.mesh.edge_sets, self.targets.at, draft.target)
+        if name:
+            if len(self.mesh.edge_sets[name]):
+                return name
+            self.deck.row_error(draft.card, draft.row, 0, f"surface {name} has no edges")
+            return None
+        self.deck.row_error(
+            draft.card,
+            draft.row,
+            0,
+            f"no surface named {numerals.shown(draft.target)}",
+            nearest(draft.target, self.mesh.edge_sets),
+        )
+        return None

@@ -1,0 +1,261 @@
+"""Sections of a model from those of a deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.io.deck.build.materials import build_material
+from corota.io.deck.build.mesh import View, views_in
+from corota.io.deck.cards.lines import build_lines, truss_section
+from corota.io.deck.deck import nearest
+from corota.io.deck.elements import (
+    ASK,
+    DRILLING,
+    ELEMENTS,
+    LINE_ELEMENTS,
+    LINES,
+    WRITTEN_BY_MESHIO,
+)
+from corota.io.deck.lexer import key
+from corota.model.local_strain import LocalStrain
+from corota.model.sections import Section
+
+if TYPE_CHECKING:
+    from corota.io.deck.build.targets import Targets
+    from corota.io.deck.drafts import SectionDraft
+    from corota.mesh.data import Ints
+    from corota.model.materials import Material
+
+
+#: Cards that give beams and springs their section.
+SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
+
+
+class SectionBuilder:
+    """Gives the cells of a model their sections.
+
+    Parameters
+    ----------
+    targets : Targets
+    """
+
+    def __init__(self, targets: Targets) -> None:
+        self.targets, self.deck, self.sets = targets, targets.deck, targets.sets
+        self.meshes, self.model, self.mesh = targets.meshes, targets.model, targets.mesh
+        #: Thickness of nodes, nan where none is given; worked out where it is wanted.
+        self.nodal: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
+
+    def build(self) -> None:
+        owner = np.full(self.mesh.n_cells, -1, np.int64)
+        drafts = [(view, draft) for view in self.meshes.views for draft in view.scope.sections]
+        materials = {name: build_material(self.deck, m) for name, m in self.deck.materials.items()}
+        for number, (view, draft) in enumerate(drafts):
+            card = draft.card
+            found = self.sets.elements(view, draft.elset, card.at("ELSET"), card)
+            if found is None:
+                continue
+            if len(found.lines) and not len(found.cells):
+                self.deck.error(
+                    card,
+                    card.at("ELSET"),
+                    f"{draft.elset} holds line elements of curves only",
+                    hint="for trusses, put the set and the section beside the elements",
+                )
+                continue
+            taken = found.cells[owner[found.cells] >= 0]
+            if len(taken):
+                first = drafts[int(owner[taken[0]])][1].card.where
+                label = self.mesh.cell_labels[taken[0]]
+                self.deck.error(
+                    card, card.where, f"element {label} already has a section ({first})"
+                )
+                continue
+            owner[found.cells] = number
+            if draft.material and key(draft.material) not in materials:
+                names = [m.name for m in self.deck.materials.values()]
+                self.deck.error(
+                    card,
+                    card.at("MATERIAL"),
+                    f"no material named {draft.material!r}",
+                    hint=nearest(draft.material, names),
+                )
+                continue
+            material = materials[key(draft.material)]
+            if material is not None:
+                self._section(view, draft, found.cells, material)
+        build_lines(
+            self.deck, self.model, self.meshes, self.sets, materials, self.targets.rotating, owner
+        )
+        bare = np.flatnonzero(owner == -1)
+        if len(bare) and (drafts or self.deck.steps):
+            label = self.mesh.cell_labels[bare[0]]
+            more = f" and {len(bare) - 1} others have" if len(bare) > 1 else " has"
+            line_element = LINE_ELEMENTS.get(self.meshes.types[self.meshes.cell_type[bare[0]]])
+            wanted = SECTION_CARDS[line_element.role] if line_element else "*SOLID SECTION"
+            self.deck.error(None, None, f"element {label}{more} no {wanted}", hint="give it one")
+
+    def _section(self, view: View, draft: SectionDraft, cells: Ints, material: Material) -> None:
+        deck, card = self.deck, draft.card
+        angle = 0.0
+        if draft.orientation:
+            tables = (view.scope.orientations, deck.root.orientations)
+            named = next((t for t in tables if key(draft.orientation) in t), None)
+            if named is None:
+                names = [n for t in tables for n in t]
+                deck.error(
+                    card,
+                    card.at("ORIENTATION"),
+                    f"no orientation named {draft.orientation!r}",
+                    hint=nearest(draft.orientation, names),
+                )
+                return
+            angle = named[key(draft.orientation)]
+            if math.isnan(angle):
+                if material.oriented:
+                    text = "axes that turn about a point are not part of this version"
+                    deck.error(
+                        card,
+                        card.at("ORIENTATION"),
+                        text,
+                        hint="give *ORIENTATION, SYSTEM=RECTANGULAR to parts of the body",
+                    )
+                    return
+                deck.note(
+                    f"{card.where}: {card.spelled}: the axes of an isotropic material do "
+                    "not matter; results are in global axes"
+                )
+                angle = 0.0
+            if view.instance is not None:
+                angle += view.instance.angle
+        groups: dict[tuple[str, str], list[Ints]] = {}
+        types = self.meshes.cell_type[cells]
+        for code in np.unique(types):
+            name = self.meshes.types[code]
+            if name in LINES:
+                truss = truss_section(deck, draft, cells[types == code], material)
+                self.model.sections += [truss] if truss else []
+                continue
+            if name in LINE_ELEMENTS:
+                wanted = SECTION_CARDS[LINE_ELEMENTS[name].role]
+                deck.error(card, card.at("ELSET"), f"elements of type {name} take {wanted}")
+                continue
+            info = ELEMENTS[name]
+            ask = info.ask
+            if name in WRITTEN_BY_MESHIO and any("written by meshio" in t for t in deck.heading):
+                info, ask = replace(info, plane=""), ASK
+            if draft.plane and info.plane and draft.plane != info.plane:
+                deck.error(
+                    card,
+                    card.at("PLANE"),
+                    f"{self.meshes.types[code]} elements are in plane {info.plane}; "
+                    f"PLANE={draft.plane.upper()} does not fit",
+                )
+                return
+            mapped = self.deck.element_map.get(name)
+            if ask and not draft.plane and not mapped:
+                deck.error(
+                    card,
+                    card.where,
+                    f"{name} elements: {ask}",
+                    hint=f"or replace them: --element {name}=CPS{info.kind[-1]}",
+                )
+                return
+            plane = draft.plane or info.plane or (mapped[1] if mapped else "") or "stress"
+            element = self._element(self.meshes.types[code])
+            groups.setdefault((element, plane), []).append(cells[types == code])
+        full = self.sets.full_name(self.sets.elsets, view, draft.elset)
+        pieces: list[tuple[str, str, Ints, float]] = [
+            (element, plane, mine, thickness)
+            for (element, plane), parts in groups.items()
+            for mine, thickness in self._thickness(draft, np.sort(np.concatenate(parts)))
+        ]
+        for element, plane, mine, thickness in pieces:
+            if element in DRILLING:
+                for block, row in ((self.mesh.cells[b], r) for b, r in self._rows(mine)):
+                    self.targets.rotating[block.nodes[row]] = True
+            whole = full and len(mine) == len(cells)
+            where = self.sets.spelled(self.sets.elsets, full) if whole else mine
+            try:
+                self.model.sections.append(
+                    Section(
+                        where,
+                        element,
+                        material,
+                        thickness,
+                        cast("Literal['stress', 'strain']", plane),
+                        cast("LocalStrain", draft.local_strain),
+                        angle,
+                        card.where,
+                        mean_dilatation=draft.mean_dilatation,
+                        beta0=draft.beta0,
+                    )
+                )
+            except InputError as error:
+                deck.error(card, card.where, error.message)
+
+    def _thickness(self, draft: SectionDraft, cells: Ints) -> list[tuple[Ints, float]]:
+        """Cells of a section by their thickness: that of the section, or the mean of their nodes.
+
+        As in CalculiX and Abaqus, ``*NODAL THICKNESS`` counts where the section says so.
+        """
+        if not draft.nodal:
+            if self.deck.thicknesses:
+                self.deck.note(
+                    f"{draft.card.where}: {draft.card.spelled} has no NODAL THICKNESS: its own "
+                    "thickness is taken, that of *NODAL THICKNESS is not"
+                )
+            return [(cells, draft.thickness)]
+        if self.nodal is None:
+            self.nodal = np.full(self.mesh.n_nodes, np.nan)
+            for item in self.deck.thicknesses:
+                for view in views_in(self.meshes.views, self.deck, item.card.scope):
+                    self.targets.at = view
+                    nodes = self.targets.nodes(item)
+                    if nodes is not None:
+                        at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
+                        self.nodal[at] = item.value[0]
+            self.targets.at = self.meshes.views[0]
+        values = np.where(np.isnan(self.nodal), draft.thickness, self.nodal)
+        if not self.deck.thicknesses:
+            text = "NODAL THICKNESS is given, and no card *NODAL THICKNESS"
+            self.deck.error(draft.card, draft.card.at("NODALTHICKNESS"), text)
+        mean, spread = np.zeros(len(cells)), 0.0
+        offsets = self.mesh.offsets
+        for number, block in enumerate(self.mesh.cells):
+            inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
+            corners = 3 if block.kind.startswith("tri") else 4
+            own = values[block.nodes[cells[inside] - offsets[number], :corners]]
+            mean[inside] = own.mean(axis=1)
+            spread = max(spread, float(np.ptp(own, axis=1).max(initial=0.0)))
+        if spread > 1e-9 * float(mean.max(initial=1.0)):
+            self.deck.note(
+                f"{draft.card.where}: the thickness differs between the nodes of an element by up "
+                f"to {spread:g}; each element has the mean of its corners"
+            )
+        sizes, group = np.unique(np.round(mean, 12), return_inverse=True)
+        return [(cells[group == i], float(size)) for i, size in enumerate(sizes)]
+
+    def _element(self, type_: str) -> str:
+        mapped = self.deck.element_map.get(type_)
+        own, literal = ELEMENTS[type_].element, ELEMENTS[type_].literal
+        if mapped or not literal:
+            return mapped[0] if mapped else own
+        if self.deck.literal:
+            return literal
+        self.deck.note(
+            f"{type_} becomes {own}, which is more accurate on coarse meshes than one point with "
+            f"a stabilized hourglass ({literal}); --as-written (as_written=True) takes {literal}"
+        )
+        return own
+
+    def _rows(self, cells: Ints) -> list[tuple[int, Ints]]:
+        offsets = self.mesh.offsets
+        inside = [(cells >= a) & (cells < b) for a, b in pairwise(offsets)]
+        return [(i, cells[m] - offsets[i]) for i, m in enumerate(inside) if m.any()]

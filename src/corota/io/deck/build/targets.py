@@ -1,0 +1,118 @@
+"""What the drafts of a deck name: nodes, cells, surfaces and amplitudes of the model."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from corota.io.deck import numerals
+from corota.io.deck.build.mesh import MeshBuilder, View, view_of
+from corota.io.deck.build.sets import Elements, Sets
+from corota.io.deck.deck import nearest
+from corota.io.deck.lexer import key
+from corota.model.model import Model
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.drafts import Draft, TieDraft
+    from corota.mesh.data import Ints
+
+
+class Targets:
+    """Looks up names and numbers in the mesh that a deck made.
+
+    Parameters
+    ----------
+    deck : Deck
+    meshes : MeshBuilder
+    model : Model
+
+    Attributes
+    ----------
+    at : View
+        Part or assembly whose names come first.
+    rotating : ndarray of bool, shape (n_nodes,)
+        Nodes that have a rotation.
+    """
+
+    def __init__(self, deck: Deck, meshes: MeshBuilder, model: Model) -> None:
+        self.deck, self.meshes, self.model, self.mesh = deck, meshes, model, model.mesh
+        self.sets = Sets(meshes, self.mesh)
+        self.at = meshes.views[0]
+        self.rotating = np.zeros(self.mesh.n_nodes, bool)
+
+    def nodes(self, draft: Draft) -> str | Ints | None:
+        """Name in the mesh, or indices, of a target of supports and nodal forces."""
+        target, row = draft.target, draft.row
+        found: tuple[View, str] | None
+        if numerals.is_integer(target):
+            found = (self.numbering(self.at, target, "nodes"), target)
+        else:
+            full = self.sets.full_name(self.sets.nsets, self.at, target)
+            if full:
+                if not len(self.mesh.node_sets.get(self.sets.spelled(self.sets.nsets, full), ())):
+                    self.deck.row_error(draft.card, row, 0, f"node set {target} is empty")
+                    return None
+                return self.sets.spelled(self.sets.nsets, full)
+            name = self.sets.mesh_name(self.mesh.node_sets, self.at, target)
+            if name:
+                return name
+            found = view_of(self.meshes.views, target)
+        if found and numerals.is_label(found[1]):
+            node = found[0].nodes(np.array([int(found[1])]))
+            if node[0] >= 0:
+                return node
+            self.deck.row_error(draft.card, row, 0, f"node {target} is not defined")
+            return None
+        self.deck.row_error(
+            draft.card,
+            row,
+            0,
+            f"no node set named {numerals.shown(target)}",
+            nearest(target, self.mesh.node_sets),
+        )
+        return None
+
+    def numbering(self, view: View, number: str, what: Literal["nodes", "cells"]) -> View:
+        """View whose numbers are meant: the assembly's own, else those of the only instance."""
+        views = self.meshes.views
+        if view is not views[0] or len(views) != 2 or not numerals.is_label(number):
+            return view
+        own = view.nodes if what == "nodes" else view.cells
+        return view if own(np.array([int(number)]))[0] >= 0 else views[1]
+
+    def amplitude(self, draft: Draft) -> str | None:
+        """Name of the amplitude of a draft, empty where it has none; ``None`` after an error."""
+        if not draft.amplitude:
+            return ""
+        found = self.deck.amplitudes.get(key(draft.amplitude))
+        if found is None:
+            names = [a.name for a in self.deck.amplitudes.values()]
+            self.deck.error(
+                draft.card,
+                draft.card.at("AMPLITUDE"),
+                f"no amplitude named {draft.amplitude!r}",
+                hint=nearest(draft.amplitude, names),
+            )
+            draft.amplitude = ""
+            return None
+        return found.name
+
+    def cells_of(self, draft: Draft) -> Elements | None:
+        """Cells that a draft names."""
+        view = self.meshes.views[0]
+        if numerals.is_integer(draft.target):
+            view = self.numbering(view, draft.target, "cells")
+        return self.sets.elements(view, draft.target, draft.row.at(0), draft.card, draft.row.text)
+
+    def tied(self, tie: TieDraft) -> Ints | None:
+        """Nodes of the elements that a constraint names."""
+        return self.sets.nodes_of_elements(self.at, tie.elset, tie.card.at("ELSET"), tie.card)
+
+    def surface_name(self, table: Mapping[str, object], name: str) -> str:
+        """Name in the mesh of a surface, empty where there is none."""
+        return self.sets.mesh_name(table, self.at, name)

@@ -1,0 +1,224 @@
+"""Cards of loads on nodes, edges and bodies."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from corota.io.deck.cards.step import loads_of
+from corota.io.deck.cards.supports import dof_of
+from corota.io.deck.deck import nearest
+from corota.io.deck.drafts import Draft, StepDraft
+from corota.io.deck.lexer import key
+
+if TYPE_CHECKING:
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card, Row
+
+
+_TRACTION = re.compile(r"(TRVEC|TRSHR)(\d{1,9})\Z", re.ASCII)
+
+
+#: Loads that other programs know, and what to give instead.
+_OTHER_LOADS = (
+    (re.compile(r"HP\d?\Z"), "give each edge its mean pressure: P1 to P4, or P on surfaces"),
+    (
+        re.compile(r"(P\d?|BX|BY|TRVEC\d?|TRSHR\d?)NU\Z"),
+        "no user subroutine is called: give values",
+    ),
+    (re.compile(r"(ROTA|CORIO)\Z"), "turn the base by *BOUNDARY, or give BX and BY"),
+    (re.compile(r"ROTDYNF\Z"), "CENTRIF takes the square of the angular velocity"),
+    (re.compile(r"(F|VBF|SBF|SP)\d?\Z"), "give springs by *SPRING, pressures by P1 to P4"),
+)
+
+
+_FACE = re.compile(r"P(\d{1,9})\Z", re.ASCII)
+
+
+def cload(deck: Deck, card: Card) -> None:
+    """``*CLOAD[, OP=][, AMPLITUDE=]``: node or set, dof, value."""
+    now = loads_of(deck, card, "force")
+    if now is None:
+        return
+    for row in card.rows():
+        deck.extra_fields(card, row, 3)
+        dof = dof_of(deck, card, row, 1)
+        value = deck.real(card, row, 2, "the force")
+        if not row.get(0):
+            deck.row_error(card, row, 0, "a node number or a set is missing")
+        if dof is None or value is None or not row.get(0):
+            continue
+        target = row.get(0)
+        if key(target) in deck.rotation_nodes and dof == 3:
+            target, dof = deck.rotation_nodes[key(target)], 6
+        if dof in (3, 4, 5):
+            if value != 0.0:
+                deck.row_error(card, row, 1, f"a planar model takes no load in dof {dof}")
+            continue
+        index = {1: 0, 2: 1, 6: 2}[dof]
+        now.loads.append(
+            Draft("force", card, row, target, (value,), index, card.value("AMPLITUDE"))
+        )
+
+
+def dload(deck: Deck, card: Card) -> None:
+    """``*DLOAD``: pressure on faces, ``GRAV``, ``CENTRIF``."""
+    now = loads_of(deck, card, "distributed")
+    if now is None:
+        return
+    for row in card.rows():
+        label = key(row.get(1))
+        face = _FACE.match(label)
+        if face:
+            _pressure(deck, card, row, int(face.group(1)), now)
+        elif label == "GRAV":
+            _gravity(deck, card, row, now)
+        elif label == "CENTRIF":
+            _centrifugal(deck, card, row, now)
+        elif label in ("BX", "BY"):
+            _volume_force(deck, card, row, label, now)
+        elif traction := _TRACTION.match(label):
+            _edge_traction(deck, card, row, traction.group(1), int(traction.group(2)), now)
+        else:
+            known = "expected P1 to P4, TRVEC1 to 4, TRSHR1 to 4, BX, BY, GRAV or CENTRIF"
+            why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
+            deck.row_error(
+                card,
+                row,
+                1,
+                f"load type {row.get(1)!r} is not part of this version"
+                if why
+                else f"unknown load type {row.get(1)!r}; {known}",
+                why or (nearest(label, ("GRAV", "CENTRIF")) if label else ""),
+            )
+
+
+def _volume_force(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> None:
+    """``BX``, ``BY``: force per volume."""
+    deck.extra_fields(card, row, 3)
+    value = deck.real(card, row, 2, "the force per volume")
+    if value is not None:
+        vector = (value, 0.0) if label == "BX" else (0.0, value)
+        now.loads.append(
+            Draft("volume", card, row, row.get(0), vector, amplitude=card.value("AMPLITUDE"))
+        )
+
+
+def _edge_traction(deck: Deck, card: Card, row: Row, label: str, face: int, now: StepDraft) -> None:
+    """``TRVECn``, ``TRSHRn``: as those of ``*DSLOAD``, on one face of elements."""
+    if not row.get(0):
+        deck.row_error(card, row, 0, "an element number or a set is missing")
+    elif not 1 <= face <= 4:
+        deck.row_error(card, row, 1, f"face {face} does not exist; expected 1 to 4")
+    else:
+        draft = _traction(deck, card, row, label, now)
+        if draft is not None:
+            draft.index = face - 1
+            now.loads.append(draft)
+
+
+def _pressure(deck: Deck, card: Card, row: Row, face: int, now: StepDraft) -> None:
+    deck.extra_fields(card, row, 3)
+    value = deck.real(card, row, 2, "the pressure")
+    if not 1 <= face <= 4:
+        deck.row_error(card, row, 1, f"face P{face} does not exist; expected P1 to P4")
+    elif not row.get(0):
+        deck.row_error(card, row, 0, "an element number or a set is missing")
+    elif value is not None:
+        now.loads.append(
+            Draft("pressure", card, row, row.get(0), (value,), face - 1, card.value("AMPLITUDE"))
+        )
+
+
+def _gravity(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
+    deck.extra_fields(card, row, 6)
+    g = deck.real(card, row, 2, "the acceleration")
+    numbers = [deck.real(card, row, i + 3, text, 0.0) for i, text in enumerate(("nx", "ny", "nz"))]
+    if g is None or None in numbers:
+        return
+    nx, ny, nz = (float(v or 0.0) for v in numbers)
+    size = math.hypot(nx, ny)
+    if nz != 0.0:
+        deck.row_error(card, row, 5, "gravity out of the plane has no effect in a planar model")
+    elif size == 0.0:
+        deck.row_error(card, row, 3, "the direction of gravity is zero")
+    else:
+        # A size that is not positive still has the direction that it was given.
+        value = (g * nx / size, g * ny / size, *((nx / size, ny / size) if g <= 0.0 else ()))
+        now.loads.append(
+            Draft("gravity", card, row, row.get(0), value, amplitude=card.value("AMPLITUDE"))
+        )
+
+
+def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
+    deck.extra_fields(card, row, 9)
+    square = deck.real(card, row, 2, "the square of the angular velocity")
+    names = ("x", "y", "z", "nx", "ny", "nz")
+    numbers = [deck.real(card, row, i + 3, name, 0.0) for i, name in enumerate(names)]
+    if square is None or None in numbers:
+        return
+    x, y, _, nx, ny, nz = (float(v or 0.0) for v in numbers)
+    if square < 0.0:
+        deck.row_error(card, row, 2, "the square of the angular velocity must be >= 0")
+    elif nz == 0.0 or nx != 0.0 or ny != 0.0:
+        deck.row_error(card, row, 6, "the axis must be normal to the plane: 0, 0, 1")
+    else:
+        value = (square, x, y)
+        now.loads.append(
+            Draft("centrifugal", card, row, row.get(0), value, amplitude=card.value("AMPLITUDE"))
+        )
+
+
+def dsload(deck: Deck, card: Card) -> None:
+    """``*DSLOAD``: surface, ``P``, pressure; or ``TRVEC`` or ``TRSHR``, size, direction."""
+    now = loads_of(deck, card, "distributed")
+    if now is None:
+        return
+    for row in card.rows():
+        label = key(row.get(1))
+        if label == "P":
+            value = deck.real(card, row, 2, "the size of the load")
+            deck.extra_fields(card, row, 3)
+            if value is not None:
+                amplitude = card.value("AMPLITUDE")
+                now.loads.append(
+                    Draft("surface pressure", card, row, row.get(0), (value,), -1, amplitude)
+                )
+        elif label in ("TRVEC", "TRSHR"):
+            draft = _traction(deck, card, row, label, now)
+            if draft is not None:
+                now.loads.append(draft)
+        else:
+            why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
+            deck.row_error(
+                card, row, 1, f"unknown load type {row.get(1)!r}; expected P, TRVEC or TRSHR", why
+            )
+
+
+def _traction(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> Draft | None:
+    """Size and direction of ``TRVEC`` or ``TRSHR``; ``None`` after an error."""
+    follower = deck.choice(card, "FOLLOWER", ("YES", "NO", ""), "YES") != "NO"
+    kinds = {
+        "TRSHR": "surface shear",
+        "TRVEC": "surface following traction" if follower else "surface traction",
+    }
+    deck.extra_fields(card, row, 6)
+    value = deck.real(card, row, 2, "the size of the load")
+    x = deck.real(card, row, 3, "the direction x", 0.0)
+    y = deck.real(card, row, 4, "the direction y", 0.0)
+    if value is None or x is None or y is None:
+        return None
+    size = math.hypot(x, y)
+    if label == "TRSHR" and not follower:
+        text = "a shear traction follows the surface: FOLLOWER=NO belongs to TRVEC"
+        deck.error(card, card.at("FOLLOWER"), text)
+        return None
+    if size == 0.0:
+        deck.row_error(card, row, 3, "the direction of the traction is zero")
+        return None
+    vector = (value * x / size, value * y / size)
+    return Draft(kinds[label], card, row, row.get(0), vector, -1, card.value("AMPLITUDE"))

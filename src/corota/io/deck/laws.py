@@ -1,0 +1,118 @@
+"""The table of material laws of decks: their constants, what they make and how they are written."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.model.materials import Elastic, Orthotropic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from corota.model.materials import Material
+
+
+@dataclass(frozen=True)
+class DeckLaw:
+    """A law whose card holds its constants.
+
+    Parameters
+    ----------
+    card : str
+        The card with its parameters.
+    constants : tuple of str
+        Names of the constants in the order of the data lines.
+    make : callable
+        Gives the material from the constants and, by keyword, what all materials have.
+    per_row : int
+        Constants on a data line.
+    optional : int
+        Constants at the end that may be left out; they are zero.
+    follows_temperature : bool
+        Whether constants for several temperatures are read.
+    writes : type of Material, optional
+        The materials that are written by this card.
+    values : callable, optional
+        Gives the constants of such a material.
+    """
+
+    card: str
+    constants: tuple[str, ...]
+    make: Callable[..., Material]
+    per_row: int = 8
+    optional: int = 0
+    follows_temperature: bool = False
+    writes: type[Material] | None = None
+    values: Callable[[Any], Sequence[float]] | None = None
+
+
+def _lamina(e1: float, e2: float, nu12: float, g12: float, *_: float, **common: Any) -> Material:
+    # A lamina says nothing of the third direction: it is taken as the second one.
+    return Orthotropic(e1, e2, e2, nu12, nu12, 0.0, g12, **common)
+
+
+def _engineering(*constants: float, **common: Any) -> Material:
+    return Orthotropic(*constants[:7], **common)
+
+
+def _stiffness(*constants: float, **common: Any) -> Material:
+    """From D1111, D1122, D2222, D1133, D2233, D3333, D1212."""
+    d11, d12, d22, d13, d23, d33, g12 = constants[:7]
+    stiffness = np.array([[d11, d12, d13], [d12, d22, d23], [d13, d23, d33]])
+    if not np.all(np.linalg.eigvalsh(stiffness) > 0.0):
+        raise InputError("the stiffness is not positive definite", common["where"])
+    s = np.linalg.inv(stiffness)
+    e1, e2, e3 = 1.0 / np.diag(s)
+    constants = (e1, e2, e3, -s[0, 1] * e1, -s[0, 2] * e1, -s[1, 2] * e2, g12)
+    return Orthotropic(*constants, **common)
+
+
+#: Laws by the name that drafts have; those of ``*ELASTIC`` by its ``TYPE=``.
+LAWS: dict[str, DeckLaw] = {
+    "ISOTROPIC": DeckLaw(
+        "ELASTIC",
+        ("Young's modulus", "Poisson's ratio"),
+        Elastic,
+        per_row=2,
+        optional=1,
+        follows_temperature=True,
+        writes=Elastic,
+        values=lambda m: (m.E, m.nu),
+    ),
+    "LAMINA": DeckLaw(
+        "ELASTIC, TYPE=LAMINA", ("E1", "E2", "nu12", "G12", "G13", "G23"), _lamina, optional=2
+    ),
+    "ENGINEERINGCONSTANTS": DeckLaw(
+        "ELASTIC, TYPE=ENGINEERING CONSTANTS",
+        ("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"),
+        _engineering,
+        optional=2,
+        writes=Orthotropic,
+        values=lambda m: (*m.parameters()[:7], m.G12, m.G12),
+    ),
+    "ORTHOTROPIC": DeckLaw(
+        "ELASTIC, TYPE=ORTHO",
+        ("D1111", "D1122", "D2222", "D1133", "D2233", "D3333", "D1212", "D1313", "D2323"),
+        _stiffness,
+        optional=2,
+    ),
+}
+
+
+def law_cards(material: Material, number: Callable[[float], str]) -> str | None:
+    """The card of a material's law; ``None`` where there is none."""
+    law = next((law for law in LAWS.values() if law.writes is type(material)), None)
+    if law is None:
+        return None
+    assert law.values is not None
+    values = [number(v) for v in law.values(material)]
+    rows = [values[i : i + law.per_row] for i in range(0, len(values), law.per_row)]
+    return f"*{law.card}\n" + "".join(", ".join(row) + "\n" for row in rows)
+
+
+__all__ = ["LAWS", "DeckLaw", "law_cards"]

@@ -1,0 +1,121 @@
+"""A queue of tasks that a thread of its own does: its length is bounded by bytes."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: Time between two looks at the queue [s].
+BEAT = 0.25
+#: Bytes that may wait.
+MOST_WAITING = 64 << 20
+
+
+class TaskQueue:
+    """Tasks in their order. Before it is started each one is done at once.
+
+    Parameters
+    ----------
+    flush : callable
+        Called after large tasks, before the thread sleeps.
+
+    Attributes
+    ----------
+    error : Exception or None
+        The first one; the tasks after it are dropped.
+    seconds : float
+        Processor time of the thread.
+    """
+
+    def __init__(self, flush: Callable[[], None]) -> None:
+        self.error: Exception | None = None
+        self.seconds = 0.0
+        self._flush = flush
+        self._tasks: deque[tuple[Callable[[], None], int]] = deque()
+        self._waiting = 0
+        self._wake, self._free = threading.Event(), threading.Condition()
+        self._stop = False
+        self._thread: threading.Thread | None = None
+        self._busy_until = 0.0
+
+    def start(self) -> None:
+        """Let a thread do what comes."""
+        self._stop = False
+        self._thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
+        self._thread.start()
+
+    def put(self, task: Callable[[], None], size: int = 200) -> None:
+        """Add a task that holds so many bytes.
+
+        Raises
+        ------
+        Exception
+            Of a task before.
+        """
+        if self.error is not None:
+            raise self.error
+        if self._thread is None:
+            task()
+            return
+        with self._free:
+            while self._waiting > MOST_WAITING and self.error is None:
+                self._wake.set()
+                self._free.wait(1.0)
+            self._waiting += size
+        self._tasks.append((task, size))
+        if time.perf_counter() >= self._busy_until:
+            self._wake.set()
+
+    def attempt(self, task: Callable[[], None]) -> None:
+        """Do a task at once, and keep its error."""
+        try:
+            task()
+        except Exception as error:  # the first error is the one to report
+            self.error = self.error or error
+
+    def drain(self) -> None:
+        """Do everything that waits, and end the thread."""
+        if self._thread is None:
+            return
+        self._stop = True
+        self._wake.set()
+        self._thread.join()
+        self._thread = None
+        while self._tasks:
+            self._empty()
+
+    def _work(self) -> None:
+        while not self._stop or self._tasks:
+            if not self._stop:
+                self._wake.wait(BEAT if self._tasks else None)
+            self._wake.clear()
+            self._busy_until = time.perf_counter() + BEAT
+            self._empty()
+
+    def _empty(self) -> None:
+        begin, done, large = time.thread_time(), 0, False
+        late = time.perf_counter() + BEAT
+        while self._tasks:
+            task, size = self._tasks.popleft()
+            if self.error is None:
+                self.attempt(task)
+            done += size
+            large = large or size > 200
+            # An analysis that goes on faster than this must not keep the files from the disk.
+            if done > MOST_WAITING // 4 or time.perf_counter() > late:
+                break
+        if large and self.error is None:
+            self.attempt(self._flush)
+        with self._free:
+            self._waiting -= done
+            self._free.notify_all()
+        self.seconds += time.thread_time() - begin
+
+
+__all__ = ["TaskQueue"]

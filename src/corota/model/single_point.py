@@ -1,0 +1,114 @@
+"""Plastic laws of the core at a single point: strain paths and uniaxial curves."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.model.materials import Material
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+
+class LawOfTheCore(Material):
+    """A plastic law that can be tried at a single point."""
+
+    E: float
+
+    flows = True
+
+    @property
+    def first_yield(self) -> float:
+        """Uniaxial stress where plastic strain begins or is first felt [force/length^2]."""
+        raise NotImplementedError
+
+    def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
+        """Answer of a single point to a strain path, one implicit step per row.
+
+        Parameters
+        ----------
+        strain : array_like, shape (n, 3)
+            Rows xx, yy, xy (engineering shear).
+        plane : {"stress", "strain"}
+
+        Returns
+        -------
+        dict of ndarray
+            ``stress`` (n, 3), ``tangent`` (n, 3, 3), ``zz`` (n, 2; strain and stress through
+            the thickness), ``PEEQ``, ``YRATIO``, ``PWORK``, ``PDISS`` (n,).
+        """
+        from corota import _core
+
+        path = np.ascontiguousarray(np.atleast_2d(np.asarray(strain, float)))
+        n = len(path)
+        raw: dict[str, Any] = _core.material_path(
+            self.law, self.parameters(), plane, path, np.zeros(0)
+        )
+        shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
+        shapes["state"] = (n, -1)
+        return {key: values.reshape(shapes.get(key, (n,))) for key, values in raw.items()}
+
+    def uniaxial(self, strain: ArrayLike) -> Floats:
+        """Uniaxial stress along a path of axial strains.
+
+        Parameters
+        ----------
+        strain : array_like, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Axial stress [force/length^2]; the transverse one is zero.
+        """
+        from corota import _core
+
+        state = np.zeros(0)
+        side = 0.0
+        out = []
+        for axial in np.asarray(strain, float):
+            for _ in range(50):
+                point = np.array([[axial, side, 0.0]])
+                raw = _core.material_path(self.law, self.parameters(), "stress", point, state)
+                step = raw["stress"][1] / raw["tangent"][4]
+                if abs(raw["stress"][1]) <= 1e-12 * (abs(raw["stress"][0]) + 1e-12 * self.E):
+                    break
+                side -= step
+            state = raw["state"]
+            out.append(raw["stress"][0])
+        return np.array(out)
+
+    def plot_uniaxial(self, strain: ArrayLike | None = None, ax: Any = None) -> Any:
+        """Draw uniaxial stress against strain.
+
+        Parameters
+        ----------
+        strain : array_like, shape (n,), optional
+            Path of axial strains; by default one loop over ten times the yield strain.
+        ax : matplotlib.axes.Axes, optional
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        import matplotlib.pyplot as plt
+
+        if strain is None:
+            top = 10.0 * self.first_yield / self.E
+            strain = np.concatenate(
+                [np.linspace(0, top, 60), np.linspace(top, -top, 120), np.linspace(-top, top, 120)]
+            )
+        path = np.asarray(strain, float)
+        ax = ax or plt.figure().add_subplot()
+        ax.plot(path, self.uniaxial(path))
+        ax.set_xlabel("strain")
+        ax.set_ylabel("stress [force/length^2]")
+        ax.set_title(self.name or "uniaxial answer")
+        return ax
+
+
+__all__ = ["LawOfTheCore"]
