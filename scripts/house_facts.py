@@ -147,8 +147,8 @@ FACTS: dict[str, Callable[[Path], int]] = {
     "`contact_term is (not) None` outside `terms/contact`": lambda t: lines_with(
         t, r"contact_term is (not )?None", r"^analysis/terms/contact/"
     ),
-    "`contact_term.acts`, `.pairs` or `.opens` outside `terms/contact`": lambda t: lines_with(
-        t, r"contact_term\.(acts|pairs|opens)", r"^analysis/terms/contact/"
+    "`contact_term.joins`, `.pairs` or `.opens` outside `terms/contact`": lambda t: lines_with(
+        t, r"contact_term\.(joins|acts|pairs|opens)", r"^analysis/terms/contact/"
     ),
     "element names in conditions": lambda t: names_in_conditions(t, ELEMENT_NAME),
     "law names in conditions": lambda t: lines_with(t, r"law (==|!=) \"", r"^io/deck/"),

@@ -11,11 +11,14 @@ import pytest
 import scipy.sparse as sp
 
 import corota as ct
+from corota.analysis.evaluation import Evaluation
 from corota.analysis.linear.solvers import SOLVERS
+from corota.analysis.terms.term import TERMS, StatePoint, Term
 from corota.errors import InputError
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.keywords import KEYWORDS, Keyword
 from corota.io.writers import WRITERS
+from corota.mesh.data import Cells
 from corota.model.schemes import SCHEMES, Scheme
 from corota.results.derived import DERIVED, Derived
 
@@ -124,6 +127,78 @@ def test_python_plasticity_gives_what_mises_of_the_core_gives(scheme: str) -> No
     core, own = (np.array([f.U for f in r.frames]) for r in found)
     assert max(found[0].history("PEEQ")) > 0.005
     assert own == pytest.approx(core, abs=1e-6 * np.abs(core).max())
+
+
+# -- terms of the equation -------------------------------------------------------------------
+
+
+class Bedding(Term):
+    """Springs from the nodes of a set to the ground, in both directions."""
+
+    name = "bedding"
+
+    def __init__(self, system: Any, nodes: str, stiffness: float) -> None:
+        self.system, self.stiffness = system, stiffness
+        found = system.model.mesh.nodes_of(nodes)
+        self.dofs = np.concatenate([system.dofs(found, 0), system.dofs(found, 1)])
+        self.u, self.last = np.zeros((2, system.n_dofs))
+
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        force = np.zeros(self.system.n_dofs)
+        force[self.dofs] = self.stiffness * point.u[self.dofs]
+        at.internal = at.internal + force
+        at.scale += np.abs(force)
+        if len(at.values):
+            at.values[self.system.pattern.diagonal[self.dofs]] += point.weights[0] * self.stiffness
+        self.last = point.u if point.between is None else point.between[1]
+
+    def commit(self) -> None:
+        self.u = self.last.copy()
+
+    def energies(self) -> dict[str, float]:
+        return {"ALLSE": 0.5 * self.stiffness * float(self.u[self.dofs] @ self.u[self.dofs])}
+
+
+def bedded(monkeypatch: pytest.MonkeyPatch, own: bool) -> ct.Model:
+    """A free strip 4 x 1 on its bottom's springs: of a term, or as elements."""
+    mesh = ct.mesh.rectangle(4.0, 1.0, 4, 1)
+    springs = [np.arange(100 * i, 100 * i + 5) for i in (1, 2)]
+    if own:
+        monkeypatch.setitem(TERMS, "bedding", lambda system: Bedding(system, "bottom", 30.0))
+    else:
+        monkeypatch.delitem(TERMS, "bedding", raising=False)
+        mesh.cells += [Cells("point1", np.arange(5)[:, None], labels) for labels in springs]
+    model = ct.Model(mesh)
+    model.section(np.arange(4), element="Q4I", material=elastic(1e-3))
+    if not own:
+        model.spring(np.arange(4, 9), 30.0, "x")
+        model.spring(np.arange(9, 14), 30.0, "y")
+    return model
+
+
+@pytest.mark.parametrize("kind", ["static", "newmark", "hht", "energy_momentum", "frequency"])
+def test_term_of_the_equation(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+    """Springs as a term beside springs as elements: displacements, energy, frequencies."""
+    found = []
+    for own in (True, False):
+        model = bedded(monkeypatch, own)
+        step: Any = ct.Static(increments=3)
+        if kind == "frequency":
+            results = ct.solve(model, ct.Frequency(modes=4), threads=1)
+            found.append((results.modes[0].factors, np.zeros(1)))
+            continue
+        if kind == "static":
+            model.force([0, 4], y=-8.0)
+        else:
+            model.velocity("top", x=20.0)
+            step = ct.Dynamic(period=0.2, increments=20, scheme=kind, tolerance=1e-12)
+        results = ct.solve(model, step, threads=1)
+        energy = np.array([results.history("ALLSE"), results.history("ETOTAL")])
+        found.append((np.array([f.U for f in results.frames]), energy))
+    (one, energy), (two, other) = found
+    size = np.abs(two).max()
+    assert one == pytest.approx(two, abs=1e-8 * size)
+    assert energy == pytest.approx(other, abs=1e-8 * max(np.abs(other).max(), 1e-300))
 
 
 # -- contact -------------------------------------------------------------------------------

@@ -127,14 +127,18 @@ class Energies:
 
         `sums` are those of the elements; without them the work of their forces counts.
         """
+        terms: dict[str, float] = {}
+        for term in self.system.terms:
+            terms |= {k: terms.get(k, 0.0) + v for k, v in term.energies().items()}
+        stored = terms.pop("ALLSE", 0.0)
         inside = (
             {"ALLIE": self.internal, "ALLTH": 0.0}
             if sums is None
             else {
-                "ALLSE": sums["strain energy"] - sums["artificial energy"],
+                "ALLSE": sums["strain energy"] - sums["artificial energy"] + stored,
                 "ALLPD": sums["plastic work"],
                 "ALLAE": sums["artificial energy"],
-                "ALLIE": sums["strain energy"] + sums["plastic work"],
+                "ALLIE": sums["strain energy"] + sums["plastic work"] + stored,
                 "ALLTH": sums["thermal work"],
             }
         )
@@ -142,7 +146,7 @@ class Energies:
             **inside,
             "ALLKE": self.kinetic,
             "ALLVD": self.viscous,
-            **self.system.contact_term.energies(),
+            **terms,
             "ALLWK": self.work,
         }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
@@ -178,7 +182,7 @@ class Energies:
     def made_by_contact(self) -> bool:
         """Whether impacts have made more energy than rounding and increments explain."""
         implicit = self.scheme in ("newmark", "hht", "generalized_alpha")
-        return implicit and self.system.contact_term.opens and self.error > LARGE_ERROR
+        return implicit and self.system.opens and self.error > LARGE_ERROR
 
     def remark(self) -> str:
         """What to say of the largest error, empty where it is small."""
@@ -189,7 +193,7 @@ class Energies:
             f"energy balance: {abs(self.error):.1%} of the largest energy is {verb} by step "
             f"{self.where[0]}, increment {self.where[1]} (ETOTAL): "
         )
-        impacts = self.system.contact_term.opens
+        impacts = self.system.opens
         if self.scheme == "energy_momentum" or (self.scheme == "newmark" and not impacts):
             return text + "use smaller increments"
         if self.scheme in ("newmark", "hht", "generalized_alpha"):

@@ -15,19 +15,21 @@ import numpy as np
 from corota.analysis.evaluation import Evaluation
 from corota.analysis.free_motion import name_motion
 from corota.analysis.linear.unsymmetric import FullMatrix
-from corota.analysis.newton import ElementFailure, ResidualNorms
+from corota.analysis.newton import ResidualNorms
 from corota.analysis.numbered_model import NumberedModel
 from corota.analysis.recovery import recover
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.contact.contact import ContactTerm
-from corota.analysis.terms.user_material import NO_NUMBER
+from corota.analysis.terms.elements import Elements
+from corota.analysis.terms.term import TERMS, StatePoint
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.terms.term import Term
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import PointFields
@@ -53,7 +55,11 @@ class System(NumberedModel):
     def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
         super().__init__(model, solver, threads)
         self.conditions = Conditions(self)
+        self.elements = Elements(self, self.conditions)
         self.contact_term = ContactTerm(self)
+        more = [term for make in TERMS.values() if (term := make(self)) is not None]
+        #: All terms of the equation but those of a motion; the elements come first.
+        self.terms: list[Term] = [self.elements, self.conditions, *more, self.contact_term]
         #: Whether the structure without its loads was seen to have no free motion in this step.
         self.free_motion_excluded = False
         self.scales = Scales(self, self.conditions, self.contact_term)
@@ -64,6 +70,16 @@ class System(NumberedModel):
         """Dofs that supports prescribe, shape (n_dofs,)."""
         return self.conditions.constrained
 
+    @property
+    def joined(self) -> bool:
+        """Whether terms hold bodies that supports do not."""
+        return any(term.joins for term in self.terms)
+
+    @property
+    def opens(self) -> bool:
+        """Whether forces of terms may begin and end within an increment."""
+        return any(term.opens for term in self.terms)
+
     # -- evaluation --------------------------------------------------------------------
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
@@ -71,10 +87,10 @@ class System(NumberedModel):
         self.nlgeom = step.nlgeom
         self.constraints.set_nlgeom(step.nlgeom)
         self.constraints.complete(u)
-        self.conditions.begin(step, time, u, reaction)
+        for term in self.terms:
+            term.begin(step, time, u, reaction)
         self.scales.begin(getattr(step, "tolerance", 1e-9), u)
         self.free_motion_excluded = False
-        self.contact_term.begin(step)
 
     def borrow_tangent(self) -> Floats:
         """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
@@ -94,19 +110,27 @@ class System(NumberedModel):
         ElementFailure
             If an element turned inside out or its material did not converge.
         """
-        internal, scale, values = (
-            np.empty(self.n_dofs),
-            np.empty(self.n_dofs),
-            self.borrow_tangent(),
-        )
         self.constraints.complete(u)
-        self.set_temperatures(step_time)
-        self._assemble(u, internal, scale, values)
-        if not self.scales.stiffest:
-            self.scales.measure(values)
-        external, stiffness = self.conditions.external(step_time, u, values)
-        link = self.constraints.link(u)
-        return Evaluation(self.at_nodes(internal), external, scale, values, stiffness, link)
+        at = self.blank(self.borrow_tangent())
+        self._add_terms(StatePoint(u, step_time), at)
+        at.link = self.constraints.link(u)
+        return at
+
+    def blank(self, values: Floats) -> Evaluation:
+        """An evaluation to be filled; `values` is the memory of its tangent."""
+        return Evaluation(np.empty(self.n_dofs), NOWHERE, np.empty(self.n_dofs), values)
+
+    def _add_terms(self, point: StatePoint, at: Evaluation) -> None:
+        """Add all terms that act on displacements alone; contact has unknowns of its own."""
+        self.elements.add(point, at)
+        if not self.scales.stiffest and len(at.values):
+            self.scales.measure(at.values)
+        self.add_others(point, at)
+
+    def add_others(self, point: StatePoint, at: Evaluation) -> None:
+        """Add the terms beside the elements."""
+        for term in self.terms[1:-1]:
+            term.add(point, at)
 
     def with_loads(self, at: Evaluation, u: Floats, step_time: float) -> Evaluation:
         """An evaluation at `u` with the loads of another time; its tangent is a copy."""
@@ -117,33 +141,17 @@ class System(NumberedModel):
 
     def forces(self, u: Floats, step_time: float) -> Evaluation:
         """Forces at a state without the tangent."""
-        internal, scale = np.empty(self.n_dofs), np.empty(self.n_dofs)
-        self.set_temperatures(step_time)
-        self._assemble(u, internal, scale, NOWHERE)
-        external = self.conditions.external(step_time, u)[0]
-        return Evaluation(self.at_nodes(internal), external, scale, NOWHERE)
-
-    def _assemble(self, u: Floats, internal: Floats, scale: Floats, values: Floats) -> None:
-        """Forces of the elements in global axes and, unless it is empty, the tangent."""
-        here = self.in_space(u)
-
-        def assemble() -> None:
-            self.core.assemble(here, self.nlgeom, internal, scale, values)
-
-        try:
-            with self.timed("assemble"):
-                self.user.assemble(here, self.nlgeom, assemble)
-        except RuntimeError as error:
-            raise failure(self._labels(error.args[1]), error.args[0]) from None
+        at = self.blank(NOWHERE)
+        self._add_terms(StatePoint(u, step_time), at)
+        return at
 
     def reaction(self, at: Evaluation) -> Floats:
         """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
         return at.reaction
 
-    def set_temperatures(self, step_time: float) -> None:
-        """Give the elements the thermal strain of a time of the step."""
-        if self.free.expands:
-            self.free.apply(self.conditions.temperatures(step_time))
+    def holds(self, step_time: float) -> bool:
+        """Whether an evaluation is that of another step time, loads apart."""
+        return all(term.holds(step_time) for term in self.terms)
 
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of held dofs per unit of load factor, shapes (n_dofs,)."""
@@ -153,19 +161,11 @@ class System(NumberedModel):
         """Size of the residual against its scale; see :class:`corota.analysis.scales.Scales`."""
         return self.scales.residual_norms(at, u)
 
-    def plastic_increment(self) -> float:
-        """Largest growth of the equivalent plastic strain since the last commit."""
-        return max(float(self.core.plastic_increment()), self.user.plastic_increment())
-
     def commit(self) -> None:
         """Accept the last evaluated state."""
-        self.core.commit()
-        self.user.commit()
+        for term in self.terms:
+            term.commit()
         self.scales.commit()
-
-    def _labels(self, failed: list[tuple[int, int]]) -> list[int]:
-        labels = self.model.mesh.cell_labels
-        return [int(labels[self.blocks[b].cells[e]]) for b, e in failed]
 
     # -- linear algebra ----------------------------------------------------------------
 
@@ -323,14 +323,7 @@ class System(NumberedModel):
 
     def recover(self, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
         """Fields at the quadrature points, and sums over them."""
-        return recover(self, u)
+        return recover(self, self.elements.user, u)
 
 
-def failure(labels: list[int], why: str = "") -> ElementFailure:
-    """Name the elements that failed."""
-    shown = ", ".join(str(n) for n in labels[:5]) + (", ..." if len(labels) > 5 else "")
-    known = why if why == NO_NUMBER else "turned inside out or not converged"
-    return ElementFailure(f"{known}: element {shown}")
-
-
-__all__ = ["System", "failure"]
+__all__ = ["System"]

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from corota.analysis.constraints.elimination import LinearizedConstraints
@@ -36,6 +37,10 @@ class Evaluation:
         The constraints linearised at the state.
     added : ndarray, shape (n_dofs,), or None
         What damping added to the diagonal of the tangent: no stiffness.
+    inertia, damping : ndarray, shape (n_dofs,), or None
+        Forces of a motion. The equation adds them to those of the displacement.
+    contact : ContactState or None
+        Of pairs and ties, once their term has been added.
     heft, momentum : float
         In motion: inertia per displacement [force/length], and the largest of the terms of
         which the acceleration is a difference [force].
@@ -48,6 +53,9 @@ class Evaluation:
     load_stiffness: tuple[Ints, Ints, Floats] | None = None
     link: LinearizedConstraints = IDENTITY
     added: Floats | None = None
+    inertia: Floats | None = None
+    damping: Floats | None = None
+    contact: Any = None
     heft: float = 0.0
     momentum: float = 0.0
 
@@ -55,6 +63,21 @@ class Evaluation:
     def residual(self) -> Floats:
         """Internal minus external force, shape (n_dofs,)."""
         return self.internal - self.external
+
+    def weigh(self, share: float) -> None:
+        """Multiply the tangent, in place."""
+        self.values *= share
+        if self.load_stiffness is not None:
+            rows, columns, values = self.load_stiffness
+            self.load_stiffness = (rows, columns, share * values)
+
+    def add_load_stiffness(self, rows: Ints, columns: Ints, values: Floats) -> None:
+        """Add triplets to the derivative of the external force."""
+        if self.load_stiffness is not None:
+            i, j, before = self.load_stiffness
+            rows, columns = np.concatenate([i, rows]), np.concatenate([j, columns])
+            values = np.concatenate([before, values])
+        self.load_stiffness = (rows, columns, values)
 
     @property
     def reaction(self) -> Floats:

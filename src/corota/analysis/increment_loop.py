@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
+from corota.analysis.increments import Increments
 from corota.errors import ConvergenceError, Interrupted
 from corota.results.observer import Iteration
 
@@ -21,12 +22,11 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.increments import Increments
     from corota.analysis.newton import Outcome, ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.analysis.terms.contact.newton import ContactIncrement
-    from corota.model.steps import Step
+    from corota.model.steps import Dynamic, Static, Step
 
     Save = Callable[[State, int, float, dict[str, float]], None]
     Report = Callable[[int, ResidualNorms, float, str], None]
@@ -223,15 +223,17 @@ class NewtonStepper(ABC):
     Parameters
     ----------
     loop : IncrementLoop
-    control : Increments
-        Size of the increments.
+    step : Static or Dynamic
+    stops : list of float
+        Step times that must be hit exactly.
     """
 
     kind = ""
     advice = MORE_OR_LONGER
 
-    def __init__(self, loop: IncrementLoop, control: Increments) -> None:
-        self.loop, self.control = loop, control
+    def __init__(self, loop: IncrementLoop, step: Static | Dynamic, stops: list[float]) -> None:
+        self.loop, self.control = loop, Increments(step, stops)
+        self.system, self.state = loop.system, loop.state
 
     @property
     def finished(self) -> bool:

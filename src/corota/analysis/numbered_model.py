@@ -19,7 +19,6 @@ from corota.analysis.linear.system import LinearSystem
 from corota.analysis.memory import require_model
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains
-from corota.analysis.terms.user_material import UserBlocks
 from corota.errors import ModelError
 from corota.model import elements
 
@@ -77,7 +76,6 @@ class NumberedModel:
         except ValueError as error:
             raise ModelError(str(error)) from None
         self.core.set_threads(threads)
-        self.user = UserBlocks(self.core, self.blocks)
         self.free = FreeStrains(self.core, model, self.blocks)
         self.n_dofs: int = self.core.n_dofs
         self.start = self.core.dof_start.astype(np.int64)

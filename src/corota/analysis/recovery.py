@@ -15,12 +15,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.user_material import UserBlocks
     from corota.model.materials import Material
 
     Floats = NDArray[np.float64]
 
 
-def recover(system: NumberedModel, u: Floats) -> tuple[list[PointFields], dict[str, float]]:
+def recover(
+    system: NumberedModel, user: UserBlocks, u: Floats
+) -> tuple[list[PointFields], dict[str, float]]:
     """Fields at the quadrature points, and sums over them."""
     fields, energy = [], 0.0
     largest: tuple[float, Material | None] = (0.0, None)
@@ -46,7 +49,7 @@ def recover(system: NumberedModel, u: Floats) -> tuple[list[PointFields], dict[s
             plastic += float(np.einsum("ep,ep->", work, own["volume"]))
         if "heat" in own:
             system.free.record(index, own["heat"], own["volume"])
-        stored, lost = system.user.energies(index, own["values"]["ENER"], own["volume"])
+        stored, lost = user.energies(index, own["values"]["ENER"], own["volume"])
         energy, plastic = energy + stored, plastic + lost
         section, strain = block.section, float(own["largest_strain"])
         if system.nlgeom and section.local_strain == "linear" and strain > largest[0]:

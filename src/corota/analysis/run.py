@@ -405,7 +405,7 @@ class Analysis:
         contact, sums, pairs = contact_output(system.contact_term)
         scalars = {**scalars, **sums}
         held = None
-        if state.reaction is None and state.at is not None and state.at.link is not None:
+        if state.reaction is None:
             held = system.by_node(state.at.residual - system.reaction(state.at))
         frame = Frame(
             number,

@@ -192,7 +192,7 @@ class Scales:
         What is held moves at most as its supports and its own deformation do.
         """
         system = self.system
-        if not self._bodies or not (system.nlgeom or self.contact_term.acts):
+        if not self._bodies or not (system.nlgeom or self.contact_term.joins):
             return ""
         begun = np.zeros(system.n_dofs) if self._begun is None else self._begun
         moved = np.where(system.is_rotation, 0.0, np.abs(u[: system.n_dofs] - begun))

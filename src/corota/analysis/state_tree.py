@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.linear.triplets import arrays_of
 from corota.errors import CorotaError
 
 if TYPE_CHECKING:
@@ -190,11 +191,10 @@ class Writer:
         return len(self.arrays) - 1
 
     def _sparse(self, value: Any) -> dict[str, Any]:
-        names = ("row", "col", "data") if value.format == "coo" else ("indptr", "indices", "data")
         return {
             "sparse": type(value).__name__,
             "shape": list(value.shape),
-            "parts": [self._array(getattr(value, name)) for name in names],
+            "parts": [self._array(part) for part in arrays_of(value)],
             "sorted": bool(getattr(value, "has_sorted_indices", True)),
         }
 

@@ -64,4 +64,16 @@ class Triplets:
         return even, odd.keep(np.abs(odd.values) > SKEW * size)
 
 
-__all__ = ["Triplets"]
+def nonempty_columns(matrix: Any) -> Ints:
+    """Columns of a scipy CSC matrix that have entries."""
+    return np.flatnonzero(np.diff(matrix.indptr))
+
+
+def arrays_of(matrix: Any) -> list[Any]:
+    """The arrays that a scipy sparse matrix consists of: places, then numbers."""
+    coo = matrix.format == "coo"
+    names = ("row", "col", "data") if coo else ("indptr", "indices", "data")
+    return [getattr(matrix, name) for name in names]
+
+
+__all__ = ["Triplets", "arrays_of", "nonempty_columns"]

@@ -86,9 +86,9 @@ def buckle_step(
 
 def _check_unloaded(system: System, step: Buckle) -> None:
     """Refuse to leave out a preload that has changed the material."""
-    laws = {block.section.material.law for block in system.blocks}
+    linear = all(block.section.material.linear for block in system.blocks)
     heated = system.free.expands and not system.free.follows(system.free.start)
-    if heated or laws - {"elastic", "orthotropic"}:
+    if heated or not linear:
         raise UnsupportedError(
             "buckling without the preload needs elastic material at its initial temperature; "
             "keep the preload (*STEP, PERTURBATION; preload=True) or buckle in the first step",
@@ -183,7 +183,7 @@ def _perturbation(
     heat = loads.temperature
     heat.begin[:] = heat.end[:] = system.conditions.temperatures(0.0)
     with_model = number == 1 or not own
-    loads.add(
+    loads.add_items(
         [*(model.loads if with_model else []), *step.loads],
         [*(model.supports if with_model else []), *step.supports],
     )

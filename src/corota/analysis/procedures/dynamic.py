@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.analysis.energies import Balance
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
-from corota.analysis.increments import CUT, SAME, Increments
+from corota.analysis.increments import CUT, SAME
 from corota.analysis.newton import Settings
 from corota.analysis.procedures.explicit import explicit_step
 from corota.analysis.procedures.free_flight import FreeFlight
@@ -20,13 +20,13 @@ from corota.analysis.procedures.motion_output import EndForces
 from corota.analysis.procedures.motion_start import (
     admissible_velocity,
     check_density,
-    damping_at,
     resting,
     start_motion,
 )
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.contact.relaxation import relax
+from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
@@ -93,22 +93,14 @@ def dynamic_step(
 
 
 class DynamicStepper(NewtonStepper):
-    """Increments of an implicit time scheme.
-
-    Parameters
-    ----------
-    loop : IncrementLoop
-    step : Dynamic
-    stops : list of float
-        Step times that must be hit exactly.
-    """
+    """Increments of an implicit time scheme."""
 
     kind = "dynamic"
 
     def __init__(self, loop: IncrementLoop, step: Dynamic, stops: list[float]) -> None:
-        super().__init__(loop, Increments(step, stops))
-        system, state, control = loop.system, loop.state, self.control
-        self.system, self.state, self.step = system, state, step
+        super().__init__(loop, step, stops)
+        self.step = step
+        system, state, control = self.system, self.state, self.control
         self.inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
         self.viscous = ViscousElements(system, step.rayleigh[1])
         self.flight = FreeFlight(system)
@@ -194,7 +186,7 @@ class DynamicStepper(NewtonStepper):
     def rescue(self, failed: Attempt, end: str) -> Attempt | None:
         """The increment by relaxation, where contact stops it and none shorter may be tried."""
         system = self.system
-        if not end or not system.contact_term.acts or failed.outcome.converged:
+        if not end or not system.joined or failed.outcome.converged:
             return None
         target = failed.target
         guess = self.now.u
@@ -265,7 +257,7 @@ def _whole_turns(system: System, u: Floats) -> Floats | None:
     supports and constraints may know the number of turns.
     """
     mask = system.is_rotation
-    known = system.link.couples or system.contact_term.acts
+    known = system.link.couples or system.joined
     if known or not (mask.any() and system.nlgeom):
         return None
     turns = np.round(float(u[mask].mean()) / (2.0 * np.pi))
@@ -335,7 +327,7 @@ def _motion(
     driven: Driven,
     viscous: ViscousElements,
 ) -> NewmarkMotion | ConservingMotion:
-    damping = damping_at(system, step, now.u, viscous)
+    damping = Damping(inertia, step.rayleigh[0], viscous, now.u)
     if step.scheme == "energy_momentum":
         return ConservingMotion(system, inertia, now, dt, driven, damping)
     scheme = SCHEMES[step.scheme](step.alpha, step.rho_inf)

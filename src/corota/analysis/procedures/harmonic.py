@@ -149,7 +149,7 @@ def _amplitudes(
     behind = Conditions(system)
     behind.ramp = False
     behind.reset_mass()
-    behind.add(step.imaginary_loads, step.imaginary_supports)
+    behind.add_items(step.imaginary_loads, step.imaginary_supports)
     loose = behind.constrained & ~conditions.constrained
     if loose.any():
         raise ModelError(

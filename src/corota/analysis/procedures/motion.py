@@ -7,20 +7,22 @@ scheme put into residual and tangent; so there is one Newton's method.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.equations import failure
-from corota.analysis.evaluation import Evaluation
-from corota.analysis.terms.inertia import Damping, Inertia, MotionState
+from corota.analysis.terms.inertia import MotionState
+from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import ResidualNorms
+    from corota.analysis.terms.damping import Damping
+    from corota.analysis.terms.inertia import Inertia
     from corota.model.schemes import Scheme
 
     Floats = NDArray[np.float64]
@@ -117,19 +119,15 @@ class NewmarkMotion:
         """Residual and effective tangent of the equation of motion."""
         share = 1.0 - self.scheme.alpha_f
         at = self.system.evaluate(u, step_time)
+        at.weigh(share)
         v, a, carried = self._rates(u)
-        internal, external = at.internal, at.external
-        at.values *= share
-        if at.load_stiffness is not None:
-            rows, columns, values = at.load_stiffness
-            at.load_stiffness = (rows, columns, share * values)
-        weights = (share, share * self.c_v, share * self.c_a)
-        force = self.inertia.add(at, u, v, a, weights)
-        self.inertia.weigh(at, u - self.start.u, weights[2])
-        damping = self.inertia.damping(at, u, v, share * self.c_v, self.damping)
-        self.end = MotionState(u, v, a, internal, external, force, damping, at.link, carried)
-        at.internal = share * (internal + damping + force)
-        at.external = share * external
+        point = StatePoint(u, step_time, v, a, (share, share * self.c_v, share * self.c_a))
+        for term in (self.inertia, self.damping):
+            term.add(point, at)
+        self.inertia.weigh(at, u - self.start.u, point.weights[2])
+        self.end = end = MotionState.of(point, at, carried)
+        at.internal = share * (end.internal + end.damping + end.inertia)
+        at.external = share * at.external
         if self.begun is not None:
             at.internal += self.begun
         return at
@@ -179,47 +177,32 @@ class ConservingMotion:
     def evaluate(self, u: Floats, step_time: float) -> Evaluation:
         """Residual and tangent of the mid-point equation of motion."""
         system, b, dt = self.system, self.start, self.dt
-        n = system.n_dofs
-        force, internal, scale = np.empty(n), np.empty(n), np.empty(n)
-        values = system.borrow_tangent()
+        at = system.blank(system.borrow_tangent())
         system.constraints.complete(u)
-        d = self.increment(u)
-        begun = self._begun()
-        x1, x0, v0 = (system.in_space(x) for x in (u, b.u, begun))
-        system.set_temperatures(step_time - 0.5 * dt)
-
-        def assemble() -> None:
-            system.core.conserving(
-                x1, x0, v0, dt, self.inertia.kind, system.nlgeom, force, internal, scale, values
-            )
-
-        try:
-            with system.timed("assemble"):
-                system.user.assemble(x1, system.nlgeom, assemble, between=True)
-                if system.user.blocks:
-                    system.user.linearize(assemble, values)
-        except RuntimeError as error:
-            raise failure(system._labels(error.args[1]), error.args[0]) from None
-        force, internal = system.at_nodes(force), system.at_nodes(internal)
-        middle = 0.5 * (u + b.u)
-        external, stiffness = system.conditions.external(
-            step_time - 0.5 * dt, u, values, share=0.5, start=b.u
-        )
+        d, begun = self.increment(u), self._begun()
         v = 2.0 / dt * d - begun
         a = (v - begun) / dt
-        attached = self.inertia.attached
-        hung = attached.mass * a
-        force += hung
-        scale += np.abs(hung)
-        values[system.pattern.diagonal] += 2.0 / (dt * dt) * attached.mass
-        link = system.constraints.secant(b.u, u)
-        at = Evaluation(force, external, scale, values, stiffness, link)
-        self.inertia.weigh(at, d, 2.0 / (dt * dt))
-        damping = self.inertia.damping(at, middle, d / dt, 1.0 / dt, self.damping, (b.u, u, dt))
-        at.internal = force + damping
+        point = StatePoint(
+            0.5 * (u + b.u),
+            step_time - 0.5 * dt,
+            d / dt,
+            a,
+            weights=(0.5, 1.0 / dt, 2.0 / (dt * dt)),
+            between=(b.u, u, dt),
+        )
+        force = system.elements.add_conserving(point, begun, self.inertia.kind, at)
+        internal = at.internal.copy()
+        system.add_others(point, at)
+        force += at.internal - internal
+        force += self.inertia.add_point_masses(point, at)
+        at.link = system.constraints.secant(b.u, u)
+        self.inertia.weigh(at, d, point.weights[2])
+        self.damping.add(point, at)
         constrained = self.driven.constrained
         v[constrained], a[constrained] = self.driven.v[constrained], self.driven.a[constrained]
-        self.end = MotionState(u, v, a, internal, external, force - internal, damping, link)
+        at.inertia = force - at.internal
+        self.end = end = MotionState.of(replace(point, u=u, v=v), at)
+        at.internal = force + end.damping
         return at
 
     def _begun(self) -> Floats:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.damping import mass_damping
-from corota.analysis.terms.inertia import Damping, Inertia, MotionState
+from corota.analysis.terms.damping import Damping
+from corota.analysis.terms.inertia import Inertia, MotionState
+from corota.analysis.terms.term import StatePoint
 from corota.errors import ModelError
 from corota.model import elements
 
@@ -60,12 +61,12 @@ def start_motion(
     # they keep their own velocities, which are those of its mid-point relations.
     system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
     force = inertia.force(u, v, zero)
-    rayleigh = damping_at(system, step, u, viscous)
     # Bodies may rest on each other from a step before.
     contact = system.contact_term
     resting = contact.evaluate(u, contact.committed, 0.0, at.values).force
-    damping = inertia.damping(at, u, v, 0.0, rayleigh)
-    internal, external = at.internal, at.external
+    Damping(inertia, step.rayleigh[0], viscous, u).add(StatePoint(u, 0.0, v), at)
+    assert at.damping is not None
+    internal, external, damping = at.internal, at.external, at.damping
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
     _weigh_as_mass(system, step, inertia, at, u)
     at.internal = internal + force + damping - resting
@@ -197,9 +198,4 @@ def _follow_constraints(system: System, u: Floats, v: Floats) -> None:
         )
 
 
-def damping_at(system: System, step: Dynamic, u: Floats, elements: ViscousElements) -> Damping:
-    """Rayleigh damping at the start of an increment."""
-    return Damping(step.rayleigh[0], mass_damping(system, u, step.mass), elements)
-
-
-__all__ = ["check_density", "damping_at", "initial_velocity", "resting", "start_motion"]
+__all__ = ["check_density", "initial_velocity", "resting", "start_motion"]

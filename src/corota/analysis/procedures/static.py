@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
-from corota.analysis.increments import Increments
 from corota.analysis.newton import Outcome, Settings
 from corota.analysis.procedures.path.arc_length import path_step
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, explained
@@ -71,21 +70,13 @@ def static_step(
 
 
 class StaticStepper(NewtonStepper):
-    """Increments of load control.
-
-    Parameters
-    ----------
-    loop : IncrementLoop
-    step : Static
-    stops : list of float
-        Step times that must be hit exactly.
-    """
+    """Increments of load control."""
 
     kind = "static"
 
     def __init__(self, loop: IncrementLoop, step: Static, stops: list[float]) -> None:
-        super().__init__(loop, Increments(step, stops))
-        self.system, self.state, self.step = loop.system, loop.state, step
+        super().__init__(loop, step, stops)
+        self.step = step
         self.settings = Settings(step.tolerance, step.max_iterations)
         #: Displacement per time, of the first increment and the last.
         self.rates = (0.0, 0.0)
@@ -112,10 +103,6 @@ class StaticStepper(NewtonStepper):
     def solve(self, target: float) -> Attempt:
         """Newton's method, and what a state in equilibrium is refused for."""
         system, state, step = self.system, self.state, self.step
-        # Temperatures that change need a new evaluation.
-        heated = system.free.expands and not system.free.follows(
-            system.conditions.temperatures(target)
-        )
         prescribed = system.conditions.prescribed(target, state.u)
         contact = None
         try:
@@ -127,7 +114,7 @@ class StaticStepper(NewtonStepper):
                 target,
                 self.settings,
                 self.report,
-                known=None if heated else state.at,
+                known=state.at if system.holds(target) else None,
                 last_chance=step.fixed_increments,
             )
         except SingularError as error:
@@ -138,7 +125,7 @@ class StaticStepper(NewtonStepper):
             outcome.reason = system.scales.senseless(outcome.u)
         self.grown = 0.0
         if outcome.converged and not outcome.reason and step.plastic_increment:
-            self.grown = system.plastic_increment()
+            self.grown = system.elements.plastic_increment()
             if self.grown > step.plastic_increment:
                 outcome.reason = (
                     f"the equivalent plastic strain grew by {self.grown:.3g}, "
@@ -214,7 +201,7 @@ class StaticStepper(NewtonStepper):
 
     def may_relax(self) -> bool:
         """Whether contact is driven by supports alone, so that relaxation may find what follows."""
-        if not self.system.contact_term.acts:
+        if not self.system.joined:
             return False
         return not np.any(self.system.load_rate(self.state.u)[0])
 

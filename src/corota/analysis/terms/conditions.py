@@ -20,6 +20,7 @@ from corota.analysis.distributed import DistributedLoads
 from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.load_history import LoadHistory
 from corota.analysis.terms.moving_mass import massless_nodes
+from corota.analysis.terms.term import Term
 from corota.errors import ModelError, UnsupportedError
 from corota.model.dofs import DOFS
 from corota.model.integrated import IntegratedAmplitude
@@ -39,7 +40,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.distributed import DistributedLoad
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.term import StatePoint
     from corota.errors import Location
     from corota.model.loads import Fixed, Load
     from corota.model.steps import Step
@@ -60,7 +63,7 @@ ABRUPT = ("dynamic", *LINEAR)
 KNOWN = 2
 
 
-class Conditions:
+class Conditions(Term):
     """The loads and supports that act now.
 
     Parameters
@@ -74,6 +77,8 @@ class Conditions:
     fixed : ndarray of int
         Their numbers.
     """
+
+    name = "loads"
 
     def __init__(self, system: NumberedModel) -> None:
         n = system.n_dofs
@@ -215,7 +220,7 @@ class Conditions:
             ended -= factors[amplitude] * values
         self.force.carry(ended, self._runs_on)
 
-    def add(self, loads: list[Load], supports: Iterable[Fixed]) -> None:
+    def add_items(self, loads: list[Load], supports: Iterable[Fixed]) -> None:
         """Add loads and supports that grow from zero, apart from any step."""
         self._set_supports(supports)
         self._set_loads(loads)
@@ -276,6 +281,14 @@ class Conditions:
         massless = massless_nodes(self.system, self.system.mass.redistribute)
         self.system.core.set_massless(np.zeros(0, bool) if massless is None else massless)
         self.set_mass(self.system.mass.kind)
+
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        """Set the external force, and what its derivative adds to the tangent."""
+        u, start = point.u, END_POINT
+        if point.between is not None:
+            start, u, _ = point.between
+        share = point.weights[0]
+        at.external, at.load_stiffness = self.external(point.time, u, at.values, share, start)
 
     def external(
         self,
@@ -376,8 +389,8 @@ class Conditions:
             raise ModelError(
                 "a step that follows a path needs loads that grow (ramp=True, AMPLITUDE=RAMP)"
             )
-        laws = {block.section.material.law for block in self.system.blocks}
-        if self.heating.any() and laws - {"elastic", "orthotropic"}:
+        linear = all(block.section.material.linear for block in self.system.blocks)
+        if self.heating.any() and not linear:
             raise ModelError(
                 "temperatures that change in a step that follows a path need elastic material; "
                 "heat in a static step before"

@@ -1,4 +1,4 @@
-"""Rayleigh damping of the model and of its materials as a matrix."""
+"""Viscous damping: dashpots, and Rayleigh damping of the model and of its materials."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -7,12 +7,67 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.term import Term
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.inertia import Inertia
+    from corota.analysis.terms.term import StatePoint
+    from corota.analysis.terms.viscous import ViscousElements
 
     Floats = NDArray[np.float64]
+
+
+class Damping(Term):
+    """Viscous forces of an increment.
+
+    Parameters
+    ----------
+    inertia : Inertia
+        Its mass damps, and its dashpots.
+    per_mass : float
+        Of the whole model [1/time].
+    elements : ViscousElements
+        Damping per stiffness.
+    u : ndarray, shape (n_dofs,)
+        The committed displacement, at which materials have their mass.
+    """
+
+    name = "damping"
+
+    def __init__(
+        self, inertia: Inertia, per_mass: float, elements: ViscousElements, u: Floats
+    ) -> None:
+        self.inertia, self.per_mass, self.elements = inertia, per_mass, elements
+        #: Damping of materials per mass, upper triangle, or None.
+        self.mass = mass_damping(inertia.system, u, inertia.kind)
+
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        """Set the damping of `at`, and add its derivative by velocity."""
+        system, v, values, weight = self.inertia.system, point.v, at.values, point.weights[1]
+        force = np.zeros_like(v)
+        if self.per_mass:
+            mass = self.inertia.tangent(point.u)
+            force += self.per_mass * system.product(mass, v)
+            values += weight * self.per_mass * mass
+        if self.mass is not None:
+            force += system.product(self.mass, v)
+            values += weight * self.mass
+        if self.elements.blocks:
+            begin, end, dt = point.between or (point.u, point.u, 0.0)
+            force += self.elements.add(begin, end, v, dt, weight, values)
+        attached = self.inertia.attached
+        if attached.dampers:
+            damped, triplets = attached.damp(point.u, v, values, weight)
+            force += damped
+            if triplets is not None:
+                # Derivatives of external forces have the other sign.
+                rows, columns, products = triplets
+                at.add_load_stiffness(rows, columns, -products)
+        at.damping = force
 
 
 def material_pairs(system: System) -> list[tuple[float, float]]:
@@ -76,4 +131,4 @@ def _mass(system: System, u: Floats, kind: str) -> Floats:
     return values
 
 
-__all__ = ["damping_matrix", "mass_damping", "material_pairs"]
+__all__ = ["Damping", "damping_matrix", "mass_damping", "material_pairs"]

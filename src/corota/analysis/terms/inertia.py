@@ -1,4 +1,4 @@
-"""Inertia and viscous damping: what a motion adds to residual and tangent."""
+"""Inertia of elements and point masses, and the state of motion that it makes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.terms.attachments import Attachments
+from corota.analysis.terms.term import Term
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import LinearizedConstraints
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.viscous import ViscousElements
+    from corota.analysis.terms.term import StatePoint
     from corota.model.steps import Step
     from corota.results.results import PointFields
 
@@ -49,6 +50,14 @@ class MotionState:
     link: LinearizedConstraints = IDENTITY
     carried: Floats | None = None
 
+    @classmethod
+    def of(cls, point: StatePoint, at: Evaluation, carried: Floats | None = None) -> MotionState:
+        """The state of a point with the forces of an evaluation."""
+        assert at.inertia is not None
+        assert at.damping is not None
+        forces = at.internal, at.external, at.inertia, at.damping
+        return cls(point.u, point.v, point.a, *forces, at.link, carried)
+
     def gathered(self, force: Floats) -> Floats:
         """A force with what dependent dofs pass on to their masters."""
         return self.link.gather(force)
@@ -58,26 +67,7 @@ class MotionState:
         return self.gathered(self.internal + self.damping + self.inertia - self.external)
 
 
-@dataclass
-class Damping:
-    """Rayleigh damping of a step.
-
-    Parameters
-    ----------
-    per_mass : float
-        Of the whole model [1/time].
-    mass : ndarray or None
-        Damping of materials per mass, upper triangle.
-    elements : ViscousElements or None
-        Damping per stiffness.
-    """
-
-    per_mass: float = 0.0
-    mass: Floats | None = None
-    elements: ViscousElements | None = None
-
-
-class Inertia:
+class Inertia(Term):
     """Inertia of a model: the constant matrix where there is one, else by element.
 
     Parameters
@@ -92,6 +82,8 @@ class Inertia:
     massless : ndarray of bool, shape (n_dofs,)
         Displacements without mass.
     """
+
+    name = "inertia"
 
     def __init__(
         self, system: System, kind: str, massless: NDArray[np.bool_] | None = None
@@ -139,18 +131,24 @@ class Inertia:
             return self.system.product(self.matrix, a)
         return self._evaluate(u, v, a, (0.0, 0.0, 0.0), False)[0]
 
-    def add(
-        self, at: Evaluation, u: Floats, v: Floats, a: Floats, weights: tuple[float, float, float]
-    ) -> Floats:
-        """Add the tangent to `at` and the size to its scale; returns the force."""
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        """Set the inertia of `at`; add its size and the derivatives by all rates."""
         if self.matrix is not None:
-            at.values += weights[2] * self.matrix
-            force = self.force(u, v, a)
-            at.scale += np.abs(force)
-            return force
-        force, scale, values = self._evaluate(u, v, a, weights, True)
+            at.values += point.weights[2] * self.matrix
+            at.inertia = self.force(point.u, point.v, point.a)
+            at.scale += np.abs(at.inertia)
+            return
+        force, scale, values = self._evaluate(point.u, point.v, point.a, point.weights, True)
         at.values += values
         at.scale += scale
+        at.inertia = force
+
+    def add_point_masses(self, point: StatePoint, at: Evaluation) -> Floats:
+        """Force of the point masses alone; size and derivative are added."""
+        mass = self.attached.mass
+        force = mass * point.a
+        at.scale += np.abs(force)
+        at.values[self.system.pattern.diagonal] += point.weights[2] * mass
         return force
 
     def tangent(self, u: Floats) -> Floats:
@@ -181,46 +179,6 @@ class Inertia:
         core = np.array(self.system.core.momenta(x, rate, self.kind, carried))
         return core + self.attached.momenta(u, v) if self.attached.mass.any() else core
 
-    def damping(
-        self,
-        at: Evaluation,
-        u: Floats,
-        v: Floats,
-        weight: float,
-        damping: Damping,
-        between: tuple[Floats, Floats, float] | None = None,
-    ) -> Floats:
-        """Rayleigh damping and dashpots; `weight` times the derivative by velocity goes to `at`.
-
-        `between` gives the two states and the time over which `v` is the mean rate.
-        """
-        values = at.values
-        per_mass = damping.per_mass
-        force = np.zeros_like(v)
-        if per_mass:
-            mass = self.tangent(u)
-            force += per_mass * self.system.product(mass, v)
-            values += weight * per_mass * mass
-        if damping.mass is not None:
-            force += self.system.product(damping.mass, v)
-            values += weight * damping.mass
-        if damping.elements is not None and damping.elements.blocks:
-            begin, end, dt = between or (u, u, 0.0)
-            force += damping.elements.add(begin, end, v, dt, weight, values)
-        if self.attached.dampers:
-            damped, triplets = self.attached.damp(u, v, values, weight)
-            force += damped
-            if triplets is not None:
-                # Derivatives of external forces have the other sign.
-                rows, columns, products = triplets
-                products = -products
-                if at.load_stiffness is not None:
-                    rows = np.concatenate([at.load_stiffness[0], rows])
-                    columns = np.concatenate([at.load_stiffness[1], columns])
-                    products = np.concatenate([at.load_stiffness[2], products])
-                at.load_stiffness = (rows, columns, products)
-        return force
-
 
 def add_kinetic(
     system: System, fields: list[PointFields], u: Floats, v: Floats, step: Step
@@ -236,4 +194,4 @@ def add_kinetic(
         block.values["EKEDEN"] = np.repeat(density[:, None], block.volume.shape[1], axis=1)
 
 
-__all__ = ["Damping", "Inertia", "MotionState", "add_kinetic"]
+__all__ = ["Inertia", "MotionState", "add_kinetic"]

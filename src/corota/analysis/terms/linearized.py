@@ -16,7 +16,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from corota.analysis.linear.factor import Factor
-from corota.analysis.linear.triplets import Triplets
+from corota.analysis.linear.triplets import Triplets, nonempty_columns
 from corota.analysis.terms.attachments import Attachments
 from corota.analysis.terms.contact.linear import COMPLIANCE, linearized_contact
 from corota.analysis.terms.damping import damping_matrix
@@ -75,8 +75,7 @@ class Linearized:
         if multipliers is not None:
             self.multipliers = multipliers
         self._load = load
-        laws = [p.first + np.arange(p.n) for p in system.contact_term.pairs if p.law is not None]
-        self._laws = np.concatenate([np.zeros(0, np.int64), *laws])
+        self._laws = system.contact_term.law_multipliers()
         self._pressures: Any = None
         self._hard: Any = None
         self._normal: Any = None
@@ -115,7 +114,7 @@ class Linearized:
         # A law p = h(-gap) is a row with the compliance of the layer: its pressure follows.
         scale = sp.diags_array(-1.0 / coupling.diagonal[self._laws])
         self._pressures = (scale @ side.T.tocsr()[self._laws]).tocsr()
-        hard = np.setdiff1d(np.flatnonzero(np.diff(side.indptr)), self._laws)
+        hard = np.setdiff1d(nonempty_columns(side), self._laws)
         self._hard = side[:, hard].tocsc()
         return sp.block_array(
             [[k, side], [side.T, sp.diags_array(coupling.diagonal)]], format="csc"

@@ -16,6 +16,7 @@ import numpy as np
 from corota.analysis.terms.contact.advice import corner_note, fillet_note
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.analysis.terms.contact.side import check_side
+from corota.analysis.terms.term import Term
 from corota.errors import ModelError, UnsupportedError
 from corota.model.contact import ContactPair, Tie
 from corota.model.schemes import SCHEMES
@@ -23,8 +24,10 @@ from corota.model.schemes import SCHEMES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.term import StatePoint
     from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
@@ -76,7 +79,7 @@ class ContactState:
         return self.force if self.of_end is None else self.of_end
 
 
-class ContactTerm:
+class ContactTerm(Term):
     """All contact pairs and ties of a model; where there are none, nothing is done or added.
 
     Parameters
@@ -93,6 +96,8 @@ class ContactTerm:
     nodal : ndarray, shape (n_dofs,)
         Stiffness of each dof at the start.
     """
+
+    name = "contact"
 
     def __init__(self, system: NumberedModel) -> None:
         self.system = system
@@ -136,8 +141,8 @@ class ContactTerm:
     # -- facts -------------------------------------------------------------------------
 
     @property
-    def acts(self) -> bool:
-        """Whether any pair or tie holds bodies: they may be free otherwise, and turn with them."""
+    def joins(self) -> bool:
+        """Whether there is any pair or tie."""
         return bool(self.pairs)
 
     @property
@@ -150,6 +155,11 @@ class ContactTerm:
         """Of the pairs on the nodes in the committed state, shape (n_dofs,)."""
         return np.zeros(self.system.n_dofs) if self.at is None else self.at.force_at_end
 
+    def law_multipliers(self) -> Ints:
+        """Multipliers that are pressures of laws."""
+        laws = [p.first + np.arange(p.n) for p in self.pairs if p.law is not None]
+        return np.concatenate([np.zeros(0, np.int64), *laws])
+
     def massless_nodes(self) -> NDArray[np.bool_]:
         """Slave nodes of contact, shape (n_nodes,): others may carry their mass."""
         found = np.zeros(len(self.system.per_node), bool)
@@ -160,7 +170,7 @@ class ContactTerm:
 
     # -- steps -------------------------------------------------------------------------
 
-    def begin(self, step: Step) -> None:
+    def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
         """Start a step.
 
         Raises
@@ -284,6 +294,21 @@ class ContactTerm:
             out.append((p, q if pair.two else np.zeros(pair.n)))
         return out
 
+    def add(self, point: StatePoint, at: Evaluation, known: ContactState | None = None) -> None:
+        """Add the forces for given multipliers; gaps and slips are the `contact` of `at`.
+
+        They are evaluated unless they are `known`.
+        """
+        state = known
+        if state is None:
+            state = self.evaluate(point.u, point.multipliers, point.time, at.values)
+        at.internal = at.internal - state.force
+        at.scale = at.scale + state.size
+        if state.damping is not None:
+            at.internal += state.damping * (point.u - self.u)
+            at.added = state.damping
+        at.contact = state
+
     def evaluate(
         self, u: Floats, multipliers: Floats, step_time: float, values: Floats
     ) -> ContactState:
@@ -394,7 +419,7 @@ class ContactTerm:
 
     # -- increments --------------------------------------------------------------------
 
-    def commit(self, u: Floats, contact_state: ContactState, step_time: float) -> None:
+    def accept(self, u: Floats, contact_state: ContactState, step_time: float) -> None:
         """Accept a state."""
         states = [np.zeros(pair.n, np.int8) for pair in self.pairs]
         if self.at is not None:

@@ -26,6 +26,7 @@ from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.pivoting import pivoted
 from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
 from corota.analysis.terms.contact.tunneling import passed
+from corota.analysis.terms.term import StatePoint
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -128,24 +129,18 @@ class ContactEquations:
     def evaluate(self, z: Floats, step_time: float) -> ContactEvaluation:
         """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
         u, multipliers = z[: self.n], z[self.n :].copy()
-        at = self.inner.evaluate(u, step_time)
-        contact_state = self._at_kink(u, multipliers, step_time)
-        if contact_state is None:
-            contact_state = self.contact_term.evaluate(u, multipliers, step_time, at.values)
+        at: Evaluation = self.inner.evaluate(u, step_time)
+        point = StatePoint(u, step_time, multipliers=multipliers)
+        self.contact_term.add(point, at, self._at_kink(u, multipliers, step_time))
         self.places = [*self.places[-2:], u.copy()]
         self.time = step_time
-        at.internal = at.internal - contact_state.force
-        at.scale = at.scale + contact_state.size
-        if contact_state.damping is not None:
-            at.internal += contact_state.damping * (u - self.contact_term.u)
-            at.added = contact_state.damping
         if self.brake is not None:
             stiffness, since = self.brake
             at.internal = at.internal + stiffness * (u - since)
             at.added = stiffness if at.added is None else at.added + stiffness
         if at.added is not None:
             at.values[self.system.pattern.diagonal] += at.added
-        return ContactEvaluation(at, contact_state)
+        return ContactEvaluation(at, at.contact)
 
     def residual_norms(self, at: ContactEvaluation, z: Floats) -> ResidualNorms:
         """Size of the residual, of equilibrium and of the contact conditions."""
@@ -732,7 +727,7 @@ class ContactEquations:
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
         assert self.contact_state is not None
-        self.contact_term.commit(u, self.contact_state, step_time)
+        self.contact_term.accept(u, self.contact_state, step_time)
         notes = []
         if self.loose and not self.presses and FLOATS not in self.contact_term.told:
             self.contact_term.told.add(FLOATS)
