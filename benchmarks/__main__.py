@@ -38,6 +38,7 @@ LONG = {
     "fuzz_readers",
     "kill",
     "checkpoint_cost",
+    "contact_beside_ccx",
     "contact_torture",
     "free_bodies",
 }
