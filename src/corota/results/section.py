@@ -237,7 +237,7 @@ class Cut:
         if name not in ("N", "V", "M"):
             raise InputError(f"a section has N, V and M, not {name!r}")
         values = [getattr(self.forces(i), name) for i in range(len(self.results.frames))]
-        return History(f"{name} of the section", np.array(values), self.results)
+        return History(f"section {name}", np.array(values), self.results)
 
     def _place(self, positions: Floats) -> tuple[Floats, Floats]:
         """Center and normal of the cut in the deformed body."""

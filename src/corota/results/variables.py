@@ -183,6 +183,7 @@ _DIMENSIONS = {
 _OF_THE_WHOLE = {
     "time": "time", "step time": "time", "dt": "time", "external work": "energy",
     "internal work": "energy", "plastic work": "energy", "ETOTAL": "energy",
+    "section N": "force", "section V": "force", "section M": "force*length",
     "frequency": "1/time", "energy balance": "energy", "length": "length",
 }  # fmt: skip
 

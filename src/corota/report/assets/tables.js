@@ -96,7 +96,8 @@ export class Tables {
     const materials = this.model.description.materials ?? [];
     if (!materials.length) return null;
     const rows = materials.map((m) => [m.name || "unnamed", m.type, Object.entries(m.constants).map(([k, v]) => `${k} ${withUnit(v, this.model.units[CONSTANTS[k]])}`).join(", ")]);
-    const curves = materials.filter((m) => m.curve).map((m) => this.#curve(`Hardening of ${m.name || m.type}`, m.curve));
+    const curves = materials.filter((m) => m.curve).map((m) => this.#curve(`Hardening of ${m.name || m.type}`, {
+      ...m.curve, y: this.model.units["force/length^2"] ? `stress [${this.model.units["force/length^2"]}]` : m.curve.y }));
     return el("div", {}, table(["name", "law", "constants"], rows, "Materials"), el("div", { class: "row" }, ...curves));
   }
 
