@@ -83,5 +83,6 @@ if __name__ == "__main__":
             continue
         results = solved(script)
         if results:
-            draw(results[-1], FOLDER / name(script))
+            stressed = [r for r in results if r.nodal("MISES", telling(r)).any()]
+            draw((stressed or results)[-1], FOLDER / name(script))
         print(name(script), len(results), "analyses")

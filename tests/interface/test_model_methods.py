@@ -95,3 +95,12 @@ def test_observers_hear_events_and_need_only_those_they_want(model: ct.Model) ->
     counter = Counter()
     ct.solve(model, ct.Static(increments=2), observers=[counter], threads=1)
     assert counter.frames == 3
+
+
+def test_results_that_are_zero_everywhere_have_a_picture(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    idle = ct.Model(ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1))
+    idle.section(element="Q4", material=ct.Elastic(E=1.0))
+    idle.fix("left")
+    ct.solve(idle, ct.Static()).plot(path=tmp_path / "zero.png")
+    assert (tmp_path / "zero.png").stat().st_size > 1000

@@ -120,6 +120,7 @@ def color_scale(mpl: Any, low: float, high: float) -> tuple[Any, Floats]:
     if high - low <= 1e-9 * size or size == 0.0:
         pad = 0.5 * size or 1.0
         low, high = low - pad, high + pad
+        size = size or pad
     if low < -0.02 * size and high > 0.02 * size:
         levels = np.linspace(-size, size, BANDS + 1)
         colors = mpl.colormaps["RdBu_r"]
