@@ -41,6 +41,11 @@ def telling(results: ct.Results) -> int:
     return max(range(len(size)), key=lambda i: (size[i], i))
 
 
+def has_stress(results: ct.Results) -> bool:
+    """Whether a picture of the stress shows something."""
+    return "MISES" in results.variables(-1) and bool(results.nodal("MISES", telling(results)).any())
+
+
 def draw(results: ct.Results, path: Path, dpi: int = 60) -> None:
     """Draw the telling frame of results."""
     import matplotlib.pyplot as plt
@@ -83,6 +88,6 @@ if __name__ == "__main__":
             continue
         results = solved(script)
         if results:
-            stressed = [r for r in results if r.nodal("MISES", telling(r)).any()]
+            stressed = [r for r in results if has_stress(r)]
             draw((stressed or results)[-1], FOLDER / name(script))
         print(name(script), len(results), "analyses")
