@@ -3,8 +3,9 @@
 ``python -m benchmarks.contact_torture --count 2000`` runs problems 0 to 1999 of
 :mod:`benchmarks.contact_problems`, each with a limit of processor time, and prints the score by
 family. ``--only N`` runs one and shows its message; ``--keep FILE`` keeps a line of JSON for each;
-``--against FILE`` compares iterations and times with an earlier file. The exit status is 1 where
-less than ``--share`` of the problems finish.
+``--against FILE`` compares iterations and times with an earlier file. ``--write`` puts the score of
+all that FILE of ``--keep`` holds into docs/contact.md. The exit status is 1 where less than
+``--share`` of the problems finish.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -24,13 +25,16 @@ from typing import Any
 import numpy as np
 
 import corota as ct
-from benchmarks.common import machine, table
+from benchmarks.common import machine, table, write_between
 from benchmarks.contact_problems import problem
 
 #: Every so many problems is run in another unit of length, by this factor, too.
 UNITS, UNIT = 5, 1e-3
 #: Relative difference of results between units.
 AGREE = 1e-5
+
+
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "contact.md"
 
 
 class _OverTime(Exception):
@@ -162,6 +166,7 @@ def main() -> int:
     parser.add_argument("--keep", type=Path)
     parser.add_argument("--against", type=Path)
     parser.add_argument("--share", type=float, default=0.99)
+    parser.add_argument("--write", action="store_true", help="put the score into docs/contact.md")
     args = parser.parse_args()
     numbers = args.only or range(args.first, args.first + args.count)
     jobs = [(n, args.limit, args.size) for n in numbers]
@@ -184,6 +189,13 @@ def main() -> int:
             f"\n{same} of {len(units)} agree in another unit of length, {counts} take the same "
             "increments\n"
         )
+    if args.write and args.keep:
+        # What was run again counts as it ended last.
+        all_rows = {r["number"]: r for r in map(json.loads, args.keep.read_text().splitlines())}
+        kept = [all_rows[n] for n in sorted(all_rows)]
+        said = f"`python -m benchmarks.contact_torture --size {args.size:g} --write`, {machine()}"
+        said += f"\n\nNumbers {kept[0]['number']} to {kept[-1]['number']}, {len(kept)} run."
+        write_between(PAGE, "torture", f"{said}\n\n{score(kept)}")
     if args.against:
         old = {r["number"]: r for r in map(json.loads, args.against.read_text().splitlines())}
         both = [
