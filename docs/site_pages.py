@@ -24,7 +24,7 @@ REFERENCE = {
     "InitialTemperature InitialStress PointMass Dashpot",
     "Steps": "Static Dynamic Frequency Buckle ModalDynamic SteadyState ArcLength "
     "DisplacementControl",
-    "Materials": "Elastic Orthotropic Expansion Mises Voce UserMaterial",
+    "Materials": "Elastic Orthotropic Expansion Mises Voce RambergOsgood UserMaterial",
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",

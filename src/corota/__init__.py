@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from corota.model.model import Findings, Model
     from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Modes
     from corota.model.plasticity import Mises, Voce
+    from corota.model.ramberg_osgood import RambergOsgood
     from corota.model.sections import Section
     from corota.model.steps import (
         Buckle,
@@ -119,6 +120,7 @@ _HOMES = {
     "PointMass": "model.attachments",
     "PressureLaw": "model.contact",
     "ResourceError": "errors",
+    "RambergOsgood": "model.ramberg_osgood",
     "Results": "results.results",
     "RigidCurve": "model.contact",
     "Section": "model.sections",
@@ -195,6 +197,7 @@ __all__ = [
     "PointFields",
     "PointMass",
     "PressureLaw",
+    "RambergOsgood",
     "ResourceError",
     "Results",
     "RigidCurve",

@@ -61,6 +61,8 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     const ALPHA_B: f64 = 0.0;
     /// Whether it is a line element (truss, beam, spring) and no part of the plane.
     const LINE: bool = false;
+    /// Whether it is a spring: a line element without mass, section and axial strain.
+    const SPRING: bool = false;
     /// Whether its frame turns with it.
     const TURNS: bool = true;
     /// Names of its resultants, at most four; line elements only.

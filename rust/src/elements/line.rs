@@ -308,6 +308,7 @@ impl Element<2, 2, 0> for Spring {
     const NAME: &'static str = "SPRING";
     const CELL: &'static str = "line2";
     const LINE: bool = true;
+    const SPRING: bool = true;
     const OUTPUTS: &'static [&'static str] = &["N"];
     type Op<T: Real> = Grad<T, 2>;
     type Prepared<T: Real> = ();
@@ -379,6 +380,7 @@ macro_rules! dof_spring {
             const NAME: &'static str = $name;
             const CELL: &'static str = $cell;
             const LINE: bool = true;
+            const SPRING: bool = true;
             const TURNS: bool = false;
             const OUTPUTS: &'static [&'static str] = &["N"];
             type Op<T: Real> = $op<T, $n>;

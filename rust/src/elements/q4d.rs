@@ -1,5 +1,5 @@
 //! Four-node quadrilateral with drilling rotations: quadratic edges from the rotations, a
-//! bubble, and the rotation tied to the skew gradient by a penalty with the shear modulus
+//! bubble, and the rotation tied to the skew gradient by a penalty with the mean shear modulus
 //! (Ibrahimbegovic, Taylor & Wilson 1990; functional of Hughes & Brezzi 1989).
 // SPDX-License-Identifier: BSD-3-Clause
 
@@ -31,9 +31,10 @@ impl Element<4, 3, 1> for Q4d {
     fn sides(xi: [f64; 2]) -> [f64; 4] {
         shapes::square_sides(xi).0
     }
-    /// Penalty of the drilling row: the shear modulus.
-    fn parameter(moduli: &Mat<f64, 3>) -> f64 {
-        moduli[2][2]
+    /// Penalty of the drilling row: the mean over all directions of the shear modulus, which
+    /// for isotropic material is that modulus itself.
+    fn parameter(c: &Mat<f64, 3>) -> f64 {
+        (c[0][0] + c[1][1] - 2.0 * c[0][1] + 4.0 * c[2][2]) / 8.0
     }
     #[inline(always)]
     fn prepare<T: Real>(_: &Nodal<T, 4, 2>, _: f64) {}

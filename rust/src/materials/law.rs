@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, TensorOutput};
-use super::{elastic::Elastic, mises::Mises, orthotropic::Orthotropic, tabulated::Tabulated};
+use super::{
+    elastic::Elastic, mises::Mises, orthotropic::Orthotropic, ramberg_osgood::RambergOsgood,
+    tabulated::Tabulated,
+};
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -67,4 +70,4 @@ macro_rules! laws {
     };
 }
 
-laws![Elastic, Orthotropic, Mises, Tabulated];
+laws![Elastic, Orthotropic, Mises, RambergOsgood, Tabulated];

@@ -124,3 +124,14 @@ pub fn broadcast<T: Real>(m: &Mat<f64, 3>) -> Mat<T, 3> {
     }
     t
 }
+
+/// Tangent in components xx, yy, xy from its upper triangle by sum, difference and shear, of
+/// which the rows of sum and difference are halved.
+#[inline(always)]
+pub fn in_plane<T: Real>(b: &Mat<T, 3>) -> Mat<T, 3> {
+    let cross = b[0][0] - b[1][1];
+    let straight = b[0][0] + b[1][1];
+    let twice = b[0][1].scale(2.0);
+    let (d13, d23) = (b[0][2] + b[1][2], b[0][2] - b[1][2]);
+    [[straight + twice, cross, d13], [cross, straight - twice, d23], [d13, d23, b[2][2]]]
+}

@@ -16,7 +16,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::hardening::{BackStress, Isotropic};
-use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast};
+use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast, in_plane};
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -196,11 +196,7 @@ impl Mises {
                 b[i][j] = sum.fma(T::real(-0.5), b[i][j]);
             }
         }
-        let cross = b[0][0] - b[1][1];
-        let straight = b[0][0] + b[1][1];
-        let twice = b[0][1].scale(2.0);
-        let (d13, d23) = (b[0][2] + b[1][2], b[0][2] - b[1][2]);
-        [[straight + twice, cross, d13], [cross, straight - twice, d23], [d13, d23, b[2][2]]]
+        in_plane(&b)
     }
 
     /// A tensor of the state as 11, 22, 33, 12.

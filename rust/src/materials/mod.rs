@@ -7,6 +7,7 @@ pub mod law;
 pub mod material;
 pub mod mises;
 pub mod orthotropic;
+pub mod ramberg_osgood;
 pub mod tabulated;
 
 pub use law::Law;

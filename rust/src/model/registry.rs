@@ -62,6 +62,8 @@ pub struct Facts {
     pub stabilized: bool,
     /// Line element.
     pub line: bool,
+    /// Line element without mass, section and axial strain.
+    pub spring: bool,
     /// Whether its frame turns with it.
     pub turns: bool,
     /// Names of resultants of line elements.
@@ -86,6 +88,7 @@ pub fn facts() -> Vec<Facts> {
             about_mean: E::ABOUT_MEAN,
             stabilized: E::MEMORY > 0,
             line: E::LINE,
+            spring: E::SPRING,
             turns: E::TURNS,
             outputs: E::OUTPUTS,
         }

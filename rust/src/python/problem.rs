@@ -499,6 +499,7 @@ fn elements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         d.set_item("about_mean", f.about_mean)?;
         d.set_item("stabilized", f.stabilized)?;
         d.set_item("line", f.line)?;
+        d.set_item("spring", f.spring)?;
         d.set_item("turns", f.turns)?;
         all.push(d);
     }

@@ -20,6 +20,12 @@ fn parameters(name: &str) -> Vec<Vec<f64>> {
             vec![7.0, 0.3, 0.0, 2.0, 0.05, 0.03, 40.0, 0.1],
             vec![7.0, 0.3, 0.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
         ],
+        "ramberg_osgood" => vec![
+            // the usual offset; auxetic; nearly perfectly plastic
+            vec![7.0, 0.3, 0.05, 5.0, 3.0 / 7.0],
+            vec![7.0, -0.4, 0.05, 5.0, 2.0],
+            vec![7.0, 0.49, 0.05, 40.0, 0.002],
+        ],
         "given" => vec![vec![9.0, 2.0, 0.5, 2.0, 6.0, -0.4, 0.5, -0.4, 3.0]],
         other => panic!("give constants to try the law {other:?} with"),
     }

@@ -43,6 +43,8 @@ class Element:
         Has one point, and a stiffness of its own for the hourglass.
     line : bool
         Line element (truss, beam, spring) and no part of the plane.
+    spring : bool
+        Line element without mass, section and axial strain.
     turns : bool
         Whether its frame turns with it.
     """
@@ -60,13 +62,9 @@ class Element:
     weighted: bool
     stabilized: bool
     line: bool = False
+    spring: bool = False
     turns: bool = True
     about_mean: bool = False
-
-    @property
-    def spring(self) -> bool:
-        """Whether it is a spring: it has no mass, no section and no axial strain."""
-        return self.line and self.name.startswith("SPRING")
 
     @property
     def drilling(self) -> bool:

@@ -97,6 +97,7 @@ KEYWORDS: dict[str, Keyword] = {
     ),
     "MATERIAL": Keyword(material.material, "NAME", place="model"),
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
+    "DEFORMATIONPLASTICITY": Keyword(material.deformation_plasticity, place="model"),
     "DENSITY": Keyword(material.density, place="model"),
     "EXPANSION": Keyword(thermal.expansion, "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"),
@@ -322,7 +323,7 @@ _CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACT
 _CHANGE = "pairs and what happens between their surfaces stay over the steps"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 _HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
-_PLASTIC = "the material laws are *ELASTIC and *PLASTIC; use these"
+_PLASTIC = "the material laws are *ELASTIC, *PLASTIC and *DEFORMATION PLASTICITY; use these"
 _PROCEDURE = "this procedure is not part of this version"
 _LINE = "only planar solids, trusses, beams and springs are part of this version"
 
@@ -375,7 +376,6 @@ UNSUPPORTED: dict[str, str] = {
             "RATEDEPENDENT",
             "DEPVAR",
             "USERMATERIAL",
-            "DEFORMATIONPLASTICITY",
             "MOHRCOULOMB",
             "CHANGEPLASTIC",
             "VISCOELASTIC",
@@ -584,5 +584,6 @@ SPELLED = {
         "INITIAL CONDITIONS",
         "SECTION PRINT",
         "NODAL THICKNESS",
+        "DEFORMATION PLASTICITY",
     )
 }

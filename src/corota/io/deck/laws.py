@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.model.materials import Elastic, Orthotropic
+from corota.model.ramberg_osgood import RambergOsgood
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -100,6 +101,14 @@ LAWS: dict[str, DeckLaw] = {
         ("D1111", "D1122", "D2222", "D1133", "D2233", "D3333", "D1212", "D1313", "D2323"),
         _stiffness,
         optional=2,
+    ),
+    "DEFORMATIONPLASTICITY": DeckLaw(
+        "DEFORMATION PLASTICITY",
+        ("Young's modulus", "Poisson's ratio", "the yield stress", "the exponent", "the offset"),
+        RambergOsgood,
+        per_row=5,
+        writes=RambergOsgood,
+        values=RambergOsgood.parameters,
     ),
 }
 

@@ -50,6 +50,11 @@ def elastic(deck: Deck, card: Card) -> None:
     _law(deck, card, law)
 
 
+def deformation_plasticity(deck: Deck, card: Card) -> None:
+    """``*DEFORMATION PLASTICITY``: E, nu, yield stress, exponent, offset."""
+    _law(deck, card, "DEFORMATIONPLASTICITY")
+
+
 def _law(deck: Deck, card: Card, name: str) -> None:
     """Read the constants of a law into the open material."""
     found = open_material(deck, card)

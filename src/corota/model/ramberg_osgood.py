@@ -1,0 +1,107 @@
+"""Deformation plasticity: the nonlinear elasticity of Ramberg and Osgood."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import InputError
+from corota.model.materials import _positive, isotropic_compliance
+from corota.model.single_point import LawOfTheCore
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+#: Halvings after which an interval is as small as rounding.
+BISECTIONS = 60
+
+
+@dataclass
+class RambergOsgood(LawOfTheCore):
+    """Deformation plasticity: ``E e = s + offset (|s| / yield_stress)^(exponent - 1) s``.
+
+    The strain is a function of the stress alone, so that unloading goes back along the same
+    curve. Under loads that grow together it is the plasticity of the power law (fracture
+    mechanics, notches); where parts unload, take :class:`~corota.Mises`.
+
+    Parameters
+    ----------
+    E : float
+        Young's modulus [force/length^2], > 0.
+    nu : float
+        Poisson's ratio, -1 < nu < 1/2.
+    yield_stress : float
+        Stress at which the power term is `offset` times the elastic strain [force/length^2], > 0.
+    exponent : float
+        Power of the stress, >= 1.
+    offset : float
+        Size of the power term, > 0; 3/7 and 0.002 E / yield_stress are usual.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its range.
+
+    Notes
+    -----
+    In three dimensions the power term acts on the deviator, with the equivalent stress q:
+    ``E e = (1 + nu) S - (1 - 2 nu) p I + 3/2 offset (q / yield_stress)^(exponent - 1) S``.
+    All its energy is stored. As ``*DEFORMATION PLASTICITY`` of CalculiX and Abaqus.
+
+    Sources: W. Ramberg and W. R. Osgood, NACA Technical Note 902 (1943); G. Dhondt, *CalculiX
+    CrunchiX User's Manual*, "Ramberg-Osgood materials".
+
+    Examples
+    --------
+    >>> import corota as ct
+    >>> alloy = ct.RambergOsgood(E=72e3, nu=0.33, yield_stress=300.0, exponent=10.0, offset=0.48)
+    """
+
+    E: float
+    nu: float
+    yield_stress: float
+    exponent: float
+    offset: float
+
+    law = "ramberg_osgood"
+    remembers = False
+
+    def __post_init__(self) -> None:
+        self._check_isotropic(self.E, self.nu)
+        self._check_motion()
+        _positive(self.yield_stress, "the yield stress", self.where)
+        _positive(self.offset, "the offset", self.where)
+        if not (math.isfinite(self.exponent) and self.exponent >= 1.0):
+            raise InputError(f"the exponent must be >= 1, not {self.exponent}", self.where)
+
+    @property
+    def first_yield(self) -> float:
+        return self.yield_stress
+
+    def uniaxial(self, strain: ArrayLike) -> NDArray[np.float64]:
+        """Uniaxial stress at axial strains, from the law itself by bisection."""
+        wanted = self.E * np.abs(np.asarray(strain, float))
+        # Either term alone would give too large a stress.
+        power = (wanted / (self.offset * self.yield_stress)) ** (1.0 / self.exponent)
+        low, high = np.zeros_like(wanted), np.minimum(wanted, self.yield_stress * power)
+        for _ in range(BISECTIONS):
+            s = 0.5 * (low + high)
+            grown = s + self.offset * self.yield_stress * (s / self.yield_stress) ** self.exponent
+            low, high = np.where(grown < wanted, s, low), np.where(grown < wanted, high, s)
+        out: NDArray[np.float64] = np.copysign(high, strain)
+        return out
+
+    def compliance(self) -> NDArray[np.float64]:
+        return isotropic_compliance(self.E, self.nu)
+
+    def parameters(self, orientation: float = 0.0) -> list[float]:
+        """``E, nu, yield_stress, exponent, offset``."""
+        numbers = (self.E, self.nu, self.yield_stress, self.exponent, self.offset)
+        return [float(v) for v in numbers]
+
+
+__all__ = ["RambergOsgood"]
