@@ -180,6 +180,14 @@ class StaticStepper(NewtonStepper):
         system.commit()
         state.u, state.at, state.failed = outcome.u, outcome.at, None
         state.step_time = attempt.target
+        if outcome.negative > 0 >= state.negative:
+            state.notes.append(
+                f"step time {attempt.target:.6g}: from here on the equilibrium is unstable "
+                f"(negative pivots of the tangent: {outcome.negative}): a limit or bifurcation "
+                "point was passed, where a real structure snaps or buckles. "
+                "path=ArcLength() or DisplacementControl(...) locates the point and can switch to "
+                "the other branch; 'stable' in the history tells which frames are stable"
+            )
         state.negative = outcome.negative
         attempts = control.attempt
         control.accept(attempt.target, outcome.iterations)

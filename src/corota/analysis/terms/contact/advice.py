@@ -34,12 +34,13 @@ def fillet_note(pair: Pair) -> str:
     if not len(corners):
         return ""
     radius = float(np.hypot(*(corners[:, :2] - corners[:, 4:6]).T).min())
-    edge = float(np.median(pair.slave.length))
+    # The mean by length: short edges at a nose say nothing of the face that slides.
+    edge = float((pair.slave.length**2).sum() / pair.slave.length.sum())
     if radius >= EDGES * edge:
         return ""
     return (
         f"contact pair {pair.item.name!r}: the smallest round corner of the rigid curve has the "
-        f"radius {radius:.4g}, {radius / edge:.2g} slave edges (median {edge:.4g}); the force "
+        f"radius {radius:.4g}, {radius / edge:.2g} slave edges (mean {edge:.4g}); the force "
         "will be jagged while nodes pass it one by one. Use method='node_to_segment' (TYPE=NODE "
         "TO SURFACE), which measures such rounds against edges; or use slave edges of at most "
         f"{radius / EDGES:.3g} where they meet it, or a larger radius"
