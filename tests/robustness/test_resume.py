@@ -365,8 +365,9 @@ def test_costly_checkpoints_are_taken_seldom(tmp_path, monkeypatch):
             super().increment(frame)
             now += 10.0
 
-        def _put(self, task, size=200):
-            task()  # at once, so that the clock counts it
+        def __init__(self, *arguments, **options):
+            super().__init__(*arguments, **options)
+            self._queue.start = lambda: None  # tasks at once, so that the clock counts them
 
     def read():
         return now
