@@ -18,7 +18,7 @@ from corota.results.observer import BaseObserver
 SLOPE = math.radians(25.0)
 
 
-def grooved(aside: float) -> tuple[ct.Model, int]:
+def grooved(aside: float, near: float) -> tuple[ct.Model, int]:
     mesh = ct.mesh.move(ct.mesh.rectangle(1.0, 1.0, 4, 4, "quad4"), angle=45.0)
     low = int(np.argmin(mesh.points[:, 1]))
     mesh.points = mesh.points - mesh.points[low] + [0.02, 0.02]
@@ -31,8 +31,7 @@ def grooved(aside: float) -> tuple[ct.Model, int]:
         plane="strain",
         local_strain="logarithmic",
     )
-    # Short segments beside the bottom: a node keeps to one for a twentieth of its length.
-    x = np.array([-2.0, -0.02, 0.0, 0.02, 2.0])
+    x = np.array([-2.0, -near, 0.0, near, 2.0])
     groove = ct.RigidCurve.polyline(np.column_stack([x, math.tan(SLOPE) * np.abs(x)]))
     slave = np.vstack([mesh.edge_sets["bottom"], mesh.edge_sets["left"]])
     model.contact(slave, groove, name="groove", method="node_to_segment")
@@ -41,9 +40,11 @@ def grooved(aside: float) -> tuple[ct.Model, int]:
     return model, low
 
 
+@pytest.mark.parametrize("near", [0.02, 0.3, 1.0])
 @pytest.mark.parametrize("aside", [-0.02, -0.01, -0.03])
-def test_a_corner_comes_to_rest_at_the_bottom_of_a_groove(aside):
-    model, low = grooved(aside)
+def test_a_corner_comes_to_rest_at_the_bottom_of_a_groove(aside, near):
+    """Whatever the length of the segments beside the bottom: no node goes past a concave corner."""
+    model, low = grooved(aside, near)
     notes = []
 
     class Log(BaseObserver):

@@ -15,8 +15,11 @@ use super::curve::{Vec2, add, dot, fixed, outward, sub, times, unit};
 use super::master::{Hit, Master};
 use crate::base::Smooth;
 
-/// Part of half an edge by which a node may pass its end before another edge takes over.
+/// Part of half an edge by which a node may pass its end before another edge takes over; not at a
+/// concave corner, where it would go into the other edge meanwhile.
 const HOLD: f64 = 0.05;
+/// Overclosure with another edge that is none, part of half an edge.
+const CLEAR: f64 = 1e-9;
 /// Largest cosine between the normals of a slave node and of a master it may touch.
 const FACING: f64 = 0.2;
 
@@ -63,6 +66,7 @@ pub fn choose(
     if let Some(held) = found.iter().find(|f| Some(f.pair) == last)
         && held.beyond <= HOLD
         && held.distance <= best.distance + HOLD * held.size
+        && (held.beyond <= 0.0 || best.gap >= -CLEAR * best.size)
     {
         return last;
     }
