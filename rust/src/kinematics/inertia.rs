@@ -232,6 +232,15 @@ pub fn carriers<const N: usize>(x: &Nodal<f64, N, 2>, light: &[bool; N]) -> [[f6
 }
 
 impl<const N: usize> Mass<f64, N> {
+    /// Multiply with a factor.
+    pub fn scale(&mut self, factor: f64) {
+        for part in [&mut self.nn, &mut self.ne, &mut self.ee, &mut self.rr] {
+            for value in part.as_flattened_mut() {
+                *value *= factor;
+            }
+        }
+    }
+
     /// Take the mass of `light` nodes away and let the other nodes of the element carry it
     /// (mass redistribution: Khenous, Laborde & Renard 2008). An element of light nodes alone
     /// keeps its mass. It is a matrix of the kinetic energy as before, so every conservation

@@ -93,6 +93,8 @@ pub trait Chunk: Send + Sync {
     fn set_initial(&mut self, values: &[f64]);
     /// Let other nodes of the elements carry the mass of these, given by node; empty for none.
     fn set_massless(&mut self, massless: &[bool]);
+    /// Factors on the masses of the elements of the block; empty for one.
+    fn set_mass_factors(&mut self, factors: &[f64]);
     /// Make the trial history of the last evaluation, if there was one, the committed one.
     fn commit(&mut self);
     /// Strains at the points with the committed or the trial internal modes, written to the
@@ -136,6 +138,8 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     pub(super) initial: Vec<f64>,
     /// Nodes of each element that carry no mass; empty for none.
     pub(super) massless: Vec<[bool; N]>,
+    /// Factor on the mass of each element; empty for one.
+    pub(super) mass_factors: Vec<f64>,
     element: PhantomData<E>,
 }
 
@@ -181,6 +185,7 @@ where
             rates: vec![0.0; rates],
             initial: Vec::new(),
             massless: Vec::new(),
+            mass_factors: Vec::new(),
             element: PhantomData,
         }
     }
@@ -424,6 +429,14 @@ where
         let of = |nodes: &[u32; N]| nodes.map(|n| massless[n as usize]);
         self.massless =
             if massless.is_empty() { Vec::new() } else { self.nodes.iter().map(of).collect() };
+    }
+
+    fn set_mass_factors(&mut self, factors: &[f64]) {
+        self.mass_factors = if factors.is_empty() {
+            Vec::new()
+        } else {
+            self.elements.iter().map(|&e| factors[e as usize]).collect()
+        };
     }
 
     fn set_initial(&mut self, values: &[f64]) {

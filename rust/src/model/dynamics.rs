@@ -72,6 +72,9 @@ where
         if let Some(massless) = self.massless.get(e) {
             mass.carry(x, massless, kind == MassKind::Lumped);
         }
+        if let Some(factor) = self.mass_factors.get(e) {
+            mass.scale(*factor);
+        }
         mass
     }
 

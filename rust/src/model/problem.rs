@@ -311,6 +311,18 @@ impl Problem {
         Ok(())
     }
 
+    /// Set factors on the masses of the elements of a block; empty for one.
+    pub fn set_mass_factors(&mut self, block: usize, factors: &[f64]) -> Result<(), String> {
+        let own = self.blocks.get(block).ok_or_else(|| format!("no block {block}"))?;
+        if !factors.is_empty() && factors.len() != own.n_elements {
+            return Err("factors do not fit the elements".into());
+        }
+        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+            chunk.set_mass_factors(factors);
+        }
+        Ok(())
+    }
+
     /// Make the trial histories of the last evaluation the committed ones.
     pub fn commit(&mut self) {
         for chunk in self.colours.iter_mut().flatten() {

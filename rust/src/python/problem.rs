@@ -237,6 +237,15 @@ impl PyProblem {
         self.inner.set_massless(massless.as_slice()?).map_err(value_error)
     }
 
+    /// Set factors on the masses of the elements of a block, shape (n,); empty for one.
+    fn set_mass_factors(
+        &mut self,
+        block: usize,
+        factors: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        self.inner.set_mass_factors(block, factors.as_slice()?).map_err(value_error)
+    }
+
     /// Make the trial history the committed one.
     fn commit(&mut self, py: Python<'_>) {
         let inner = &mut self.inner;

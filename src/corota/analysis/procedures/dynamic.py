@@ -102,6 +102,8 @@ class DynamicStepper(NewtonStepper):
         self.step = step
         system, state, control = self.system, self.state, self.control
         self.inertia = Inertia(system, step.mass, massless_nodes(system, step.redistribute))
+        if self.inertia.remark and self.inertia.remark not in state.notes:
+            state.notes.append(self.inertia.remark)
         self.viscous = ViscousElements(system, step.rayleigh[1])
         self.flight = FreeFlight(system)
         resumes = bool(state.resumes)

@@ -20,6 +20,7 @@ from corota.analysis.distributed import DistributedLoads
 from corota.analysis.distributed_forces import EMPTY, END_POINT, LoadSum
 from corota.analysis.load_history import LoadHistory
 from corota.analysis.terms.moving_mass import massless_nodes
+from corota.analysis.terms.redistribution import set_moving_mass
 from corota.analysis.terms.term import Term
 from corota.errors import ModelError, UnsupportedError
 from corota.model.dofs import DOFS
@@ -278,9 +279,9 @@ class Conditions(Term):
 
     def reset_mass(self) -> None:
         """Let them act on the mass of the motion that this step belongs to."""
-        massless = massless_nodes(self.system, self.system.mass.redistribute)
-        self.system.core.set_massless(np.zeros(0, bool) if massless is None else massless)
-        self.set_mass(self.system.mass.kind)
+        mass = self.system.mass
+        set_moving_mass(self.system, mass.kind, massless_nodes(self.system, mass.redistribute))
+        self.set_mass(mass.kind)
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Set the external force, and what its derivative adds to the tangent."""

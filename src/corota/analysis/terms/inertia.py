@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.terms.attachments import Attachments
+from corota.analysis.terms.redistribution import set_moving_mass
 from corota.analysis.terms.term import Term
 
 if TYPE_CHECKING:
@@ -81,6 +82,8 @@ class Inertia(Term):
     ----------
     massless : ndarray of bool, shape (n_dofs,)
         Displacements without mass.
+    remark : str
+        What the redistribution of mass does to a body, or nothing.
     """
 
     name = "inertia"
@@ -90,8 +93,7 @@ class Inertia(Term):
     ) -> None:
         self.system, self.kind = system, kind
         self.attached = Attachments(system)
-        flags = np.zeros(0, bool) if massless is None else np.ascontiguousarray(massless)
-        system.core.set_massless(flags)
+        self.remark = set_moving_mass(system, kind, massless)
         system.conditions.set_mass(kind)
         self.massless = np.zeros(system.n_dofs, bool)
         if massless is not None:

@@ -1,0 +1,124 @@
+"""The mass that nodes of contact leave to other nodes of their elements.
+
+Where an element has no inner nodes at two distances, its mass moves off the skin. The densities
+of the elements of a body are then changed a little, so that its mass, its center and its moment of
+inertia stay: the change is the least that does, ``1 + a + b . x + c |x|^2`` in the places of the
+elements' masses (the conditions of Khenous, Laborde & Renard 2008).
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.mesh.parts import part_of_cells
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+#: Least factor on a density.
+LEAST = 0.1
+#: Relative rest of conditions that hold.
+HOLDS = 1e-9
+#: Share of a body's size by which its center may move without a remark.
+SMALL = 0.01
+
+
+def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) -> str:
+    """Tell the core which nodes carry no mass and what becomes of the others.
+
+    Parameters
+    ----------
+    system : NumberedModel
+    kind : {"consistent", "constant", "lumped"}
+    massless : ndarray of bool, shape (n_nodes,), or None
+
+    Returns
+    -------
+    str
+        A remark, empty if all is kept.
+    """
+    core, none = system.core, np.zeros(0)
+    core.set_massless(np.zeros(0, bool))
+    for number in range(len(system.blocks)):
+        core.set_mass_factors(number, none)
+    if massless is None:
+        return ""
+    before = _moments(system, kind)
+    core.set_massless(np.ascontiguousarray(massless))
+    after = _moments(system, kind)
+    body = part_of_cells(system.model.mesh)[np.concatenate([b.cells for b in system.blocks])]
+    factors = np.ones(len(body))
+    moved = 0.0
+    for number in np.unique(body[(before != after).any(axis=1)]):
+        own = (body == number) & (after[:, 0] > 0.0)
+        factors[own], aside = _kept(before[own], after[own])
+        moved = max(moved, aside)
+    first = 0
+    for number, block in enumerate(system.blocks):
+        core.set_mass_factors(number, factors[first : first + len(block.cells)])
+        first += len(block.cells)
+    if moved <= SMALL:
+        return ""
+    return (
+        f"contact: the mass of contact nodes moves the center of mass of a body by {moved:.1%} of "
+        "its radius of gyration; take three elements or more through its thickness, elements with "
+        "mid-side nodes, or redistribute=False"
+    )
+
+
+def _moments(system: Any, kind: str) -> Floats:
+    """Mass, its moments x and y and polar moment of inertia of each element, shape (n, 4).
+
+    About the middle of the nodes, lengths over the size of the model.
+    """
+    points = system.model.mesh.points
+    arm = (points - points.mean(axis=0)) / system.length
+    one, zero = np.ones(len(points)), np.zeros(len(points))
+    spin = np.stack([-arm[:, 1], arm[:, 0], one / system.length], axis=1)
+    x, y = np.stack([one, zero, zero], axis=1), np.stack([zero, one, zero], axis=1)
+    rest = np.zeros(system.n_dofs)
+
+    def twice(rates: Floats) -> Floats:
+        v = system.in_space(system.from_nodes(rates))
+        blocks = range(len(system.blocks))
+        each = [system.core.kinetic(number, rest, v, kind, False) for number in blocks]
+        return 2.0 * np.concatenate(each)
+
+    mass, polar = twice(x), twice(spin)
+    along = 0.5 * (twice(y + spin) - mass - polar)
+    across = 0.5 * (mass + polar - twice(x + spin))
+    return np.stack([mass, along, across, polar], axis=1)
+
+
+def _kept(before: Floats, after: Floats) -> tuple[Floats, float]:
+    """Factors of the elements of a body, and how far its center moves over its gyration."""
+    total = before.sum(axis=0)
+    center = total[1:3] / total[0]
+    size = np.sqrt(max(total[3] / total[0] - center @ center, 0.0)) or 1.0
+
+    def centered(m: Floats) -> Floats:
+        dx, dy = center
+        polar = m[:, 3] - 2.0 * (dx * m[:, 1] + dy * m[:, 2]) + m[:, 0] * (dx * dx + dy * dy)
+        x, y = m[:, 1] - dx * m[:, 0], m[:, 2] - dy * m[:, 0]
+        return np.stack([m[:, 0], x / size, y / size, polar / size**2], axis=1)
+
+    want, have = centered(before).sum(axis=0), centered(after)
+    missing = (want - have.sum(axis=0)) / total[0]
+    shape = have / have[:, :1]
+    for count in (4, 3):
+        gram = have[:, :count].T @ shape[:, :count] / total[0]
+        share = np.linalg.lstsq(gram, missing[:count], rcond=1e-12)[0]
+        if np.abs(gram @ share - missing[:count]).max() > HOLDS:
+            continue
+        factors = 1.0 + shape[:, :count] @ share
+        if factors.min() >= LEAST:
+            return factors, 0.0
+    return np.ones(len(after)), float(np.hypot(*missing[1:3]))
+
+
+__all__ = ["set_moving_mass"]
