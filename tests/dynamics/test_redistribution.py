@@ -13,7 +13,7 @@ from corota.analysis.procedures import dynamic as dynamics
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.terms.inertia import Inertia
 
-CELLS = {"OPT": "tri3", "T3": "tri3", "Q8": "quad8", "Q9": "quad9"}
+CELLS = {"OPT": "tri3", "T3": "tri3", "T6": "tri6", "Q8": "quad8", "Q8R": "quad8", "Q9": "quad9"}
 SIDES = (4.0, 1.0)
 
 
@@ -84,14 +84,14 @@ def test_a_thrown_block_turns_as_without_contact(element, scheme):
     end, spin = 0.4, 2.0
     model = flying(element, spin)
     model.contact("bottom", ct.RigidCurve.line((-99.0, -90.0), (99.0, -90.0)))
-    model.force([0], x=30.0, y=10.0)
+    model.force([model.mesh.n_nodes - 1], x=30.0, y=10.0)
     plain = flying(element, spin)
-    plain.force([0], x=30.0, y=10.0)
+    plain.force([plain.mesh.n_nodes - 1], x=30.0, y=10.0)
     step = ct.Dynamic(period=end, increments=80, scheme=scheme)
     turned = []
     for each in (model, plain):
         frame = ct.solve(each, step, fields=False).frames[-1]
-        across = frame.U[-1] - frame.U[-9] + [4.0, 0.0]
+        across = frame.U[-1] - frame.U[-9] + each.mesh.points[-1] - each.mesh.points[-9]
         turned.append([np.arctan2(across[1], across[0]), *frame.U[9:].mean(axis=0)])
     np.testing.assert_allclose(turned[0], turned[1], rtol=2e-3)
 
