@@ -47,6 +47,11 @@ if TYPE_CHECKING:
 #: Threads beyond so many for each core, and beyond this number, only cost memory.
 THREADS_PER_CORE, LEAST_CAP = 4, 64
 
+#: Procedures that find the equilibrium of their own theory.
+EQUILIBRATING = ("static", "dynamic")
+#: Relative difference of strain energies up to which a linear state may carry a linear procedure.
+LINEAR_STATE = 0.02
+
 
 def solve(
     model: Model,
@@ -319,6 +324,10 @@ class Analysis:
         """Start a step from the committed state."""
         system = self.system
         nlgeom = system.nlgeom
+        # Of a linear state about which this step is a small motion or a bifurcation.
+        linear_energy = 0.0
+        if not nlgeom and step.nlgeom and step.procedure not in EQUILIBRATING and state.u.any():
+            linear_energy = system.recover(state.u)[1]["strain energy"]
         system.mass = self.mass(number)
         self.begun.append(Begun(state.time, reaction is None, system.conditions.end_time))
         system.begin(step, state.time, state.u, reaction)
@@ -326,6 +335,16 @@ class Analysis:
         system.conditions.notes = []
         if state.at is None or nlgeom != system.nlgeom:
             state.at = system.evaluate(state.u, 0.0)
+        if linear_energy:
+            ratio = system.recover(state.u)[1]["strain energy"] / linear_energy
+            if abs(ratio - 1.0) > LINEAR_STATE:
+                self._warn(
+                    f"linear state {number}",
+                    f"step {number} ({step.procedure}) is about the state of a linear step, whose "
+                    f"displacements are too large for that: with their rotations they store "
+                    f"{ratio:.3g} times the energy, and the stress stiffness is as wrong. Set "
+                    "nlgeom (NLGEOM) on the step before",
+                )
         assert state.energies is not None
         state.energies.begin(step, state.at.internal)
         if number == 1:
