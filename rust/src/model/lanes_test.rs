@@ -39,6 +39,7 @@ fn parameters(law: &str) -> Vec<f64> {
         "orthotropic" => vec![1000.0, 300.0, 200.0, 0.25, 0.2, 0.3, 150.0, 0.4],
         // One back-stress with recall, hardening of Voce.
         "mises" => vec![1000.0, 0.3, 1.0, 50.0, 2.0, 2.0, 80.0, 20.0, 5.0, 100.0],
+        "ramberg_osgood" => vec![1000.0, 0.3, 100.0, 2.0, 0.5],
         "given" => GIVEN.to_vec(),
         _ => panic!("give the law {law} parameters for this test"),
     }
