@@ -36,41 +36,44 @@ class Case:
 
 
 ROTATED = (
-    "half of the beam bends under a moment: exact is M l^2 / 2 EI = 0.0451499, found here; "
-    "CalculiX makes solids of beams, with knots where moments act"
+    "half of the beam bends under a moment: exact is M l^2 / 2 EI = 0.0451499; Corota gives this. "
+    "CalculiX expands beams to solids, with rigid knots where moments act"
 )
 CASES = (
-    Case("oneel", "the digits of the other's file"),
-    Case("planestrain", "the digits of the other's file"),
-    Case("planestrain2", "the digits of the other's file"),
-    Case("planestress", "the digits of the other's file"),
-    Case("planestress2", "the digits of the other's file"),
+    Case("oneel", "digits printed by CalculiX"),
+    Case("planestrain", "digits printed by CalculiX"),
+    Case("planestrain2", "digits printed by CalculiX"),
+    Case("planestress", "digits printed by CalculiX"),
+    Case("planestress2", "digits printed by CalculiX"),
     Case(
         "planestress3",
-        "CalculiX expands CPS4 into a solid whose stress across does not vanish at each point",
+        "CalculiX expands CPS4 into a solid whose out-of-plane stress does not vanish at each "
+        "point",
     ),
     Case(
         "scheibe",
-        "a plate turned by half a turn: exact is 2 for the corners beside the centre, and this "
-        "is found. CalculiX linearises the rotation in each of 100 "
-        "increments and drifts to 3.17",
+        "a plate rotated by half a turn: exact is 2 for the corners beside the center; Corota "
+        "gives this. CalculiX linearizes the rotation in each of 100 increments and drifts to 3.17",
     ),
-    Case("spring4", "the digits of the other's file"),
+    Case("spring4", "digits printed by CalculiX"),
     Case("spring1", "a spring alone"),
     Case("spring2", "a nonlinear spring"),
-    Case("edgeload", "the digits of the other's file"),
+    Case("edgeload", "digits printed by CalculiX"),
     Case(
         "beamlin",
-        "a stepped bar: exact is F l / EA, 0.0125 in a quarter of it, found here; CalculiX makes "
-        "solids of beams, with a knot at the step",
+        "a stepped bar: exact is F l / EA, 0.0125 in a quarter of it; Corota gives this. CalculiX "
+        "expands beams to solids, with a rigid knot at the step",
     ),
     Case("rot1", ROTATED),
     Case("rot2", ROTATED),
     Case("rot3", ROTATED + "; in NLGEOM 0.0449824"),
-    Case("section4", "one number for a circle"),
+    Case("section4", "circular section with one number"),
     Case("axiplane", "axisymmetric elements"),
     Case("dam", "heat conduction"),
-    Case("plate", "contact by springs between the surfaces, whose stiffness is a choice"),
+    Case(
+        "plate",
+        "CalculiX models contact by springs between the surfaces, whose stiffness is a parameter",
+    ),
 )
 
 
@@ -127,7 +130,7 @@ def row(case: Case) -> str:
         folder = Path(name)
         deck = folder / f"{case.name}.inp"
         deck.write_bytes(text_of(case.name))
-        how = "as it is"
+        how = "unchanged"
         try:
             try:
                 model = ct.read(deck)
@@ -170,7 +173,7 @@ def others() -> list[Case]:
         types = {t.upper() for t in _TYPE.findall(text_of(name))}
         planar = any(t.startswith((b"CPS", b"CPE")) for t in types)
         if name not in known and planar and not any(t.startswith(b"C3D") for t in types):
-            found.append(Case(name, "not looked at"))
+            found.append(Case(name, "not investigated"))
     return found
 
 
@@ -180,12 +183,13 @@ def main() -> None:
     lines = [
         "# Decks of CalculiX's tests",
         "",
-        f"Written by `python -m benchmarks.ccx_decks` with {' '.join(version.split())}.",
-        "The difference is the largest of any node's displacement at the end of the static steps,",
-        "relative to the largest displacement. These are the decks of the suite in one plane with",
-        "planar elements, trusses, beams and springs only; the files are not changed.",
+        f"Written by `python -m benchmarks.ccx_decks` with CalculiX {version.split()[-1]}.",
+        "The decks are those of its test suite that lie in one plane and have only planar",
+        "elements, trusses, beams and springs; the files are not changed. The difference is the",
+        "largest of any nodal displacement at the end of the static steps, relative to the",
+        "largest displacement.",
         "",
-        "| deck | runs | largest displacement | difference | why |",
+        "| deck | runs | largest displacement | difference | cause |",
         "| --- | --- | --- | --- | --- |",
         *(row(case) for case in [*CASES, *others()]),
         "",

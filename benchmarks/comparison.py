@@ -128,7 +128,7 @@ def cost(records: list[dict[str, Any]], error: float, key: str) -> float:
 
 
 def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> str:
-    """Table of the errors on the finest mesh and of the cost of one per cent."""
+    """Table of the errors on the finest mesh and of the cost of one percent."""
     rows: list[list[object]] = []
     more = [key for key in ("balance error",) if any(key in r for r in records)]
     for variant in case.variants:
@@ -165,7 +165,7 @@ def tables(case: Case, records: list[dict[str, Any]], error: float = 0.01) -> st
 
 
 def doubt(case: Case, records: list[dict[str, Any]]) -> str:
-    """What the references change by from a mesh half as fine."""
+    """Change of the references with a mesh half as fine."""
     by_value: dict[str, list[str]] = {}
     for variant in case.variants:
         found = [r["moves"] for r in records if r["variant"] == variant and "moves" in r]
@@ -179,7 +179,7 @@ def doubt(case: Case, records: list[dict[str, Any]]) -> str:
         for value, variants in by_value.items()
         if value != common
     )
-    return f" From a mesh half as fine the reference changes by {common}{others}."
+    return f" With a mesh half as fine the reference changes by {common}{others}."
 
 
 def has_all(case: Case, records: list[dict[str, Any]], variant: str) -> bool:

@@ -41,7 +41,8 @@ def say(line: str) -> str:
 def schemes(cells: int) -> list[str]:
     """Table of schemes on the elastic bar."""
     lines = [
-        f"Elastic bar, {cells} `Q4I`; each figure over its exact value but for the contacts.",
+        f"Elastic bar, {cells} `Q4I`; figures relative to the exact value, except for contacts "
+        "and iterations.",
         "",
         "| scheme | mass of contact nodes | contacts | duration | rebound | energy | largest force "
         "| iterations |",
@@ -70,9 +71,10 @@ def budgets(around: int) -> tuple[list[str], dict[str, Budget]]:
     """Table of momenta and energies of the elastic ring with each scheme, and the figures."""
     lines = [
         f"Elastic ring, {around} x 2 `Q4I`, speed 1 towards the wall, 400 fixed increments of "
-        "1/500; momenta over that of the start across the wall, energies over that of the start.",
+        "1/500; momenta relative to the initial momentum normal to the wall, energies to the "
+        "initial energy.",
         "",
-        "| hit | scheme | mass of contact nodes | momentum across | along | gain less impulse "
+        "| hit | scheme | mass of contact nodes | normal momentum | tangential | gain less impulse "
         "| angular gain | less moment | travel | spin | vibration | friction | lost | contacts "
         "| largest force |",
         "| " + " | ".join(["---"] * 15) + " |",
@@ -135,7 +137,7 @@ def compare(found: dict[str, Budget], path: Path) -> None:
         axes[0, column].set(title=scheme.replace("_", " "), ylim=(0, 31))
         axes[1, column].set(xlabel="time", ylim=(0.86, 1.04))
     axes[0, 0].set(ylabel="contact force", xlim=(0, 0.8))
-    axes[1, 0].set(ylabel="energy / energy of the start")
+    axes[1, 0].set(ylabel="energy / initial energy")
     axes[1, 2].legend(frameon=False, loc="lower left")
     figure.savefig(path, dpi=110)
     plt.close(figure)
@@ -144,7 +146,7 @@ def compare(found: dict[str, Budget], path: Path) -> None:
 def yielding(around: int, cells: int) -> tuple[list[str], dict[str, Flight]]:
     """Table of the rings and bars that yield, and the flights of the rings."""
     lines = [
-        f"Energies over that of the start. Ring: {around} x 2 elements; bar: {cells} x 4.",
+        f"Energies relative to the initial energy. Ring: {around} x 2 elements; bar: {cells} x 4.",
         "",
         "| body | element | speed | rebound | kinetic | strain | plastic | balance error | "
         "momentum along wall | shape | increments | iterations | CPU s |",
@@ -214,7 +216,7 @@ def picture(flight: Flight, path: Path) -> None:
         labels=["kinetic", "elastic", "plastic"],
         colors=["#4477aa", "#ccbb44", "#cc6677"],
     )
-    left.set(xlabel="time", ylabel="energy / energy of the start", xlim=(0, t[-1]), ylim=(0, 1.1))
+    left.set(xlabel="time", ylabel="energy / initial energy", xlim=(0, t[-1]), ylim=(0, 1.1))
     left.axhline(1.0, color="black", linewidth=0.8)
     left.legend(loc="lower left", frameon=True)
     right.plot(t, history["force"], color="#333333", linewidth=0.9)

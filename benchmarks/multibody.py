@@ -185,8 +185,8 @@ def main() -> int:
             )
         if options.write:
             draw(name, mechanism, runs)
-    head = ["problem", "quantity", "largest", "exudyn, 64 beams a bar"]
-    head += [f"{cells} beams a bar" for cells, _ in OURS]
+    head = ["problem", "quantity", "largest", "exudyn, 64 beams per bar"]
+    head += [f"{cells} beams per bar" for cells, _ in OURS]
     head += [f"Q8, {PLANE_CELLS} x 2"]
     text = table(head, lines) + "\n" + "".join(f"\n{note}\n" for note in notes)
     sys.stdout.write(text)

@@ -166,8 +166,8 @@ def page() -> str:
     parts = [comparison(*problem) for problem in PROBLEMS] + [weight(), locking()]
     head = (
         "# Plasticity: measured tables\n\n"
-        "Written by `python -m benchmarks.plasticity_table --write`; what follows from them is on "
-        f"the page [plasticity](plasticity.md). Measured on {machine()}.\n"
+        "Written by `python -m benchmarks.plasticity_table --write`; the page "
+        f"[plasticity](plasticity.md) has the conclusions. Measured on {machine()}.\n"
     )
     return "\n".join([head, *parts])
 

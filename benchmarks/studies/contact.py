@@ -107,10 +107,10 @@ CASES = (
         "contact",
         "contact-slender",
         "Slender: strip bent by a rigid disc",
-        "Clamped strip 10 x 0.5, E = 1e6, nu = 0.3; a rigid disc of radius 1 above x = 8 moves "
-        "down by 1.4 and slides along it; twenty increments. Force on the disc: vertical, "
-        "mean over the way and at its end, and horizontal at its end, against Q9 with 256 x 32 "
-        "cells and mortar contact.",
+        "Clamped strip 10 x 0.5, E = 1e6, nu = 0.3. A rigid disc of radius 1 above x = 8 moves "
+        "down by 1.4 in twenty increments and slides along it. Value: force on the disc "
+        "(vertical, mean over the path and at its end; horizontal at its end). Reference: Q9 with "
+        "256 x 32 cells and mortar contact.",
         VARIANTS,
         (1, 2, 4, 8),
         strip,
@@ -125,10 +125,10 @@ CASES = (
         "contact",
         "contact-bulky",
         "Bulky: two blocks, curved face, distorted mesh",
-        "Problem P3: block 1 x 0.5 with a face of radius 8 pressed by 0.02 into a block 2 x 1, "
-        "E = 210000, nu = 0.3; meshes that do not match, the inner nodes of the lower one shifted "
-        "at random by up to 0.2 of a side; ten increments. Force between them as above, "
-        "against Q9 with 64 cells along the face and mortar contact.",
+        "Problem P3: a block 1 x 0.5 with a face of radius 8 is pressed by 0.02 into a block 2 x "
+        "1 in ten increments, E = 210000, nu = 0.3; the meshes do not match, and the inner nodes "
+        "of the lower one are shifted at random by up to 0.2 of a side. Value: force between the "
+        "blocks, as above. Reference: Q9 with 64 cells along the face and mortar contact.",
         VARIANTS,
         (4, 8, 16),
         blocks,

@@ -84,10 +84,10 @@ CASES = (
         "dynamics",
         "dynamics-slender",
         "Slender: free rod",
-        "Rod 10 x 0.5, E = 1e4, free, spins with 2 rad per unit of time and is bent by a pulse at "
-        "one end; two cells across; 120 increments of the trapezoidal rule. Path of the end over a "
-        "turn (root mean square) against Q9 with 64 cells and the same increments, so that only "
-        "mesh and mass count.",
+        "Free rod 10 x 0.5, E = 1e4, spinning at 2 rad per unit of time and bent by a pulse at "
+        "one end; two cells across; 120 increments of the trapezoidal rule. Value: path of the "
+        "end over a turn (root mean square). Reference: Q9 with 64 cells and the same increments, "
+        "so that only mesh and mass matter.",
         MASSES,
         (4, 8, 16, 32),
         rod,
@@ -101,9 +101,10 @@ CASES = (
         "dynamics",
         "dynamics-bulky",
         "Bulky: tumbling block, distorted mesh",
-        "Block 2 x 1, E = 1e3, free, spins with 4 rad per unit of time and is pulled by a pulse on "
+        "Free block 2 x 1, E = 1e3, spinning at 4 rad per unit of time and pulled by a pulse on "
         "one side; inner nodes shifted at random by up to 0.2 of a side; 120 increments of the "
-        "trapezoidal rule. Path of a corner against Q9 with 64 x 32 cells and the same increments.",
+        "trapezoidal rule. Value: path of a corner. Reference: Q9 with 64 x 32 cells and the same "
+        "increments.",
         MASSES,
         (1, 2, 4, 8, 16),
         block,

@@ -116,11 +116,12 @@ CASES = (
         "impact-slender",
         "Slender: a yielding ring hits a wall",
         "Half of a ring of radius 1 and thickness 0.1 (E = 1e4, yield stress 60, hardening 200, "
-        "density 1) flies against a rigid wall with the velocity 1; at least 400 increments of "
-        "HHT, constant inertia, redistributed at the contact; cells 2.5 times as long as thick, in "
-        "the third column trapezoids, in the fourth the energy-momentum scheme. Path of "
-        "its top (root mean square) against Q9 with 12 cells through the thickness and 144 along, "
-        "the logarithmic strain, the same scheme and increments.",
+        "density 1) flies against a rigid wall with velocity 1; at least 400 increments of HHT; "
+        "constant inertia, redistributed at the contact; cells 2.5 times as long as thick. In the "
+        "third column the cells are trapezoids; in the fourth the scheme is energy-momentum. "
+        "Value: path of the top (root mean square). Reference: Q9 with 12 cells through the "
+        "thickness and 144 along the ring, the logarithmic strain, and the same scheme and "
+        "increments.",
         ("linear", "logarithmic", "trapezoids", "energy-momentum"),
         (1, 2, 4, 8),
         ring,
@@ -136,11 +137,11 @@ CASES = (
         "impact",
         "impact-bulky",
         "Bulky: a yielding block hits a wall, distorted mesh",
-        "Half of a block 1 x 2 of the same material flies against the wall with the velocity 3; "
-        "its inner nodes are shifted at random by up to 0.2 of a side; at least 200 increments of "
-        "HHT with the logarithmic strain and constant inertia where the column does not say "
-        "otherwise. Path of the middle of its top against Q9 with 16 cells across the half and "
-        "64 up, the logarithmic strain, the same scheme and increments.",
+        "Half of a block 1 x 2 of the same material flies against the wall with velocity 3; inner "
+        "nodes are shifted at random by up to 0.2 of a side; at least 200 increments of HHT with "
+        "the logarithmic strain and constant inertia, unless the column says otherwise. Value: "
+        "path of the middle of the top. Reference: Q9 with 16 cells across the half and 64 in the "
+        "height, the logarithmic strain, and the same scheme and increments.",
         ("linear", "logarithmic", "consistent", "lumped", "energy-momentum"),
         (1, 2, 4, 8),
         block,

@@ -90,9 +90,9 @@ CASES = (
         "plasticity",
         "plasticity-slender",
         "Slender: perfectly plastic cantilever",
-        "Cantilever 10 x 1, its end moved by 0.5 (about three times the elastic limit); cells "
-        "twice as long as high; ten increments. Force at the end against Q9 with the "
-        "logarithmic strain, extrapolated (first order) from 16 and 32 cells in the height.",
+        "Cantilever 10 x 1 whose end is displaced by 0.5 (about three times the elastic limit) in "
+        "ten increments; cells twice as long as high. Value: force at the end. Reference: Q9 with "
+        "the logarithmic strain, extrapolated (first order) from 16 and 32 cells in the height.",
         STRAINS,
         (2, 4, 8, 16),
         beam,
@@ -106,10 +106,11 @@ CASES = (
         "plasticity",
         "plasticity-bulky",
         "Bulky: strip with a hole",
-        "The quarter strip 10 x 18 with a hole of radius 5, drawn by 0.3 with linear hardening "
-        "(problem P2); cells of a mapped mesh, skewed towards the corner; ten increments. Force "
-        "against Q9 with 40 cells along an eighth of the hole and the logarithmic strain. The "
-        "ligament strains by a few tenths: what the local strains differ by is the model's error.",
+        "Quarter strip 10 x 18 with a hole of radius 5, stretched by 0.3 with linear hardening "
+        "(problem P2) in ten increments; mapped mesh, skewed towards the corner. Value: force. "
+        "Reference: Q9 with 40 cells along an eighth of the hole and the logarithmic strain. The "
+        "ligament strains by a few tenths; the difference between the local strains is a modeling "
+        "error.",
         STRAINS,
         (3, 5, 10, 20),
         strip,
@@ -123,10 +124,10 @@ CASES = (
         "plasticity",
         "plasticity-cook",
         "Bulky and bent: Cook's panel, distorted mesh",
-        "Cook's panel, yield stress 0.243, hardening 0.135, under a dead shear force of 1.8, inner "
-        "nodes shifted at random by up to 0.2 of a side; in the fourth column with a hardening of "
-        "0.3, above the stress. Displacement of the upper corner against Q9 with 48 x 48 cells "
-        "and the logarithmic strain.",
+        "Cook's panel, yield stress 0.243, hardening 0.135, under a dead shear force of 1.8; "
+        "inner nodes shifted at random by up to 0.2 of a side; in the fourth column the hardening "
+        "is 0.3, above the stress. Value: displacement of the upper corner. Reference: Q9 with 48 "
+        "x 48 cells and the logarithmic strain.",
         (*STRAINS, HARDENS),
         (4, 8, 16, 24),
         panel,

@@ -74,10 +74,11 @@ CASES = (
         "statics",
         "statics-slender",
         "Slender: strip 20 to 1",
-        "Clamped strip 10 x 0.5 under a dead shear at its end, `P L^2 / (E I) = 4`: the end turns "
-        "by 64 degrees; ten increments; cells five times as long as high, in the second column "
-        "trapezoids whose upright sides lean to and fro by 0.3 of a cell. Mean displacement of the "
-        "corners of the end against Q9 with 160 x 8 square cells.",
+        "Clamped strip 10 x 0.5 under a dead shear force at its end, `P L^2 / (E I) = 4`, which "
+        "rotates the end by 64 degrees in ten increments. Cells are five times as long as high; "
+        "in the second column they are trapezoids whose upright sides lean alternately by 0.3 of "
+        "a cell. Value: mean displacement of the two corners of the end. Reference: Q9 with 160 x "
+        "8 square cells.",
         ("rectangles", "trapezoids"),
         (1, 2, 4, 8, 16),
         strip,
@@ -90,11 +91,11 @@ CASES = (
         "statics",
         "statics-bulky",
         "Bulky: Cook's panel",
-        "Panel (0, 0), (48, 44), (48, 60), (0, 44), E = 1, nu = 1/3, clamped left, dead shear 0.2 "
-        "on the right (displacement 4.4 of a height of 16); four increments; in the second column "
-        "inner nodes are shifted at random by up to 0.2 of a side, in the third the local strain "
-        "is `green_lagrange`. Displacement of the middle of the right side against Q9 with "
-        "64 x 64 cells.",
+        "Panel (0, 0), (48, 44), (48, 60), (0, 44), E = 1, nu = 1/3, clamped at the left, with a "
+        "dead shear force of 0.2 at the right (displacement 4.4 for a height of 16), in four "
+        "increments. In the second column inner nodes are shifted at random by up to 0.2 of a "
+        "side; in the third the local strain is `green_lagrange`. Value: displacement of the "
+        "middle of the right side. Reference: Q9 with 64 x 64 cells.",
         ("regular", "random", "green_lagrange"),
         (2, 4, 8, 16, 32),
         panel,
