@@ -179,20 +179,46 @@ def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda m: m.velocity("all", x=1.0), "initial velocities"),
-        (lambda m: m.point_mass([3], 1.0), "point masses"),
-        (lambda m: m.dashpot(1, c=1.0, second=2), "dashpots"),
-        (lambda m: m.equation((1, "x", 1.0), (2, "x", -1.0)), "equations and couplings"),
-        (lambda m: m.rigid("right", 2), "equations and couplings"),
-        (lambda m: m.local_axes([1], angle=0.5), "local axes"),
-        (lambda m: m.steps.append(ct.Static(path=ct.ArcLength(factor=1.0))), "step 1: path"),
-        (lambda m: m.steps.append(ct.Static(at_limit="follow")), "step 1: at_limit"),
+        (lambda m: m.point_mass([3], 1.0, inertia=1.0), "inertia of a point mass"),
+        (lambda m: m.dashpot(1, x=1.0), "dashpot to the ground"),
+        (lambda m: m.equation((1, "x", 1.0), (2, "x", -1.0), rhs=0.1), "right-hand side 0.1"),
+        (
+            lambda m: m.couple("right", 2, kind="distributing", dofs="x", weights=[1.0, 2.0, 3.0]),
+            "weights and only some dofs",
+        ),
+        (lambda m: m.local_axes([1], angle=0.5, centre=(0.0, 1.0)), "local axes about a point"),
+        (lambda m: m.contact("left", "right", reach=0.5), "reach"),
+        (
+            lambda m: m.steps.append(ct.Static(path=ct.DisplacementControl("right", "y", 1.0))),
+            "step 1: path=DisplacementControl",
+        ),
+        (
+            lambda m: m.steps.append(ct.Static(path=ct.ArcLength(switch=True))),
+            "step 1: switch of ArcLength",
+        ),
+        (lambda m: m.steps.append(ct.Static(at_limit="follow")), "step 1: at_limit of Static"),
         (lambda m: m.steps.append(ct.Static(plastic_increment=0.01)), "step 1: plastic_increment"),
         (lambda m: m.steps.append(ct.Static(tolerance=1e-6)), "step 1: a tolerance of 1e-06"),
-        (lambda m: m.steps.append(ct.Buckle()), "step 1: Buckle"),
+        (lambda m: m.steps.append(ct.Dynamic(scheme="generalized_alpha")), "with rho_inf=0.8"),
+        (lambda m: m.steps.append(ct.Dynamic(mass="lumped")), "step 1: mass='lumped'"),
+        (lambda m: m.steps.append(ct.Dynamic(error_tolerance=1e-3)), "step 1: error_tolerance"),
+        (lambda m: m.steps.append(ct.Frequency(mass="lumped")), "step 1: mass='lumped'"),
+        (lambda m: m.steps.append(ct.ModalDynamic(residual=True)), "step 1: residual"),
         (
-            lambda m: setattr(m.sections[0], "material", ct.Mises(1.0, 0.3, yield_stress=1.0)),
-            "material of type Mises",
+            lambda m: m.steps.extend([ct.Dynamic(rayleigh=(1.0, 0.0)), ct.Dynamic()]),
+            "different rayleigh damping",
+        ),
+        (
+            lambda m: setattr(
+                m.sections[0],
+                "material",
+                ct.Mises(1.0, 0.3, yield_stress=1.0, isotropic=ct.Voce(1.0, 1.0, 1.0), name="m"),
+            ),
+            "material m: the linear part H",
+        ),
+        (
+            lambda m: setattr(m.sections[0], "material", ct.UserMaterial(lambda *_: None)),
+            "material of type UserMaterial",
         ),
     ],
 )

@@ -15,10 +15,11 @@ from corota.io.unv import read_unv
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from corota.mesh.data import Mesh
     from corota.model.model import Model
+    from corota.model.steps import Step
 
 
 def _deck_mesh(path: str | os.PathLike[str]) -> Mesh:
@@ -94,8 +95,22 @@ def read(
     )
 
 
-def write(model: Model, path: str | os.PathLike[str]) -> Path:
+def write(
+    model: Model, path: str | os.PathLike[str], steps: Step | Sequence[Step] | None = None
+) -> Path:
     """Write a model in the format that the ending names; return the path.
+
+    Parameters
+    ----------
+    model : Model
+    path : path-like
+        ``.inp`` for a deck.
+    steps : Step or sequence of Step, optional
+        Steps to write, as :func:`corota.solve` takes them; those of the model by default.
+
+    Returns
+    -------
+    Path
 
     Raises
     ------
@@ -110,7 +125,7 @@ def write(model: Model, path: str | os.PathLike[str]) -> Path:
             f"{path}: no writer of models for {suffix or 'a file without an extension'}; "
             f"known: {', '.join(MODEL_WRITERS)}"
         )
-    return MODEL_WRITERS[suffix](model, path)
+    return MODEL_WRITERS[suffix](model, path, steps)
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:

@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.model.materials import Elastic, Orthotropic
+from corota.model.plasticity import Mises
 from corota.model.ramberg_osgood import RambergOsgood
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class DeckLaw:
         Constants at the end that may be left out; they are zero.
     follows_temperature : bool
         Whether constants for several temperatures are read.
-    writes : type of Material, optional
+    writes : tuple of types of Material, optional
         The materials that are written by this card.
     values : callable, optional
         Gives the constants of such a material.
@@ -48,7 +49,7 @@ class DeckLaw:
     per_row: int = 8
     optional: int = 0
     follows_temperature: bool = False
-    writes: type[Material] | None = None
+    writes: tuple[type[Material], ...] = ()
     values: Callable[[Any], Sequence[float]] | None = None
 
 
@@ -82,7 +83,7 @@ LAWS: dict[str, DeckLaw] = {
         per_row=2,
         optional=1,
         follows_temperature=True,
-        writes=Elastic,
+        writes=(Elastic, Mises),
         values=lambda m: (m.E, m.nu),
     ),
     "LAMINA": DeckLaw(
@@ -93,7 +94,7 @@ LAWS: dict[str, DeckLaw] = {
         ("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"),
         _engineering,
         optional=2,
-        writes=Orthotropic,
+        writes=(Orthotropic,),
         values=lambda m: (*m.parameters()[:7], m.G12, m.G12),
     ),
     "ORTHOTROPIC": DeckLaw(
@@ -107,7 +108,7 @@ LAWS: dict[str, DeckLaw] = {
         ("Young's modulus", "Poisson's ratio", "the yield stress", "the exponent", "the offset"),
         RambergOsgood,
         per_row=5,
-        writes=RambergOsgood,
+        writes=(RambergOsgood,),
         values=RambergOsgood.parameters,
     ),
 }
@@ -115,7 +116,7 @@ LAWS: dict[str, DeckLaw] = {
 
 def law_cards(material: Material, number: Callable[[float], str]) -> str | None:
     """The card of a material's law; ``None`` where there is none."""
-    law = next((law for law in LAWS.values() if law.writes is type(material)), None)
+    law = next((law for law in LAWS.values() if type(material) in law.writes), None)
     if law is None:
         return None
     assert law.values is not None

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,21 +14,14 @@ from corota.model.contact import RigidCurve
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from corota.mesh.data import Floats, Ints
+    from corota.io.deck.write.text import Writer
+    from corota.mesh.data import Floats
     from corota.model.contact import ContactPair, PressureLaw
     from corota.model.model import Model
 
 #: Arcs are cut into pieces of at most this angle [rad]; a deck's are less than half a turn.
 PIECE = math.radians(120.0)
 _TYPES = {"mortar": "SURFACE TO SURFACE", "node_to_segment": "NODE TO SURFACE"}
-
-
-class Writer(Protocol):
-    """What is used of the writer of decks."""
-
-    model: Model
-
-    def edge_set(self, where: str | Ints) -> str: ...
 
 
 def contact_cards(writer: Writer) -> Iterator[str]:
@@ -62,12 +55,7 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             yield _profile(model, pair.master, master)
         adjust = f", ADJUST={float(pair.adjust)!r}" if pair.start == "adjust" else ""
         if adjust and pair.adjust_nodes is not None:
-            if not isinstance(pair.adjust_nodes, str):
-                raise UnsupportedError(
-                    f"contact pair {pair.name!r}: give the adjusted nodes a name in "
-                    "mesh.node_sets to write them to a deck"
-                )
-            adjust = f", ADJUST={_word(pair.adjust_nodes)}"
+            adjust = f", ADJUST={writer.node_set(pair.adjust_nodes)}"
         yield f"*CONTACT PAIR, INTERACTION=INTERACTION{number}, TYPE={_TYPES[pair.method]}"
         smooth = ", SMOOTH=0.5" if pair.smooth else ""
         yield f"{adjust}{smooth}\n{slave}, {master}\n"

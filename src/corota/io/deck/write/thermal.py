@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,25 +15,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from corota.mesh import Mesh
+    from corota.io.deck.write.text import Writer
     from corota.model.materials import Material
     from corota.model.model import Model
 
     Ints = NDArray[np.int64]
-
-
-class Names(Protocol):
-    """Names of sets in the deck."""
-
-    mesh: Mesh
-
-    def nodes(self, where: str | Ints) -> list[str]:
-        """Targets that stand for nodes."""
-        ...
-
-    def cell_set(self, where: str | Ints) -> str:
-        """Name of an element set."""
-        ...
 
 
 def expansion_cards(material: Material) -> str:
@@ -50,7 +36,7 @@ def expansion_cards(material: Material) -> str:
     return text
 
 
-def temperatures(names: Names, nodes: str | Ints, value: ArrayLike) -> str:
+def temperatures(names: Writer, nodes: str | Ints, value: ArrayLike) -> str:
     """Lines of temperatures."""
     every = np.arange(names.mesh.n_nodes)
     given = np.asarray(value, dtype=np.float64)
@@ -63,7 +49,7 @@ def temperatures(names: Names, nodes: str | Ints, value: ArrayLike) -> str:
     return "".join(f"{label}, {v!r}\n" for label, v in rows)
 
 
-def initial_cards(names: Names, model: Model) -> Iterator[str]:
+def initial_cards(names: Writer, model: Model) -> Iterator[str]:
     """Cards of initial temperatures and stresses."""
     for item in model.initial_temperatures:
         yield "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"

@@ -1,0 +1,141 @@
+"""Damping, point masses, dashpots and initial velocities of a model as cards of a deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.errors import UnsupportedError
+from corota.io.deck.write.text import DOFS, Writer, number, numbers
+from corota.model.steps import Dynamic, Frequency, Step
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from corota.model.loads import InitialVelocity
+    from corota.model.materials import Material
+
+
+def damping_card(rayleigh: tuple[float, float]) -> str:
+    """``*DAMPING`` of a material, or before the first material that of the model."""
+    if not any(rayleigh):
+        return ""
+    return f"*DAMPING, ALPHA={number(rayleigh[0])}, BETA={number(rayleigh[1])}\n"
+
+
+def model_damping(writer: Writer, steps: Sequence[Step]) -> str:
+    """Rayleigh damping of the steps that take it from the model.
+
+    Raises
+    ------
+    UnsupportedError
+        If steps differ in it, or what materials have would not stay theirs.
+    """
+    taking = [s for s in steps if isinstance(s, Dynamic) or _complex(s)]
+    pairs = {tuple(map(float, s.rayleigh)) for s in taking}  # type: ignore[attr-defined]
+    if len(pairs) > 1:
+        raise UnsupportedError(
+            f"steps with different rayleigh damping {sorted(pairs)} cannot be written to a deck, "
+            "whose *DAMPING is that of the whole analysis: give the damping to the materials "
+            "(rayleigh=), or keep the model in Python"
+        )
+    model = writer.model
+    own = {m.material.rayleigh for m in model.sections if any(m.material.rayleigh)}
+    if own and model.point_masses:
+        raise UnsupportedError(
+            "damping of materials (rayleigh=) beside point masses cannot be written to a deck, "
+            "where it would damp the masses too: give it to the step, or keep the model in Python"
+        )
+    return damping_card(pairs.pop()) if pairs else ""  # type: ignore[arg-type]
+
+
+def _complex(step: Step) -> bool:
+    return isinstance(step, Frequency) and step.complex_modes
+
+
+def material_damping(material: Material) -> str:
+    """The card of a material's own damping."""
+    return damping_card(material.rayleigh)
+
+
+def attachment_cards(writer: Writer) -> Iterator[str]:
+    """Point masses and dashpots: elements of their own with a card for the value.
+
+    Raises
+    ------
+    UnsupportedError
+        If a point mass has an inertia, or a dashpot goes to the ground.
+    """
+    mesh, model = writer.mesh, writer.model
+    label = int(mesh.cell_labels.max(initial=0))
+    for count, mass in enumerate(model.point_masses, start=1):
+        if mass.inertia:
+            raise UnsupportedError(
+                "the inertia of a point mass cannot be written to a deck: keep the model in Python"
+            )
+        yield f"*ELEMENT, TYPE=MASS, ELSET=MASS{count}\n"
+        for node in mesh.node_labels[mesh.node_indices(mass.nodes)].tolist():
+            label += 1
+            yield f"{label}, {node}\n"
+        yield f"*MASS, ELSET=MASS{count}\n{number(mass.mass)}\n"
+    for count, dashpot in enumerate(model.dashpots, start=1):
+        if dashpot.second is None:
+            raise UnsupportedError(
+                "a dashpot to the ground cannot be written to a deck: put a node with supports "
+                "at its other end, or keep the model in Python"
+            )
+        label += 1
+        first, second = mesh.node_labels[[dashpot.first, dashpot.second]].tolist()
+        yield f"*ELEMENT, TYPE=DASHPOTA, ELSET=DASHPOT{count}\n{label}, {first}, {second}\n"
+        yield f"*DASHPOT, ELSET=DASHPOT{count}\n\n{number(dashpot.c)}\n"
+
+
+def velocity_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
+    """Initial velocities by node and dof; a spin as that of the undeformed body.
+
+    Raises
+    ------
+    UnsupportedError
+        If a body that is deformed before the first dynamic step spins.
+    """
+    spun = False
+    for item in writer.model.velocities:
+        yield "*INITIAL CONDITIONS, TYPE=VELOCITY\n"
+        if item.dof is not None or len(item.value) == 2 or item.value[2] == 0.0:
+            pairs = [(0 if item.dof is None else item.dof, item.value[0])]
+            if item.dof is None:
+                # What an earlier item let spin does so no longer.
+                pairs += [(1, item.value[1])] + ([(2, 0.0)] if spun else [])
+            for target in writer.nodes(item.nodes if len(item.nodes) else _every(writer)):
+                for dof, value in pairs:
+                    yield f"{target}, {DOFS[dof]}, {number(value)}\n"
+            continue
+        spun = True
+        before = steps[: next((i for i, s in enumerate(steps) if isinstance(s, Dynamic)), 0)]
+        if any(s.procedure == "static" and s.nlgeom for s in before):
+            raise UnsupportedError(
+                "an initial spin after a static step with large displacements, which is that of "
+                "the displaced body, cannot be written to a deck: keep the model in Python"
+            )
+        yield from _spin(writer, item)
+
+
+def _every(writer: Writer) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    return np.arange(writer.mesh.n_nodes)
+
+
+def _spin(writer: Writer, item: InitialVelocity) -> Iterator[str]:
+    mesh = writer.mesh
+    nodes = mesh.node_indices(item.nodes) if len(item.nodes) else _every(writer)
+    vx, vy, spin, x0, y0 = (*item.value, 0.0, 0.0)[:5]
+    for label, (x, y) in zip(
+        mesh.node_labels[nodes].tolist(), mesh.points[nodes].tolist(), strict=True
+    ):
+        motion = (vx - spin * (y - y0), vy + spin * (x - x0), spin)
+        for dof, value in zip(DOFS, motion, strict=True):
+            yield f"{label}, {dof}, {numbers([value])}\n"
+
+
+__all__ = ["attachment_cards", "damping_card", "model_damping", "velocity_cards"]

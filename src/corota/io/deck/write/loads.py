@@ -1,0 +1,136 @@
+"""Supports and loads of a model as cards of a deck."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.io.deck.write.text import DOFS, Writer, number, plain
+from corota.io.deck.write.thermal import temperatures
+from corota.mesh.parts import cells_of
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from corota.mesh.data import Ints
+    from corota.model.loads import AppliedLoad, Fixed
+
+#: Abscissas and weights of Gauss's rule of three points over a curved edge.
+_GAUSS = (np.array([-math.sqrt(0.6), 0.0, math.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9.0)
+
+
+def boundary(
+    writer: Writer, supports: Sequence[Fixed], new: bool, option: str = ""
+) -> Iterator[str]:
+    """``*BOUNDARY``, with ``OP=NEW`` where earlier ones end."""
+    if new:
+        yield "*BOUNDARY, OP=NEW\n"
+    for (amplitude, keep), group in groupby(supports, key=lambda s: (s.amplitude, s.keep)):
+        more = f", AMPLITUDE={plain(amplitude)}" if amplitude else ""
+        more += ", FIXED" if keep else ""
+        yield f"*BOUNDARY{more}{option}\n"
+        for support in group:
+            dof = DOFS[support.dof]
+            for target in writer.nodes(support.nodes):
+                yield f"{target}, {dof}, {dof}, {number(support.value)}\n"
+
+
+def load_cards(writer: Writer, load: AppliedLoad, case: str = "") -> Iterator[str]:
+    """Cards of one load; `case` is an option of all of them."""
+    option = (f", AMPLITUDE={plain(load.amplitude)}" if load.amplitude else "") + case
+    if isinstance(load, NodalForce):
+        yield f"*CLOAD{', FOLLOWER' if load.follower else ''}{option}\n"
+        if np.ndim(load.value):  # a value for each node
+            labels = writer.mesh.node_labels[writer.mesh.node_indices(load.nodes)].tolist()
+            rows = list(zip(map(str, labels), np.asarray(load.value).tolist(), strict=True))
+        else:
+            rows = [(target, float(load.value)) for target in writer.nodes(load.nodes)]
+        for target, value in rows:
+            yield f"{target}, {DOFS[load.dof]}, {number(value)}\n"
+    elif isinstance(load, EdgeLoad):
+        yield from _edges(writer, load, option)
+    elif isinstance(load, Temperature):
+        yield f"*TEMPERATURE{option}\n" + temperatures(writer, load.nodes, load.value)
+    elif isinstance(load, BodyForce):
+        row = _body(writer, load)
+        yield f"*DLOAD{option}\n{row}" if row else ""
+
+
+def _edges(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
+    if load.kind == "shear":
+        yield from _shear(writer, load, option)
+        return
+    name = writer.edge_set(load.edges)
+    if load.kind == "pressure":
+        yield f"*DSLOAD{option}\n{name}, P, {number(load.value[0])}\n"
+        return
+    x, y = load.value
+    size = math.hypot(x, y)
+    if size == 0.0:
+        return
+    force = size / _area(writer, load.edges) if load.total else size
+    dead = "" if load.kind == "following traction" else ", FOLLOWER=NO"
+    yield f"*DSLOAD{dead}{option}\n"
+    yield f"{name}, TRVEC, {number(force)}, {number(x / size)}, {number(y / size)}\n"
+
+
+def _shear(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
+    """A shear along edges: of all in one card, or where no direction suits all, of each."""
+    mesh = writer.mesh
+    edges = mesh.edge_pairs(load.edges)
+    ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(edges)])
+    along = mesh.points[ends[:, 1]] - mesh.points[ends[:, 0]]
+    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    mean = along.sum(axis=0)
+    value = number(load.value[0])
+    if (along @ mean > 1e-6 * len(along)).all():
+        x, y = (mean / np.linalg.norm(mean)).tolist()
+        yield f"*DSLOAD{option}\n{writer.edge_set(load.edges)}, TRSHR, {value}, "
+        yield f"{number(x)}, {number(y)}\n"
+        return
+    yield f"*DLOAD{option}\n"
+    labels = mesh.cell_labels
+    for (cell, side), (x, y) in zip(edges.tolist(), along.tolist(), strict=True):
+        yield f"{labels[cell]}, TRSHR{side + 1}, {value}, {number(x)}, {number(y)}\n"
+
+
+def _body(writer: Writer, load: BodyForce) -> str:
+    where = writer.cell_set(load.cells)
+    if load.kind == "centrifugal":
+        square, x, y = load.value
+        return f"{where}, CENTRIF, {number(square)}, {number(x)}, {number(y)}, 0., 0., 0., 1.\n"
+    along = load.axis
+    if along is None:
+        return ""
+    size = math.hypot(*load.value)
+    if load.direction:
+        size = math.copysign(size, float(along @ load.value))
+    x, y = along.tolist()
+    return f"{where}, GRAV, {number(size)}, {number(x)}, {number(y)}, 0.\n"
+
+
+def _area(writer: Writer, where: str | Ints) -> float:
+    """Area of edges times thickness [length^2], over which a resultant is spread."""
+    mesh = writer.mesh
+    edges = mesh.edge_pairs(where)
+    thickness = np.ones(mesh.n_cells)
+    for section in writer.model.sections:
+        thickness[cells_of(mesh, section.cells)] = section.thickness
+    area = 0.0
+    for (cell, _), nodes in zip(edges, mesh.edge_nodes(edges), strict=True):
+        x = mesh.points[nodes]
+        length = math.dist(x[0], x[1])
+        if len(nodes) == 3:
+            r, weights = _GAUSS
+            slope = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
+            length = float(np.hypot(slope[:, 0], slope[:, 1]) @ weights)
+        area += float(thickness[cell]) * length
+    return area
+
+
+__all__ = ["boundary", "load_cards"]
