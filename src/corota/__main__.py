@@ -1,9 +1,7 @@
 """Run the command line with ``python -m corota``."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-import sys
-
-from corota.cli import main
+from corota.cli import program
 
 if __name__ == "__main__":
-    sys.exit(main())
+    program()

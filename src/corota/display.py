@@ -3,11 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from base64 import b64encode
 from dataclasses import MISSING, fields, is_dataclass
-from html import escape
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -85,6 +82,8 @@ class Brief:
 
 def table(rows: Mapping[str, object]) -> str:
     """An HTML table of two columns."""
+    from html import escape
+
     body = "".join(
         f"<tr><th style='text-align:left'>{escape(name)}</th>"
         f"<td style='text-align:left'>{escape(str(value))}</td></tr>"
@@ -101,6 +100,9 @@ def picture(draw: Callable[[Path], Any]) -> str:
     draw : callable
         Writes a PNG to the path that it gets.
     """
+    from base64 import b64encode
+    from tempfile import TemporaryDirectory
+
     with TemporaryDirectory() as folder:
         path = Path(folder) / "picture.png"
         try:

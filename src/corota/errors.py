@@ -8,8 +8,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from corota.display import LONGEST
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -36,6 +34,8 @@ class CorotaError(Exception):
     exit_code = 70
 
     def __repr__(self) -> str:
+        from corota.display import LONGEST
+
         text = super().__repr__()
         return text if len(text) <= LONGEST else f"{text[: LONGEST - 4]}...)"
 

@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from corota.errors import InputError
@@ -25,6 +24,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("rigth", ["left", "right"])
     "; did you mean 'right'?"
     """
+    from difflib import get_close_matches
+
     lower = {name.lower(): name for name in known}
     begun = [name for name in lower if word and name.startswith(word.lower())]
     close = begun[:1] or get_close_matches(word.lower(), list(lower), 1, 0.5)

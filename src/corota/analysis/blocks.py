@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.model import elements
 
@@ -91,7 +92,7 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
     blocks = []
     for offset, cells_of_kind in zip(mesh.offsets, mesh.cells, strict=False):
         owners = owner[offset : offset + len(cells_of_kind)]
-        for s in np.unique(owners[owners >= 0]):
+        for s in distinct(owners[owners >= 0]):
             section = model.sections[s]
             element = elements.find(section.element)
             rows = np.flatnonzero(owners == s)

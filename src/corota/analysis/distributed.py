@@ -20,6 +20,7 @@ import numpy as np
 from corota import _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
 from corota.analysis.following_forces import FollowingTraction, TurningForce
+from corota.arrays import distinct
 from corota.errors import InputError, ModelError
 from corota.mesh import EDGES
 from corota.model import elements
@@ -238,7 +239,7 @@ class DistributedLoads:
         along = x[nodes[:, 1]] - x[nodes[:, 0]]
         angle = np.round(np.arctan2(along[:, 1], along[:, 0]), 12)
         bulges = []
-        for value in np.unique(angle[alpha > 0.0]).tolist():
+        for value in distinct(angle[alpha > 0.0]).tolist():
             mask = (angle == value) & (alpha > 0.0)
             bulges.append((mask, self._core(load.faces[mask])[0]))
         return FollowingTraction(self.system, nodes, thickness, load.traction, bulges)

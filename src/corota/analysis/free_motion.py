@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def _nodes(mesh: Mesh, cells: Ints) -> Ints:
     for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
         inside = cells[(cells >= offset) & (cells < offset + len(block))] - offset
         nodes.append(block.nodes[inside].ravel())
-    return np.unique(np.concatenate(nodes))
+    return distinct(np.concatenate(nodes))
 
 
 def _rigid(x: Floats, u: Floats) -> tuple[float, float, float] | None:

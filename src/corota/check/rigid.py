@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.free_motion import plain
+from corota.arrays import distinct
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of, part_of_cells, stiff_part_of_cells
 from corota.model import elements
@@ -88,7 +89,7 @@ def _free_modes(mesh: Mesh, held: Floats, rotating: Floats, step: Step | None) -
     part_of_body = np.zeros(body.max(initial=-1) + 1, np.int64)
     part_of_body[body] = part
     found: list[Diagnostic] = []
-    for number in np.unique(part):
+    for number in distinct(part):
         bodies = np.flatnonzero(part_of_body == number)
         mine = np.isin(owner, bodies)
         if len(bodies) > MAX_BODIES:

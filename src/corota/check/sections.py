@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import Diagnostic, InputError
 from corota.mesh.data import EDGES
 from corota.mesh.parts import cells_of, part_of_cells
@@ -109,7 +110,7 @@ def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
     name = section.element
     element = elements.find(name)
     triangle = element.n_nodes == 3
-    for number in np.unique(part[cells]):
+    for number in distinct(part[cells]):
         mine = cells[part[cells] == number]
         if outline[number] ** 2 < SLENDER * areas[number]:
             continue

@@ -3,17 +3,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import atexit
 import errno
 import os
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from corota.cli.parser import make_parser
-from corota.cli.terminal import Terminal
-from corota.errors import CorotaError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from corota.cli.terminal import Terminal
 
 #: Set to see the Python traceback of an error.
 TRACEBACK = "COROTA_TRACEBACK"
@@ -37,6 +38,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         args = make_parser().parse_args(argv)
     except SystemExit as stop:
         return int(stop.code or 0)
+    from corota.cli.terminal import Terminal
+
     terminal = Terminal(quiet=args.quiet, json=args.json)
     try:
         code = _run(args.command, args, terminal)
@@ -46,9 +49,32 @@ def main(argv: Sequence[str] | None = None) -> int:
     return terminal.close(code)
 
 
+def program() -> NoReturn:
+    """Run the command of this process and end it.
+
+    Python takes longer to free a program's objects than to solve a small model, so it is left to
+    the system. Functions registered with ``atexit`` run first. Where threads are left, or MPI has
+    to be closed, the process ends in the ordinary way.
+    """
+    code = main()
+    threads = sys.modules.get("threading")
+    if "mpi4py" in sys.modules or (threads is not None and threads.active_count() > 1):
+        sys.exit(code)
+    try:
+        for stream in (sys.stdout, sys.stderr):
+            if stream is not None:
+                stream.flush()
+    except (OSError, ValueError):  # closed, or a full disk: Python says so
+        sys.exit(code)
+    atexit._run_exitfuncs()
+    os._exit(code)
+
+
 def _run(command: str, args: object, terminal: Terminal) -> int:
     """Run a command; every error becomes a message and an exit code."""
     from importlib import import_module
+
+    from corota.errors import CorotaError
 
     try:
         from corota import _core

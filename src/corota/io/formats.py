@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING
 
 from corota.errors import UnsupportedError
 from corota.io.deck.read import read_deck
-from corota.io.deck.write.model import write_deck
-from corota.io.gmsh.reader import read_gmsh
-from corota.io.meshio_bridge import read_meshio
-from corota.io.unv import read_unv
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     import os
@@ -31,12 +28,14 @@ def _deck_mesh(path: str | os.PathLike[str]) -> Mesh:
 #: Readers of models.
 MODEL_READERS: dict[str, Callable[..., Model]] = {".inp": read_deck}
 #: Writers of models.
-MODEL_WRITERS: dict[str, Callable[..., Path]] = {".inp": write_deck}
+MODEL_WRITERS: dict[str, Callable[..., Path]] = {
+    ".inp": lazy("corota.io.deck.write.model:write_deck")
+}
 #: Readers of meshes; for other names meshio is asked.
 MESH_READERS: dict[str, Callable[..., Mesh]] = {
-    ".msh": read_gmsh,
+    ".msh": lazy("corota.io.gmsh.reader:read_gmsh"),
     ".inp": _deck_mesh,
-    ".unv": read_unv,
+    ".unv": lazy("corota.io.unv:read_unv"),
 }
 
 
@@ -130,5 +129,5 @@ def write(
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Read a mesh; see :func:`corota.mesh.read`."""
-    suffix = Path(path).suffix.lower()
-    return MESH_READERS.get(suffix, read_meshio)(path)
+    other: Callable[..., Mesh] = lazy("corota.io.meshio_bridge:read_meshio")
+    return MESH_READERS.get(Path(path).suffix.lower(), other)(path)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import platform
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -56,6 +55,7 @@ def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path
     FileError
         If the disk refuses.
     """
+    import platform
     from importlib.metadata import PackageNotFoundError, version
 
     from corota import __version__, _core

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.display import CELLS_DRAWN, Brief, picture, table
 from corota.errors import InputError
 from corota.mesh import selection
@@ -262,7 +263,7 @@ class Mesh(Brief):
         for number, cells in enumerate(self.cells):
             inside = (rows >= offsets[number]) & (rows < offsets[number + 1])
             parts.append(cells.nodes[rows[inside] - offsets[number]].ravel())
-        return np.asarray(np.unique(np.concatenate(parts)))
+        return np.asarray(distinct(np.concatenate(parts)))
 
     def node_indices(self, where: str | ArrayLike) -> Ints:
         """Node indices of a set, of indices or of a mask, checked; shape (n,).
@@ -297,7 +298,7 @@ class Mesh(Brief):
                 here &= (edges[:, 0] >= offsets[number]) & (edges[:, 0] < offsets[number + 1])
                 rows = edges[here, 0] - offsets[number]
                 parts.append(cells.nodes[np.ix_(rows, local)].ravel())
-        return np.asarray(np.unique(np.concatenate(parts)))
+        return np.asarray(distinct(np.concatenate(parts)))
 
     # Other programs.
     def to_meshio(self) -> Any:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import InputError
 from corota.mesh.change import merge, placed_middles
 from corota.mesh.data import Cells, Mesh
@@ -294,7 +295,7 @@ def _build(lattice: Floats, nx: int, ny: int, cell: Kind, diagonal: Diagonal) ->
             np.stack([cells_of, np.full(len(cells_of), side)], axis=1)
             for side, cells_of in enumerate(sides)
         ]
-    used = np.unique(cells)
+    used = distinct(cells)
     new = np.full(lattice.shape[0] * lattice.shape[1], -1)
     new[used] = np.arange(len(used))
     index = np.arange(len(new)).reshape(lattice.shape[:2])

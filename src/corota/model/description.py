@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.model.contact import RigidCurve
@@ -91,7 +92,7 @@ def _by_step(model: Model, steps: Sequence[Step]) -> list[tuple[int, Any]]:
 
 
 def _nodes(where: Any, model: Model) -> list[int]:
-    return [int(n) for n in np.unique(model.mesh.node_indices(where))]
+    return [int(n) for n in distinct(model.mesh.node_indices(where))]
 
 
 def _named(where: Any, noun: str) -> str:
@@ -152,7 +153,7 @@ def hardening(material: Mises) -> dict[str, Any]:
     if material.yield_curve is not None:
         table = np.asarray(material.yield_curve, dtype=float)
         end = 1.05 * float(table[-1, 1]) or CURVE_STRAIN
-        p = np.unique(np.concatenate([table[:, 1], np.linspace(0.0, end, CURVE_POINTS)]))
+        p = distinct(np.concatenate([table[:, 1], np.linspace(0.0, end, CURVE_POINTS)]))
         isotropic = np.interp(p, table[:, 1], table[:, 0])
     else:
         assert material.yield_stress is not None
@@ -187,7 +188,7 @@ def _load(load: Load, step: int, model: Model) -> dict[str, Any] | None:
         values = np.atleast_1d(np.asarray(load.value, dtype=float))
         nodes = model.mesh.node_indices(load.nodes)
         if len(values) == 1:
-            nodes = np.unique(nodes)
+            nodes = distinct(nodes)
         found |= {
             "kind": "moment" if load.dof == 2 else "force",
             "where": _named(load.nodes, "nodes"),

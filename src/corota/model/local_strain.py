@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Literal
 
 from corota.errors import InputError
@@ -49,6 +48,8 @@ def local_strain(name: str, where: Location | None = None) -> str:
     plain = {_plain(n): value for n, value in known.items()}
     found = plain.get(_plain(str(name)))
     if found is None:
+        from difflib import get_close_matches
+
         begun = [n for n in plain if n.startswith(_plain(str(name)))]
         close = begun[:1] or get_close_matches(_plain(str(name)), list(plain), 1, 0.5)
         hint = f"; did you mean {plain[close[0]]!r}?" if close else ""

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.loading import Loading
@@ -424,9 +425,9 @@ class SteadyState(Step):
         import numpy as np
 
         inside = own[(own > self.lowest) & (own < self.highest)]
-        marks = np.unique([self.lowest, *inside, self.highest])
+        marks = distinct([self.lowest, *inside, self.highest])
         parts = [np.linspace(a, b, self.points) for a, b in zip(marks, marks[1:], strict=False)]
-        return np.unique(np.concatenate(parts))
+        return distinct(np.concatenate(parts))
 
 
 def check_damping(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError
 from corota.mesh.data import EDGES
@@ -315,8 +316,8 @@ class Cut:
         for c in self.crossings:
             crossed[c.cells] = True
         part = parts_without(mesh, crossed)
-        behind = np.unique(np.concatenate([part[c.nodes[~c.ahead]] for c in self.crossings]))
-        ahead = np.unique(np.concatenate([part[c.nodes[c.ahead]] for c in self.crossings]))
+        behind = distinct(np.concatenate([part[c.nodes[~c.ahead]] for c in self.crossings]))
+        ahead = distinct(np.concatenate([part[c.nodes[c.ahead]] for c in self.crossings]))
         if np.isin(behind, ahead).any():
             return None
         outside = state.F + state.RF
@@ -413,7 +414,7 @@ def _points(
     stress = np.empty((len(crossing.cells), len(at), 4))
     for column, name in enumerate(("S11", "S22", "S33", "S12")):
         mean = results.cells(name, index)[crossing.cells]
-        for number in np.unique(group):
+        for number in distinct(group):
             mine = group == number
             nodal = results.nodal(name, index, section=int(number) if number >= 0 else None)
             values = nodal[crossing.nodes[mine]] @ shape.T

@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -353,6 +352,8 @@ def match_name(name: str, valid: list[str]) -> str:
     for candidate in valid:
         if candidate.lower() == wanted.lower():
             return candidate
+    from difflib import get_close_matches
+
     near = get_close_matches(wanted.upper(), valid, n=1)
     hint = f"; did you mean {near[0]}?" if near else "."
     raise InputError(f"no result variable named {name!r}{hint} There are: {', '.join(valid)}")

@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.analysis.constraints.relations import Follow, LinearRelation, Mean, Relation
 from corota.analysis.constraints.straight_line import OnLine
+from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.model.constraints import Coupling, Equation, StraightLine
 from corota.model.contact import RigidCurve
@@ -232,7 +233,7 @@ class Builder:
         return f"the {item.name or item.kind + ' coupling'} with reference node {label}"
 
     def _members(self, item: Coupling) -> Ints:
-        every: Ints = np.unique(_nodes(self.model, item.nodes))
+        every: Ints = distinct(_nodes(self.model, item.nodes))
         nodes: Ints = every[every != item.reference]
         if not len(nodes):
             raise ModelError(
@@ -250,7 +251,7 @@ class Builder:
         length = float(np.hypot(*along))
         if not length > 0.0:
             raise ModelError(f"{what} has no direction: they have the same position", item.where)
-        nodes = np.unique(_nodes(self.model, item.nodes))
+        nodes = distinct(_nodes(self.model, item.nodes))
         nodes = nodes[~np.isin(nodes, ends)]
         if not len(nodes):
             raise ModelError(f"{what} has no other nodes", item.where)

@@ -5,14 +5,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from corota.analysis.constraints.relations import Relation
 from corota.analysis.newton import ElementFailure
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
 
 #: The axis of the dependent displacement may come this close to the line (sine of the angle).
 CLOSEST = 1e-3

@@ -13,8 +13,8 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.linear.forks import unforked
-from corota.analysis.linear.pardiso import Pardiso
 from corota.errors import InputError, SingularError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -183,7 +183,7 @@ class SuperLU:
 SOLVERS: dict[str, Callable[..., LinearSolver]] = {
     "multifrontal": Multifrontal,
     "superlu": SuperLU,
-    "pardiso": Pardiso,
+    "pardiso": lazy("corota.analysis.linear.pardiso:Pardiso"),
 }
 
 

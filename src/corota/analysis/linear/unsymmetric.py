@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.linear.solvers import Multifrontal
+from corota.arrays import distinct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,7 +38,7 @@ class FullMatrix:
 
     def _lay_out(self) -> None:
         n = self.n
-        self._entries = np.unique(np.concatenate([self._upper, self._lower, self._more]))
+        self._entries = distinct(np.concatenate([self._upper, self._lower, self._more]))
         self._places = [np.searchsorted(self._entries, k) for k in (self._upper, self._lower)]
         self.indptr = np.searchsorted(self._entries, n * np.arange(n + 1, dtype=np.int64))
         self.indices = self._entries % n

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class FreeFlight:
         if link.couples:
             bound = system.constraints.dependent
             held[bound] = True
-            held[np.unique(link.direct.tocoo().col)] = True
+            held[distinct(link.direct.tocoo().col)] = True
         nodes = np.zeros(len(part), bool)
         nodes[system.node_of_dof[held]] = True
         for pair in system.contact_term.pairs:

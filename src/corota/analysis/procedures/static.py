@@ -10,11 +10,10 @@ import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
-from corota.analysis.procedures.path.arc_length import path_step
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, explained
 from corota.analysis.terms.contact.newton import solve_increment
-from corota.analysis.terms.contact.relaxation import relax
 from corota.errors import ConvergenceError, ModelError, SingularError
+from corota.lazy import lazy
 from corota.model.paths import ArcLength
 
 if TYPE_CHECKING:
@@ -24,6 +23,9 @@ if TYPE_CHECKING:
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
     from corota.model.steps import Static
+
+path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
+relax = lazy("corota.analysis.terms.contact.relaxation:relax")
 
 #: Failed attempts under growing negative pivots after which a limit point is looked for.
 STALLED = 3

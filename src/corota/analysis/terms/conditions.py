@@ -22,6 +22,7 @@ from corota.analysis.load_history import LoadHistory
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.redistribution import set_moving_mass
 from corota.analysis.terms.term import Term
+from corota.arrays import distinct
 from corota.errors import ModelError, UnsupportedError
 from corota.model.dofs import DOFS
 from corota.model.integrated import IntegratedAmplitude
@@ -249,7 +250,7 @@ class Conditions(Term):
         if self.ramp:
             v = np.where(constrained, (course.end - course.begin) / self.period, 0.0)
         window = min(window, self.period / 3.0)
-        for index in np.unique(course.amplitude[constrained]).tolist():
+        for index in distinct(course.amplitude[constrained]).tolist():
             if index:
                 table = self.system.model.amplitudes[self.names[index]]
                 start = self.time if table.total_time else 0.0
@@ -263,7 +264,7 @@ class Conditions(Term):
     def support_kinks(self) -> list[tuple[str, float]]:
         """Amplitudes of supports whose rate jumps within the step, with the first step time."""
         out = []
-        for index in np.unique(self.support.amplitude[self.constrained]).tolist():
+        for index in distinct(self.support.amplitude[self.constrained]).tolist():
             if index:
                 table = self.system.model.amplitudes[self.names[index]]
                 times = table.kinks() - (self.time if table.total_time else 0.0)
@@ -377,9 +378,9 @@ class Conditions(Term):
         ModelError
             If there is an amplitude, an abrupt load or a released support.
         """
-        named = {int(i) for i in np.unique(self.support.amplitude[self.constrained])}
+        named = {int(i) for i in distinct(self.support.amplitude[self.constrained])}
         named |= set(self.timed) | {load.amplitude for load in self.distributed.loads}
-        named |= {int(i) for i in np.unique(self.temperature.amplitude)}
+        named |= {int(i) for i in distinct(self.temperature.amplitude)}
         for index in named - {0}:
             raise ModelError(
                 f"amplitude {self.names[index]!r} in a step that follows a path: its loads "
@@ -461,7 +462,7 @@ class Conditions(Term):
         """Whether temperatures change in the step."""
         tables = self.system.model.amplitudes
         times = {0.0, self.period}
-        for index in np.unique(self.temperature.amplitude):
+        for index in distinct(self.temperature.amplitude):
             if index:
                 table = tables[self.names[index]]
                 own = table.time - (self.time if table.total_time else 0.0)

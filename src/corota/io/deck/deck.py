@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import difflib
 import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
@@ -265,8 +264,10 @@ class Deck:
 
 def nearest(word: str, words: Iterable[str], cutoff: float = 0.7) -> str:
     """Question that names the nearest word, or an empty text."""
+    from difflib import get_close_matches
+
     candidates = {key(w): w for w in words}
-    found = difflib.get_close_matches(key(word)[:80], list(candidates), 1, cutoff)
+    found = get_close_matches(key(word)[:80], list(candidates), 1, cutoff)
     return f"did you mean {candidates[found[0]]}?" if found else ""
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full, replace_text
 from corota.model.units import Units
@@ -40,9 +41,9 @@ def support_sets(model: Model, steps: Sequence[Step]) -> dict[str, Ints]:
         nodes = model.mesh.node_indices(where)
         every.append(nodes)
         if isinstance(where, str):
-            found[where] = np.unique(nodes)
+            found[where] = distinct(nodes)
     if every:
-        found["all supports"] = np.unique(np.concatenate(every))
+        found["all supports"] = distinct(np.concatenate(every))
     return found
 
 

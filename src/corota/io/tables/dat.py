@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.constraints.elimination import local_axes
+from corota.arrays import distinct
 from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
@@ -162,7 +163,7 @@ def internal_force(model: Model, frame: Frame) -> Floats:
     """What CalculiX calls ``RF``: reaction, load and force of constraints; shape (n_nodes, 2)."""
     values: Floats = (frame.RF + frame.F)[:, :2]
     if frame.constraint_force is not None:
-        inside = np.unique(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
+        inside = distinct(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
         values[inside] += frame.constraint_force[inside, :2]
     return values
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.mesh.parts import cells_of
 from corota.model.contact import RigidCurve, joint_thickness
@@ -41,7 +42,7 @@ def contact_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
         return
     pairs = [p for p in model.contacts if output.where in ("", p.name)]
     slaves = [_slave_nodes(model, p) for p in pairs]
-    nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *slaves]))
+    nodes = distinct(np.concatenate([np.zeros(0, np.int64), *slaves]))
     nodes = nodes[frame.C[nodes, 4] > 0.0]
     labels = model.mesh.node_labels[nodes]
     pressure, shear, gap, slip, _ = frame.C[nodes].T + 0.0
@@ -72,7 +73,7 @@ def _slave(model: Model, pair: ContactPair) -> Ints:
 
 
 def _slave_nodes(model: Model, pair: ContactPair) -> Ints:
-    return np.unique(np.concatenate(model.mesh.edge_nodes(_slave(model, pair))))
+    return distinct(np.concatenate(model.mesh.edge_nodes(_slave(model, pair))))
 
 
 def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
 from corota.io.checksum import fletcher32, store
@@ -154,13 +155,13 @@ def _groups(model: Model) -> dict[int, tuple[NDArray[np.bool_], Ints]]:
     for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
         planar[offset : offset + len(cells)] = cells.kind.startswith(("tri", "quad"))
     found = {}
-    for group in np.unique(of_cells[planar]).tolist():
+    for group in distinct(of_cells[planar]).tolist():
         chosen = (of_cells == group) & planar
         nodes = [
             cells.nodes[chosen[offset : offset + len(cells)]].ravel()
             for offset, cells in zip(mesh.offsets, mesh.cells, strict=False)
         ]
-        found[int(group)] = chosen, np.unique(np.concatenate(nodes))
+        found[int(group)] = chosen, distinct(np.concatenate(nodes))
     return found
 
 

@@ -10,11 +10,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from corota.analysis.newton import ElementFailure, newton
-from corota.analysis.terms.contact.equations import (
-    MAX_EXTRA_CONTACT_ITERATIONS,
-    PATIENCE,
-    ContactEquations,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -109,6 +104,12 @@ def solve_increment(
         begin = None if known is None else system.with_loads(known, u, step_time)
         outcome = newton(inner, u, prescribed, step_time, settings, begin, report)
         return outcome, NoContact(system.n_dofs)
+    from corota.analysis.terms.contact.equations import (
+        MAX_EXTRA_CONTACT_ITERATIONS,
+        PATIENCE,
+        ContactEquations,
+    )
+
     problem = ContactEquations(inner, system)
     n = system.n_dofs
     z = problem.start(u)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.pair import COVERED, OPEN
+from corota.arrays import distinct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -96,7 +97,7 @@ def _spread(values: Floats, pair: Pair, rows: Floats, seen: NDArray[np.bool_]) -
     a, b, m = edges[middle].T
     own[m] = 0.5 * (own[a] + own[b])
     own[m, 4] = np.maximum(own[a, 4], own[b, 4])
-    nodes = np.unique(np.concatenate([pair.nodes, m]))
+    nodes = distinct(np.concatenate([pair.nodes, m]))
     before = values[nodes, 4] > 0.0
     values[nodes, :2] += own[nodes, :2]
     values[nodes, 3] += own[nodes, 3]

@@ -11,6 +11,7 @@ import numpy as np
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient, mean_pressure
 from corota.analysis.terms.contact.gaps import COVERED, Terms
 from corota.analysis.terms.contact.setup import contact_core, tie_core
+from corota.arrays import distinct
 from corota.model.contact import ContactPair, Tie
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ class Pair:
         self.core, self.slave, self.master, self.reach = build(system, item)
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
-        self.of_nodes = len(np.unique(self.nodes))
+        self.of_nodes = len(distinct(self.nodes))
         self.full = np.asarray(self.core.full_area, float)
         self.two = self.tied or self.friction > 0.0
         self.width = self.n * (2 if self.two else 1)

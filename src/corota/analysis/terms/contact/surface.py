@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -52,7 +54,7 @@ class Surface:
     @property
     def node_list(self) -> Ints:
         """Nodes, each once."""
-        every = np.unique(self.nodes)
+        every = distinct(self.nodes)
         return np.asarray(every[every >= 0])
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.io.deck import numerals
 from corota.io.deck.build.base_motion import base_motion
 from corota.io.deck.cards.thermal import build_temperature
@@ -206,7 +207,7 @@ class LoadBuilder:
         rho = np.full(self.mesh.n_cells, -1.0)
         for section in self.model.sections:
             rho[cells_of(self.mesh, section.cells)] = section.material.rho
-        for density in np.unique(rho[cells]).tolist():
+        for density in distinct(rho[cells]).tolist():
             if density == 0.0:
                 self.deck.row_error(
                     draft.card,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
@@ -136,7 +137,7 @@ class SectionBuilder:
                 angle += view.instance.angle
         groups: dict[tuple[str, str], list[Ints]] = {}
         types = self.meshes.cell_type[cells]
-        for code in np.unique(types):
+        for code in distinct(types):
             name = self.meshes.types[code]
             if name in LINES:
                 truss = truss_section(deck, draft, cells[types == code], material)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import view_of
 from corota.io.deck.deck import nearest
@@ -178,7 +179,7 @@ class Sets:
         for number, block in enumerate(blocks):
             inside = (found.cells >= offsets[number]) & (found.cells < offsets[number + 1])
             parts.append(block.nodes[found.cells[inside] - offsets[number]].ravel())
-        return np.unique(np.concatenate([_NONE, *parts]))
+        return distinct(np.concatenate([_NONE, *parts]))
 
     def element_set(self, full: str) -> Elements | None:
         """Cells and lines of a set; ``None`` after an error."""
@@ -365,7 +366,7 @@ class Sets:
         side = self.side[cells]
         if 0 <= face < 4:
             # Of a quadrilateral with a side of one node three faces are left.
-            for missing in np.unique(side[side >= 0]).tolist():
+            for missing in distinct(side[side >= 0]).tolist():
                 face_of[side == missing] = _face_of_triangle(face, missing)
             cells, face_of = cells[face_of >= 0], face_of[face_of >= 0]
         edges = np.stack([cells, face_of], axis=1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import ElementBlock, Entry, NamedSet, NodeBlock
@@ -326,7 +327,7 @@ def _labels(deck: Deck, name: str, *, nodes: bool, depth: int = 0) -> Ints | Non
             parts.append(inner)
         else:
             parts.append(entry.labels)
-    return np.unique(np.concatenate(parts))
+    return distinct(np.concatenate(parts))
 
 
 def _element(deck: Deck, label: int) -> tuple[ElementBlock, int] | None:

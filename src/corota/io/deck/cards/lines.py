@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import InputError
 from corota.io.deck.drafts import LineDraft
 from corota.io.deck.elements import LINE_ELEMENTS
@@ -267,7 +268,7 @@ def build_lines(
             if found is None:
                 continue
             types = np.array([meshes.types[i] for i in meshes.cell_type[found.cells]], dtype=str)
-            for name in np.unique(types):
+            for name in distinct(types):
                 cells = found.cells[types == name]
                 if name not in LINE_ELEMENTS or LINE_ELEMENTS[name].role != draft.role:
                     deck.error(

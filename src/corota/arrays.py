@@ -1,0 +1,40 @@
+"""What NumPy has, without what its function would load."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+def distinct(values: ArrayLike) -> NDArray[Any]:
+    """Values that occur, each once, in ascending order.
+
+    ``numpy.unique`` gives the same; its first call loads masked arrays, which takes as long as
+    solving a small model.
+
+    Parameters
+    ----------
+    values : array_like
+        Without NaN; of any shape.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Examples
+    --------
+    >>> distinct([[3, 1], [3, 2]])
+    array([1, 2, 3])
+    """
+    found = np.sort(np.ravel(values))
+    first = np.ones(len(found), dtype=bool)
+    np.not_equal(found[1:], found[:-1], out=first[1:])
+    return found[first]
+
+
+__all__ = ["distinct"]

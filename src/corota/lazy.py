@@ -1,0 +1,36 @@
+"""Functions that tables name without loading their modules."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def lazy(place: str) -> Callable[..., Any]:
+    """Stand-in for a function whose module is imported when it is first called.
+
+    Parameters
+    ----------
+    place : str
+        ``"package.module:function"``.
+
+    Examples
+    --------
+    >>> root = lazy("math:sqrt")
+    >>> root(9.0)
+    3.0
+    """
+    module, _, name = place.partition(":")
+
+    def call(*args: Any, **options: Any) -> Any:
+        return getattr(import_module(module), name)(*args, **options)
+
+    call.__name__ = call.__qualname__ = name
+    return call
+
+
+__all__ = ["lazy"]
