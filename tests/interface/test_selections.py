@@ -45,7 +45,7 @@ def _loaded(model: ct.Model) -> ct.Model:
         ([10], "no node with index 10; there are 10"),
         ([[0, 1], [1, 1]], "looks like edges"),
         ([[0], [1, 2]], "unequal shape|selected by"),
-        (["left", "right"], "not by str"),
+        (["left", 3], "not by str"),
         (None, "not by NoneType"),
     ],
 )

@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Iterable
+from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -15,12 +17,15 @@ from corota.check.units import check_units
 from corota.errors import Diagnostic, SingularError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from corota.model.model import Model
+    from corota.model.steps import Step
 
 __all__ = ["check", "examine"]
 
 
-def check(model: Model) -> list[Diagnostic]:
+def check(model: Model, steps: Step | Sequence[Step] | None = None) -> list[Diagnostic]:
     """Look for what will fail, mislead or surprise, without solving more than the start.
 
     Errors are what a run refuses: cells without a section or of the wrong shape, inverted cells,
@@ -33,6 +38,8 @@ def check(model: Model) -> list[Diagnostic]:
     Parameters
     ----------
     model : Model
+    steps : Step or sequence of Step, optional
+        What will be run; the model's own steps by default.
 
     Returns
     -------
@@ -52,6 +59,9 @@ def check(model: Model) -> list[Diagnostic]:
     error: a free body: it can move along y
         hint: hold node 1 in y (dof 2)
     """
+    if steps is not None:
+        model = copy(model)
+        model.steps = list(steps) if isinstance(steps, Iterable) else [steps]
     return examine(model)[0]
 
 

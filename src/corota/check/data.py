@@ -10,6 +10,7 @@ import numpy as np
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied
+from corota.model.rotations import reference_nodes, rotating_nodes, without_rotation
 
 if TYPE_CHECKING:
     from corota.model.loads import AppliedLoad
@@ -25,6 +26,7 @@ def check_data(model: Model) -> list[Diagnostic]:
     loads = applied(every, mesh)
     found += _effects(model, loads)
     found += _unused(model, loads)
+    found += _rotations(model)
     for number, step in enumerate(model.steps, start=1):
         moved = any(s.value != 0.0 for s in model.supports + step.supports)
         later = number > 1
@@ -44,6 +46,18 @@ def check_data(model: Model) -> list[Diagnostic]:
                 if s.material.rho == 0.0
             ]
     return found
+
+
+def _rotations(model: Model) -> list[Diagnostic]:
+    """Rotations that are held in Python where there are none; in decks dofs 1 to 6 are usual."""
+    supports = [*model.supports, *(s for step in model.steps for s in step.supports)]
+    asked = [s for s in supports if s.dof == 2 and s.where is None]
+    if not asked or not model.sections:
+        return []
+    has = rotating_nodes(model)
+    has[reference_nodes(model)] = True
+    idle = [s for s in asked if not has[model.mesh.node_indices(s.nodes)].any()]
+    return [Diagnostic("warning", without_rotation(model.mesh, s)) for s in idle]
 
 
 def _effects(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:

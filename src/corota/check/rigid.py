@@ -11,10 +11,12 @@ import numpy as np
 from corota.analysis.free_motion import plain
 from corota.arrays import distinct
 from corota.errors import Diagnostic
-from corota.mesh.parts import cells_of, part_of_cells, stiff_part_of_cells
-from corota.model import elements
+from corota.mesh.parts import part_of_cells, stiff_part_of_cells
+from corota.model.rotations import rotating_nodes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.mesh.data import Floats, Ints, Mesh
     from corota.model.loads import Fixed
     from corota.model.model import Model
@@ -33,7 +35,7 @@ def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
     `first`, from 0, are left out.
     """
     mesh = model.mesh
-    rotating = _rotating(model)
+    rotating = rotating_nodes(model)
     found: list[Diagnostic] = []
     for number, held in enumerate(_held(model, rotating)):
         step = model.steps[number] if model.steps else None
@@ -46,21 +48,7 @@ def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
     return found
 
 
-def _rotating(model: Model) -> Floats:
-    """Whether a node has a rotation, shape (n_nodes,)."""
-    mesh = model.mesh
-    has = np.zeros(mesh.n_nodes, bool)
-    for section in model.sections:
-        if elements.find(section.element).dofs_per_node < 3:
-            continue
-        cells, offsets = cells_of(mesh, section.cells), mesh.offsets
-        for number, block in enumerate(mesh.cells):
-            inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
-            has[block.nodes[cells[inside] - offsets[number]]] = True
-    return has
-
-
-def _held(model: Model, rotating: Floats) -> list[Floats]:
+def _held(model: Model, rotating: NDArray[np.bool_]) -> list[Floats]:
     """Dofs held in each step, each of shape (n_nodes, 3)."""
     base = np.zeros((model.mesh.n_nodes, 3), bool)
     _hold(model, base, model.supports)
@@ -79,10 +67,12 @@ def _held(model: Model, rotating: Floats) -> list[Floats]:
 def _hold(model: Model, held: Floats, supports: list[Fixed]) -> None:
     for support in supports:
         nodes = support.nodes
-        held[model.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes, support.dof] = True
+        held[model.mesh.node_indices(nodes), support.dof] = True
 
 
-def _free_modes(mesh: Mesh, held: Floats, rotating: Floats, step: Step | None) -> list[Diagnostic]:
+def _free_modes(
+    mesh: Mesh, held: Floats, rotating: NDArray[np.bool_], step: Step | None
+) -> list[Diagnostic]:
     body = stiff_part_of_cells(mesh)
     part = part_of_cells(mesh)
     node, owner = _body_nodes(mesh, body)
@@ -116,7 +106,7 @@ def _body_nodes(mesh: Mesh, body: Ints) -> tuple[Ints, Ints]:
 
 
 def _of_part(
-    mesh: Mesh, held: Floats, rotating: Floats, bodies: Ints, node: Ints, owner: Ints
+    mesh: Mesh, held: Floats, rotating: NDArray[np.bool_], bodies: Ints, node: Ints, owner: Ints
 ) -> list[Diagnostic]:
     points = mesh.points[node]
     centre = (points.min(axis=0) + points.max(axis=0)) / 2

@@ -12,7 +12,7 @@ from corota.errors import InputError
 from corota.mesh.data import EDGES, Cells, Mesh
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from corota.mesh.data import Floats, Ints
 
@@ -58,7 +58,10 @@ def move(
 def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
     """Join meshes and make nodes at the same place one.
 
-    Sets of the same name are united; node and cell numbers start again from 1.
+    Sets of the same name are united; node and cell numbers start again from 1. Edges along which
+    two meshes are joined lie inside the body now: they leave the edge sets, and where a node set
+    holds the nodes of the edge set of its name, as the sides of :func:`rectangle` do, the nodes of
+    such edges leave it too. Sets with nothing left are gone; ``notes`` of the mesh tell it.
 
     Parameters
     ----------
@@ -71,8 +74,11 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
     >>> from corota import mesh
     >>> a = mesh.rectangle(1.0, 1.0, nx=2, ny=2)
     >>> b = mesh.rectangle(1.0, 1.0, nx=2, ny=2, origin=(1.0, 0.0))
-    >>> mesh.merge(a, b).n_nodes
+    >>> both = mesh.merge(a, b)
+    >>> both.n_nodes
     15
+    >>> both.points[both.nodes_of("right"), 0].tolist()  # the sides of b alone
+    [2.0, 2.0, 2.0]
     """
     if not meshes:
         raise InputError("there is no mesh to merge")
@@ -107,6 +113,9 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
         cells_out.append(Cells(kind, nodes, np.arange(label, label + len(nodes))))
         label += len(nodes)
     joined = Mesh(points[firsts], cells_out)
+    joined.notes = [note for mesh in meshes for note in mesh.notes]
+    outer = {tuple(pair) for pair in joined.boundary_edges().tolist()}
+    removed: dict[str, int] = {}
     for mesh, start, here in zip(meshes, starts, moves, strict=False):
         cell_index = np.concatenate(
             [np.zeros(0, np.int64)]
@@ -115,15 +124,48 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
                 for c, (kind, offset) in zip(mesh.cells, here, strict=True)
             ]
         )
+        own = {tuple(pair) for pair in mesh.boundary_edges().tolist()}
         for name, nodes in mesh.node_sets.items():
-            _unite(joined.node_sets, name, index[nodes + start])
+            kept = nodes
+            if name in mesh.edge_sets:
+                edges = mesh.edge_sets[name]
+                if np.array_equal(mesh.edge_set_nodes(edges), np.unique(nodes)):
+                    left = edges[~_joints(edges, own, cell_index, outer)]
+                    kept = nodes[np.isin(nodes, mesh.edge_set_nodes(left))]
+            if len(kept) or not len(nodes):
+                _unite(joined.node_sets, name, index[kept + start])
         for name, cells_of in mesh.cell_sets.items():
             _unite(joined.cell_sets, name, cell_index[cells_of])
         for name, edges in mesh.edge_sets.items():
-            pairs = np.stack([cell_index[edges[:, 0]], edges[:, 1]], axis=1)
+            inside = _joints(edges, own, cell_index, outer)
+            if inside.any():
+                removed[name] = removed.get(name, 0) + int(inside.sum())
+            left = edges[~inside]
+            if len(edges) and not len(left):
+                continue
+            pairs = np.stack([cell_index[left[:, 0]], left[:, 1]], axis=1)
             old = joined.edge_sets.get(name, np.zeros((0, 2), np.int64))
             joined.edge_sets[name] = np.concatenate([old, pairs])
+    for name, count in removed.items():
+        gone = "" if name in joined.edge_sets else ", which is empty and gone"
+        plural = "s lie" if count > 1 else " lies"
+        joined.notes.append(
+            f"{count} edge{plural} inside of the merged body and left the set {name!r}{gone}"
+        )
     return joined
+
+
+def _joints(
+    edges: Ints, own: set[tuple[int, ...]], cell_index: Ints, outer: set[tuple[int, ...]]
+) -> NDArray[np.bool_]:
+    """Which edges were outer ones of their mesh and are inner ones of the joined mesh."""
+    return np.array(
+        [
+            (cell, side) in own and (int(cell_index[cell]), side) not in outer
+            for cell, side in edges.tolist()
+        ],
+        dtype=bool,
+    )
 
 
 def renumber(mesh: Mesh, seed: int = 0) -> Mesh:

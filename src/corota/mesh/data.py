@@ -266,7 +266,9 @@ class Mesh(Brief):
         return np.asarray(distinct(np.concatenate(parts)))
 
     def node_indices(self, where: str | ArrayLike) -> Ints:
-        """Node indices of a set, of indices or of a mask, checked; shape (n,).
+        """Node indices of a set, several sets, indices or a mask, checked; shape (n,).
+
+        Of a list of names each node counts once, in the order of the sets.
 
         Raises
         ------
@@ -275,10 +277,44 @@ class Mesh(Brief):
         """
         if isinstance(where, str):
             return self.nodes_of(where)
+        if several := selection.names(where):
+            return _united([self.nodes_of(self._full(name)) for name in several])
         return selection.indices(where, "node", self.n_nodes)
 
+    def cell_indices(self, where: str | ArrayLike) -> Ints:
+        """Global cell indices of a cell set, several, indices or a mask, checked; shape (n,).
+
+        Raises
+        ------
+        InputError
+            If there is no such set, or these are no indices of cells of the mesh.
+        """
+        if isinstance(where, str):
+            if where == "all" and where not in self.cell_sets:
+                return np.arange(self.n_cells, dtype=np.int64)
+            return self.cell_sets[self.set_name(where, "cell")]
+        if several := selection.names(where):
+            return _united([self.cell_indices(self._full(name, "cell")) for name in several])
+        return selection.indices(where, "cell", self.n_cells)
+
+    def _full(self, name: str, kind: str = "") -> str:
+        """Name of a set that is not empty.
+
+        Raises
+        ------
+        InputError
+            If there is no such set, or it is empty.
+        """
+        if kind == "cell" and name == "all" and name not in self.cell_sets:
+            return name
+        found = self.set_name(name, *([kind] if kind else []))
+        members = getattr(self, f"{kind}_sets")[found] if kind else self.nodes_of(found)
+        if not len(members):
+            raise InputError(f"{kind or 'node'} set {found!r} is empty")
+        return found
+
     def edge_pairs(self, where: str | ArrayLike) -> Ints:
-        """Edges of an edge set, or pairs (cell, local edge), checked; shape (n, 2).
+        """Edges of an edge set, several, or pairs (cell, local edge), checked; shape (n, 2).
 
         Raises
         ------
@@ -287,6 +323,8 @@ class Mesh(Brief):
         """
         if isinstance(where, str):
             return self.edge_sets[self.set_name(where, "edge")]
+        if several := selection.names(where):
+            return _united([self.edge_sets[self._full(name, "edge")] for name in several])
         return selection.pairs(where, self.n_cells)
 
     def edge_set_nodes(self, edges: Ints) -> Ints:
@@ -371,3 +409,10 @@ class Mesh(Brief):
         if 0 < self.n_cells <= CELLS_DRAWN:
             drawn = picture(lambda path: plots.model(self, path=path, dpi=80.0))
         return drawn + table(rows)
+
+
+def _united(parts: list[Ints]) -> Ints:
+    """Rows of several arrays, each once, in their order."""
+    every = np.concatenate(parts)
+    _, first = np.unique(every, axis=0, return_index=True)
+    return np.asarray(every[np.sort(first)])

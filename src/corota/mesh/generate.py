@@ -188,9 +188,9 @@ def annulus(
         for old in _NAMES:
             table[names[old]] = table.pop(old)
     if angle == 360.0:
-        mesh = merge(mesh, tolerance=1e-9 * outer)
         for name in ("start", "end"):
             del mesh.node_sets[name], mesh.edge_sets[name]
+        mesh = merge(mesh, tolerance=1e-9 * outer)
     return mesh
 
 

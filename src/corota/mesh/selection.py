@@ -68,6 +68,21 @@ def indices(
     return array.astype(np.int64)
 
 
+def names(given: object) -> tuple[str, ...] | None:
+    """Names of several sets, where a list, a tuple or an array of names is given.
+
+    Examples
+    --------
+    >>> names(["left", "top"]), names("left"), names([0, 1])
+    (('left', 'top'), None, None)
+    """
+    if isinstance(given, np.ndarray) and given.dtype.kind in "US":
+        given = given.ravel().tolist()
+    if isinstance(given, list | tuple) and given and all(isinstance(g, str) for g in given):
+        return tuple(given)
+    return None
+
+
 def pairs(given: ArrayLike, count: int | None = None, where: Location | None = None) -> Ints:
     """Edges as pairs of cell index and local edge, shape (n, 2).
 
@@ -127,4 +142,4 @@ def _in_range(array: NDArray[Any], what: str, count: int | None, where: Location
         raise InputError(f"no {what} with index {high}; there are {count}, counted from 0", where)
 
 
-__all__ = ["indices", "one", "pairs"]
+__all__ = ["indices", "names", "one", "pairs"]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from corota.errors import InputError, number
+from corota.mesh import selection
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, selected
 
 if TYPE_CHECKING:
@@ -51,12 +52,14 @@ class Loading:
 
         Parameters
         ----------
-        nodes : str or array_like of int
-            Node, edge or cell set, node indices, or a mask of nodes.
+        nodes : str, sequence of str or array_like of int
+            Node, edge or cell set, a list of them, node indices, or a mask of nodes.
         x, y : float or None
             Displacement at the end of a step [length].
         rotation : float, bool or None
-            ``True`` holds the drilling rotation, a number prescribes it [rad].
+            ``True`` holds the drilling rotation, a number prescribes it [rad]. Nodes of beams, of
+            ``OPT``, ``Q4D`` and ``Q4DI``, and reference nodes have one; where no node of the
+            place has, ``check`` warns and the results have a note.
         amplitude : str
             Name in ``Model.amplitudes``; empty: ramp in static steps.
 
@@ -74,11 +77,12 @@ class Loading:
         >>> [(s.nodes, s.dof, s.value) for s in step.supports]
         [('left', 0, 0.0), ('left', 1, 0.0), ('pin', 0, -0.5)]
         """
-        where = self._nodes(nodes)
+        places = [self._nodes(place) for place in selection.names(nodes) or [nodes]]
         turn = 0.0 if rotation is True else None if rotation is False else rotation
-        for dof, value in enumerate((x, y, turn)):
-            if value is not None:
-                self.supports.append(Fixed(where, dof, value, amplitude))
+        for where in places:
+            for dof, value in enumerate((x, y, turn)):
+                if value is not None:
+                    self.supports.append(Fixed(where, dof, value, amplitude))
 
     def force(
         self,
@@ -99,8 +103,8 @@ class Loading:
 
         Parameters
         ----------
-        where : str or array_like of int
-            Edge or node set, node indices, or a mask of nodes.
+        where : str, sequence of str or array_like of int
+            Edge or node set, a list of them (united), node indices, or a mask of nodes.
         x, y : float
             Force [force].
         moment : float
@@ -127,7 +131,8 @@ class Loading:
         if total and per_node:
             raise InputError("a force is either total or per_node")
         if not isinstance(where, str):
-            where = self._nodes(where)
+            # Of several names only the mesh tells whether they are edges.
+            where = selection.names(where) or self._nodes(where)
         spread = "total" if total else "per node" if per_node else ""
         self._add_force(Force(where, x, y, moment, spread, amplitude))  # type: ignore[arg-type]
 

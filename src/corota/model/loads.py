@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -125,9 +125,14 @@ class Amplitude(Brief):
 
 
 def selected(where: object, what: str, source: Location | None) -> str | Ints:
-    """A set's name, or indices that are checked as far as they can be without a mesh."""
+    """Names of sets, or indices that are checked as far as they can be without a mesh.
+
+    Several names stay a tuple until the mesh is known: see :func:`applied`.
+    """
     if isinstance(where, str):
         return where
+    if several := selection.names(where):
+        return several  # type: ignore[return-value]
     if what == "edge":
         return selection.pairs(where, where=source)  # type: ignore[arg-type]
     found = selection.indices(where, what, where=source)  # type: ignore[arg-type]
@@ -191,6 +196,10 @@ class Fixed(Brief):
 
     def __post_init__(self) -> None:
         self.nodes = selected(self.nodes, "node", self.where)
+        if isinstance(self.nodes, tuple):
+            raise InputError(
+                "Fixed takes one set; the method fix of a model or a step takes several", self.where
+            )
         self.dof = dof_index(self.dof, self.where)
         self.value = number(self.value, "a prescribed displacement", self.where)
         self.amplitude = _amplitude(self.amplitude, self.where)
@@ -238,9 +247,9 @@ class Force(Brief):
 
     Parameters
     ----------
-    at : str or array_like of int
-        Edge or node set, node indices, or a mask of nodes. A name of both an edge set and a node
-        set means the edges.
+    at : str, sequence of str or array_like of int
+        Edge or node set, several, node indices, or a mask of nodes. A name of both an edge set
+        and a node set means the edges.
     x, y : float
         Force [force].
     moment : float
@@ -283,6 +292,11 @@ class Force(Brief):
             If there is no such set or node.
         """
         at = self.at
+        if isinstance(at, tuple):
+            names = [mesh.set_name(name) for name in at]
+            if self.spread != "per node" and all(name in mesh.edge_sets for name in names):
+                return self._on_edges(mesh, mesh.edge_pairs(names))
+            at = mesh.node_indices(names)
         if isinstance(at, str):
             at = mesh.set_name(at)
             if at in mesh.edge_sets and self.spread != "per node":
@@ -300,8 +314,8 @@ class Force(Brief):
             if value != 0.0
         ]
 
-    def _on_edges(self, mesh: Mesh, name: str) -> list[NodalForce | EdgeLoad]:
-        edges = mesh.edge_sets[name]
+    def _on_edges(self, mesh: Mesh, name: str | Ints) -> list[NodalForce | EdgeLoad]:
+        edges = mesh.edge_pairs(name)
         if not len(edges):
             raise InputError(f"edge set {name!r} is empty", self.where)
         found: list[NodalForce | EdgeLoad] = []
@@ -539,8 +553,21 @@ def _items(given: object, what: str, where: Location | None) -> Iterable[object]
 
 
 def applied(loads: Iterable[Load], mesh: Mesh) -> list[AppliedLoad]:
-    """Loads as they act on a mesh: each :class:`Force` by what it consists of."""
+    """Loads as they act on a mesh: each :class:`Force` by what it consists of, sets united."""
     found: list[AppliedLoad] = []
     for load in loads:
-        found += load.on(mesh) if isinstance(load, Force) else [load]
+        found += load.on(mesh) if isinstance(load, Force) else [_united(load, mesh)]
     return found
+
+
+def _united(load: AppliedLoad, mesh: Mesh) -> AppliedLoad:
+    """The load with the members of its sets, where it names several."""
+    if isinstance(load, EdgeLoad):
+        return replace(load, edges=mesh.edge_pairs(load.edges)) if _several(load.edges) else load
+    if isinstance(load, BodyForce):
+        return replace(load, cells=mesh.cell_indices(load.cells)) if _several(load.cells) else load
+    return replace(load, nodes=mesh.node_indices(load.nodes)) if _several(load.nodes) else load
+
+
+def _several(where: object) -> bool:
+    return isinstance(where, tuple)

@@ -52,6 +52,8 @@ from corota.model.sections import Section as Section
 from corota.model.units import Units
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from corota.errors import Diagnostic
@@ -319,7 +321,7 @@ class Model(Loading, LineSections, InitialFields):
         self.constraints.append(Coupling(where, self._node(reference), kind, chosen, given))
 
     def rigid(self, nodes: str | ArrayLike, reference: int) -> None:
-        """Make nodes one rigid body with a reference node, in any rotation."""
+        """Make nodes (a set, a list of sets, indices) one rigid body with a reference node."""
         self.constraints.append(
             Coupling(self._nodes(nodes), self._node(reference), name="rigid body")
         )
@@ -415,8 +417,14 @@ class Model(Loading, LineSections, InitialFields):
 
         return deepcopy(self)
 
-    def check(self) -> Findings:
+    def check(self, steps: Step | Sequence[Step] | None = None) -> Findings:
         """Look for what will fail, mislead or surprise, without solving more than the start.
+
+        Parameters
+        ----------
+        steps : Step or sequence of Step, optional
+            What will be run, as :func:`corota.solve` takes it; the model's own steps by default.
+            With steps the check starts the first increment, as ``corota check`` does.
 
         Returns
         -------
@@ -434,7 +442,7 @@ class Model(Loading, LineSections, InitialFields):
         """
         from corota.check import check
 
-        return Findings(check(self))
+        return Findings(check(self, steps))
 
     def summary(self) -> str:
         """Nodes, elements, sets, sections, supports, loads and steps as text.
@@ -498,7 +506,7 @@ class Model(Loading, LineSections, InitialFields):
             if not len(self.mesh.nodes_of(name)):
                 raise InputError(f"node set {name!r} is empty")
             return name
-        return selection.indices(where, "node", self.mesh.n_nodes)
+        return self.mesh.node_indices(where)
 
     def _cells(self, cells: str | ArrayLike) -> str | Ints:
         if isinstance(cells, str):
@@ -508,7 +516,7 @@ class Model(Loading, LineSections, InitialFields):
             if not len(self.mesh.cell_sets[name]):
                 raise InputError(f"cell set {name!r} is empty")
             return name
-        return selection.indices(cells, "cell", self.mesh.n_cells)
+        return self.mesh.cell_indices(cells)
 
     def _edges(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):
@@ -516,7 +524,7 @@ class Model(Loading, LineSections, InitialFields):
             if not len(self.mesh.edge_sets[name]):
                 raise InputError(f"edge set {name!r} is empty")
             return name
-        return selection.pairs(where, self.mesh.n_cells)
+        return self.mesh.edge_pairs(where)
 
 
 class Findings(list["Diagnostic"]):

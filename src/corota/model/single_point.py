@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-class LawOfTheCore(Material):
+class LawOfTheCore(Material, ABC):
     """A plastic law that can be tried at a single point."""
 
     E: float
@@ -23,9 +24,9 @@ class LawOfTheCore(Material):
     flows = True
 
     @property
+    @abstractmethod
     def first_yield(self) -> float:
         """Uniaxial stress where plastic strain begins or is first felt [force/length^2]."""
-        raise NotImplementedError
 
     def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
         """Answer of a single point to a strain path, one implicit step per row.

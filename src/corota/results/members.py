@@ -88,10 +88,8 @@ def members(results: Results, cells: str | ArrayLike | None, frame: int) -> Memb
     wanted = np.zeros(mesh.n_cells, dtype=bool)
     if cells is None:
         wanted[:] = True
-    elif isinstance(cells, str):
-        wanted[mesh.cell_sets[mesh.set_name(cells, "cell")]] = True
     else:
-        wanted[np.asarray(cells)] = True
+        wanted[mesh.cell_indices(cells)] = True
     # Springs have a force N, but no section.
     has = wanted & (results.cells_with("S", frame) if "N" in names else False)
     rows, nodes = [np.zeros(0, np.int64)], [np.zeros((0, 2), np.int64)]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from corota.display import CELLS_DRAWN, Brief, brief, picture, table
 from corota.errors import InputError
+from corota.mesh.selection import names
 from corota.names import choose
 from corota.results.frame import Frame, PointFields
 
@@ -687,6 +688,8 @@ def _place(at: Any) -> str:
 
     if isinstance(at, str):
         return at
+    if several := names(at):
+        return ", ".join(several)
     array = np.atleast_1d(np.asarray(at))
     count = int(array.sum()) if array.dtype == bool else len(array)
     return f"node {array[0]}" if count == 1 and array.dtype != bool else f"{count} nodes"

@@ -13,7 +13,7 @@ from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError
 from corota.mesh.data import EDGES
-from corota.mesh.parts import cells_of, parts_without
+from corota.mesh.parts import parts_without
 from corota.mesh.shape_functions import shape_functions
 from corota.model import elements
 from corota.results.history import History
@@ -460,10 +460,8 @@ def _resultant(where: Floats, values: Floats, center: Floats) -> tuple[Floats, f
 def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> NDArray[np.bool_]:
     if cells is None:
         return np.ones(mesh.n_cells, dtype=bool)
-    if isinstance(cells, str) and cells != "all":
-        cells = mesh.cell_sets[mesh.set_name(cells, "cell")]
     mask = np.zeros(mesh.n_cells, dtype=bool)
-    mask[cells_of(mesh, cells if isinstance(cells, str) else np.asarray(cells))] = True
+    mask[mesh.cell_indices(cells)] = True
     return mask
 
 

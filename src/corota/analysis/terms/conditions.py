@@ -35,6 +35,7 @@ from corota.model.loads import (
     check_supports,
     kind_of,
 )
+from corota.model.rotations import without_rotation
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -489,6 +490,8 @@ class Conditions(Term):
                     f"node {label} has no drilling rotation to prescribe; use OPT or Q4D there",
                     item.where,
                 )
+            if item.dof == 2 and item.where is None and (dofs < 0).all():
+                self.notes.append(without_rotation(self.system.model.mesh, item))
             dofs = dofs[dofs >= 0]
             self.system.constraints.refuse_constrained(dofs, item.where)
             self.constrained[dofs] = True

@@ -255,6 +255,8 @@ class ContactTerm(Term):
                     within = seen & moved
                 near = np.where(within, np.maximum(gap, 0.0), 0.0)
                 pair.core.offset = pair.core.offset + np.where(moved, pair.overlap, 0.0) + near
+            adjusted_gap = gap - (pair.core.offset - pair.base)
+            pair.first_gap = np.where(seen, adjusted_gap, pair.reach)
 
     def _start_tie(self, pair: Pair, x: Floats) -> None:
         pair.core.search(x)

@@ -46,6 +46,11 @@ def output(
         zip(contact_term.pairs, contact_term.parts(contact_term.committed), strict=True)
     ):
         if contact_state is None:
+            if not pair.tied:
+                rows = np.zeros((pair.n, 5))
+                rows[:, 2] = pair.first_gap
+                for table in (values, *([each[pair.name]] if pair.name in each else [])):
+                    _spread(table, pair, rows[pair.owner])
             continue
         terms, state = contact_state.terms[k], contact_state.states[k]
         acting, x = contact_state.acting[k], contact_state.where
@@ -56,9 +61,9 @@ def output(
         rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]
         if pair.tied:
             rows[:] = 0.0
-        _spread(values, pair, rows, seen)
+        _spread(values, pair, rows)
         if pair.name in each:
-            _spread(each[pair.name], pair, rows, seen)
+            _spread(each[pair.name], pair, rows)
         fx, fy, moment = resultant(pair, acting, p, q, x)
         sums[f"{pair.name}: force x"] = fx
         sums[f"{pair.name}: force y"] = fy
@@ -79,7 +84,7 @@ def output(
     return values, sums, each
 
 
-def _spread(values: Floats, pair: Pair, rows: Floats, seen: NDArray[np.bool_]) -> None:
+def _spread(values: Floats, pair: Pair, rows: Floats) -> None:
     """Add a pair's rows to the nodes; mid-side nodes get the mean of their corners."""
     n = len(values)
     own = np.zeros((n, 5))

@@ -74,6 +74,7 @@ class Pair:
         #: Gaps and areas of the committed state where gaps must not fall below those.
         self.start: tuple[Floats, Floats] | None = None
         self.overlap = self.base = np.zeros(self.n)  # of the start, and gap that counts as none
+        self.first_gap = np.zeros(self.n)  # before the first increment
         self.owner = np.arange(self.n)  # whose constraint a node's part belongs to
         self.frozen = False  # whether that is settled for the increment
         self.beside: tuple[Ints, Ints] | None = None
