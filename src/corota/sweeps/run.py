@@ -160,7 +160,9 @@ def _spread(
         from multiprocessing import get_context
 
         # Forked processes would inherit the locks of this one's threads.
-        pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+        pool = ProcessPoolExecutor(
+            workers, mp_context=get_context("spawn"), initializer=end_with_parent
+        )
     with pool as running:
         futures: dict[Future[Outcome], int] = {
             running.submit(unpacked_run, payload, dict(rows[number])): number for number in left
@@ -177,6 +179,21 @@ def _spread(
             for future in futures:
                 future.cancel()
             raise
+
+
+def end_with_parent() -> None:
+    """Let this worker end when the process that started it is killed: nobody else tells it."""
+    from multiprocessing import parent_process
+    from threading import Thread
+
+    parent = parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    Thread(target=watch, name="corota-parent", daemon=True).start()
 
 
 def packed(job: Job, foreign: bool) -> bytes:
