@@ -21,6 +21,7 @@ IDENTIFIERS = {
     "Touched": "ContactEvaluation",
     "TouchingSystem": "ContactEquations",
     "touched": "contact_evaluation",
+    "touching": "closed, a state of contact",
     "go_round": "predict_through_events",
     "lack": "complementarity or energy_error",
     "Asked": "RightHandSides",

@@ -33,6 +33,7 @@ DERIVED: dict[str, frozenset[str]] = {
     "SaddlePointSystem": frozenset({"_resolve", "_link"}),
     "State": frozenset({"resumption", "recover"}),
     "Balance": frozenset({"inertia"}),
+    "Approach": frozenset({"system", "part", "heavy"}),
     "BranchTracer": frozenset({"report", "cut_back"}),
 }
 #: Attributes of new objects that must be there although they are not stored.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 #: Names and colors of the states of nodes.
-STATES = (("open", PALE), ("touching", COLORS[0]), ("slipping", COLORS[1]))
+STATES = (("open", PALE), ("closed", COLORS[0]), ("slipping", COLORS[1]))
 
 
 def contact_line(
@@ -41,7 +41,7 @@ def contact_line(
     """Draw pressure, and shear traction if there is any, along the slave surface of a pair.
 
     The way along it is that of the undeformed surface, the body on the left; the part that
-    touches is shown, with a tenth more on either side.
+    is closed is shown, with a tenth more on either side.
 
     Parameters
     ----------
@@ -75,10 +75,10 @@ def contact_line(
         low, high = np.inf, -np.inf
         for nodes, way in runs:
             pressure, shear, _, _, status = contact[nodes].T
-            touching = status > 0.0
-            if touching.any():
-                low = min(low, float(way[touching].min()))
-                high = max(high, float(way[touching].max()))
+            closed = status > 0.0
+            if closed.any():
+                low = min(low, float(way[closed].min()))
+                high = max(high, float(way[closed].max()))
             first = way is runs[0][1]
             _curve(ax, way, pressure, COLORS[0], "pressure" if first else "")
             if np.any(shear != 0.0):

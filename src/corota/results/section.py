@@ -305,10 +305,10 @@ class Cut:
         """From loads and reactions of the part behind, if the cut severs it from the rest."""
         mesh = self.results.mesh
         moving = any(v is not None and v.any() for v in (state.V, state.A))
-        touching = state.C is not None and state.C[:, 4].any()
+        closed = state.C is not None and state.C[:, 4].any()
         told = getattr(self.results, "description", {})
         joined = bool(self.results.model.constraints or told.get("couplings") or told.get("joints"))
-        if moving or touching or joined or {"RF", "F"} & state.absent:
+        if moving or closed or joined or {"RF", "F"} & state.absent:
             return None
         if self.results.model.contacts:
             return None

@@ -24,6 +24,7 @@ from corota.analysis.procedures.motion_start import (
     start_motion,
 )
 from corota.analysis.procedures.rigid_motion import deformation, rigid_rates
+from corota.analysis.terms.contact.approach import Approach
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.analysis.terms.contact.relaxation import relax
 from corota.analysis.terms.damping import Damping
@@ -106,6 +107,7 @@ class DynamicStepper(NewtonStepper):
             state.notes.append(self.inertia.remark)
         self.viscous = ViscousElements(system, step.rayleigh[1])
         self.flight = FreeFlight(system)
+        self.approach = Approach(system, self.inertia.massless)
         resumes = bool(state.resumes)
         self.now = (
             resting(system)
@@ -125,7 +127,9 @@ class DynamicStepper(NewtonStepper):
         self.motion: NewmarkMotion | ConservingMotion
         self.error = 0.0
         if resumes:
-            found = state.resume(self.kind, control=control, book=self.book, ends=self.ends)
+            found = state.resume(
+                self.kind, control=control, book=self.book, ends=self.ends, approach=self.approach
+            )
             self.now, self.turned = found["now"], found["turned"]
             return
         now = self.now
@@ -142,6 +146,7 @@ class DynamicStepper(NewtonStepper):
             "control": self.control,
             "book": self.book,
             "ends": self.ends,
+            "approach": self.approach,
             "now": self.now,
             "turned": self.turned,
         }
@@ -151,7 +156,10 @@ class DynamicStepper(NewtonStepper):
         target = super().target()
         if self.step.fixed_increments:
             return target
-        return _not_over_a_load(self.system, self.step, self.control.time, target)
+        target = _not_over_a_load(self.system, self.step, self.control.time, target)
+        dt = target - self.control.time
+        within = self.approach.within(self.now, dt, self.step.smallest_increment)
+        return target if within >= dt else self.control.time + within
 
     def solve(self, target: float) -> Attempt:
         """Newton's method; automatic increments are refused where the local error is too large."""
@@ -176,12 +184,14 @@ class DynamicStepper(NewtonStepper):
         if outcome.converged and not step.fixed_increments:
             self.error = _local_error(system, self.motion, step, self.inertia.massless)
             # An impact that no increment is short enough for is taken as it is.
-            if CUT * dt >= step.smallest_increment:
+            shorter = CUT * dt >= step.smallest_increment
+            if shorter:
                 begin, end, book = self.motion.start, self.motion.end, self.book
                 energy = max(book.energy, book.driven(end))
-                missed = contact.impact_error(end.u - begin.u, energy, step.error_tolerance)
+                moved, meets = end.u - begin.u, self.approach.meets
+                missed = contact.impact_error(moved, energy, step.error_tolerance, meets)
                 self.error = max(self.error, missed)
-            if self.error > 1.0:
+            if self.error > 1.0 and (shorter or not system.opens):
                 reason = f"local error {self.error:.2g} times the allowed one"
         return Attempt(target, outcome, contact, reason)
 
@@ -222,6 +232,9 @@ class DynamicStepper(NewtonStepper):
         )
         assert contact is not None
         dt = target - control.time
+        # An increment that meets a surface is short for that alone.
+        size = control.size if self.approach.limited else dt
+        self.approach.follow(self.now.u, motion.end.u, dt)
         system.commit()
         self.inertia.settle(self.now, motion.end, dt)
         state.notes += contact.accept(outcome.u, target)
@@ -240,7 +253,7 @@ class DynamicStepper(NewtonStepper):
         control.accept(target, outcome.iterations)
         if not step.fixed_increments:
             grown = AIM * dt * math.sqrt(1.0 / max(self.error, 1e-6))
-            control.size = min(max(grown, LEAST * dt), MOST * dt, step.largest_increment)
+            control.size = min(max(grown, LEAST * size), MOST * size, step.largest_increment)
         scalars = {
             "dt": dt,
             "iterations": float(outcome.iterations),

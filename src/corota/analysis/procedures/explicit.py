@@ -185,7 +185,7 @@ class ExplicitStepper:
         free = state.v - 0.5 * dt * self.inverse * self.at.residual
         still, force = np.zeros_like(free), np.zeros_like(free)
         if not resumes:
-            force = self._touch(still, state.v, free, 0.5, 0.0)
+            force = self._contact(still, state.v, free, 0.5, 0.0)
         residual = self.at.residual - force
         a = -self.inverse * residual
         account.drive(self.at.external, residual)
@@ -276,7 +276,7 @@ class ExplicitStepper:
         _refuse_pushed(system, self.idle, at)
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
         given_v, given_a = system.conditions.support_rates(time, dt)
-        force = self._touch(du, self.v, self.v - dt * self.inverse * at.residual, 1.0, time)
+        force = self._contact(du, self.v, self.v - dt * self.inverse * at.residual, 1.0, time)
         residual = at.residual - force
         a = -self.inverse * residual
         account.add_work(du, at.external, residual)
@@ -320,7 +320,9 @@ class ExplicitStepper:
         }
         return Accepted(i, time / self.step.period, scalars)
 
-    def _touch(self, du: Floats, before: Floats, free: Floats, share: float, time: float) -> Floats:
+    def _contact(
+        self, du: Floats, before: Floats, free: Floats, share: float, time: float
+    ) -> Floats:
         """Contact forces at a state, shape (n_dofs,).
 
         Parameters

@@ -235,11 +235,11 @@ def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Fra
         values = at_nodes(name)
         if values is not None:
             averages[stored] = values[:, 0]
-    contact, touching = at_nodes("CONTACT"), None
+    contact, traction = at_nodes("CONTACT"), None
     if contact is not None:
         gap, slip, _, pressure, shear, _ = contact.T
         status = np.where(pressure > 0.0, 1.0, 0.0)
-        touching = np.column_stack([pressure, shear, gap, slip, status])
+        traction = np.column_stack([pressure, shear, gap, slip, status])
     nothing = np.full((n, 3), np.nan)
     return Frame(
         step,
@@ -252,7 +252,7 @@ def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Fra
         nothing if force is None else np.column_stack([force[:, :2], np.zeros(n)]),
         nothing,
         V=None if speed is None else np.column_stack([speed[:, :2], np.zeros(n)]),
-        C=touching,
+        C=traction,
         averages=averages,
         absent=frozenset({"F"} if force is not None else {"RF", "F"}),
     )

@@ -307,11 +307,11 @@ class FrdWriter:
             elif block in (PE, ENER) and block.request in data:
                 found.append((block, every, longer(data[block.request][:, None])))
             elif block is CONTACT and frame.C is not None:
-                touching = np.flatnonzero(self._slaves(frame))
-                pressure, shear, gap, slip, _ = frame.C[touching].T
-                none = np.zeros(len(touching))
+                slaves = np.flatnonzero(self._slaves(frame))
+                pressure, shear, gap, slip, _ = frame.C[slaves].T
+                none = np.zeros(len(slaves))
                 table = np.column_stack([gap, slip, none, pressure, shear, none])
-                found.append((block, labels[touching], table))
+                found.append((block, labels[slaves], table))
         return [entry for entry in found if len(entry[1])]
 
     def _slaves(self, frame: Frame) -> NDArray[np.bool_]:

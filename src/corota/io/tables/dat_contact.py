@@ -1,7 +1,7 @@
 """Tables of ``*CONTACT PRINT`` in the layout of CalculiX's ``.dat`` file.
 
 Source: CalculiX 2.20, contact of type node to surface and the statistics of pairs. Values belong
-to slave nodes here in every type of contact; nodes that do not touch have no row.
+to slave nodes here in every type of contact; open nodes have no row.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -77,12 +77,12 @@ def _slave_nodes(model: Model, pair: ContactPair) -> Ints:
 
 
 def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str:
-    """Resultant on the slave surface, where it touches and how it is turned there."""
+    """Resultant on the slave surface, where it is closed and how it is turned there."""
     plus, minus = _PARTS[name]
     force = _resultant(frame, pair, plus)
     if minus is not None:
         force = force - _resultant(frame, pair, minus)
-    area, centre, normal = _touching(model, pair, frame)
+    area, centre, normal = _closed_part(model, pair, frame)
     moment = force[2] - (centre[0] * force[1] - centre[1] * force[0])
     along = float(force[:2] @ normal)
     across = math.hypot(*(force[:2] - along * normal))
@@ -113,8 +113,8 @@ def _resultant(frame: Frame, pair: ContactPair, what: str) -> Floats:
     return np.array([get(f"{pair.name}: {what}{name}", 0.0) for name in names])
 
 
-def _touching(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, Floats, Floats]:
-    """Area that touches, its center and its mean outward normal, in the current state."""
+def _closed_part(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, Floats, Floats]:
+    """Area that is closed, its center and its mean outward normal, in the current state."""
     assert frame.C is not None
     x = model.mesh.points + frame.U
     ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(_slave(model, pair))])

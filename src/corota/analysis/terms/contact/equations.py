@@ -617,7 +617,7 @@ class ContactEquations:
         return Triplets(a[keep], b[keep], entries[keep])
 
     def _near(self, pair: Any, terms: Any) -> tuple[Ints, Ints]:
-        """Dofs and multipliers of candidate pairs next to those that touch."""
+        """Dofs and multipliers of candidate pairs next to closed ones."""
         if not self.system.nlgeom:
             return np.zeros((0, 0), np.int64), np.zeros((0, 0), np.int64)
         variables, constraints = pair.core.pattern()
@@ -719,10 +719,10 @@ class ContactEquations:
         assert self.contact_state is not None
         return self.contact_state.force_at_end
 
-    def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
+    def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
         """See :func:`corota.analysis.terms.contact.impact.impact_error`."""
         assert self.contact_state is not None
-        return impact_error(self.contact_term, self.contact_state, moved, energy, tolerance)
+        return impact_error(self.contact_term, self.contact_state, moved, energy, tolerance, meets)
 
     def accept(self, u: Floats, step_time: float) -> list[str]:
         """Commit contact with the increment; returns remarks that are new."""
@@ -739,7 +739,7 @@ class ContactEquations:
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
             constraint = (number - pair.first) % pair.n
             if constraint >= pair.of_nodes:
-                continue  # a facet between two nodes that touch as well
+                continue  # a facet between two nodes that are closed as well
             notes.append(
                 f"contact pair {pair.name!r}: the constraint at node "
                 f"{self.contact_term.label(pair, constraint)} is redundant "

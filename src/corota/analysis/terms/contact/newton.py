@@ -39,7 +39,7 @@ class ContactIncrement(Protocol):
         """Whether an equilibrium is near the committed one."""
         ...
 
-    def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
+    def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
         """What an increment misses of the moment of impact."""
         ...
 
@@ -63,8 +63,8 @@ class NoContact:
         """Without contact, states do not jump."""
         return True
 
-    def impact_error(self, moved: Floats, energy: float, tolerance: float) -> float:
-        """Nothing touches."""
+    def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
+        """No contact, no impact."""
         return 0.0
 
 

@@ -7,6 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient, mean_pressure
 from corota.analysis.terms.contact.gaps import COVERED, Terms
@@ -88,6 +90,7 @@ class Pair:
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
         self.seen = False  # whether the surfaces were ever near each other
+        self.surface = _surfaces(self.slave.nodes, self.nodes)  # whose node it is
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
@@ -119,6 +122,25 @@ class Pair:
                 NONE * self.size,
             )
         return self._since(terms)
+
+    def gaps_at(self, term: Any, number: int, x: Floats) -> Terms:
+        """Gaps of the committed state, at positions `x`, without conditions on their rates."""
+        if term.at is not None:
+            terms: Terms = term.at.terms[number]
+        else:
+            terms = self.evaluate(x, x, term.system.nlgeom)
+        return terms.bare or terms
+
+    def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
+        """Constraints of slave surfaces on which none is closed at a committed state."""
+        seen = terms.area > COVERED * self.full
+        closed = seen & (terms.gap <= self.noise * self.full)
+        if states is not None:
+            closed |= states != OPEN
+        met = np.zeros(self.surface.max(initial=0) + 1, bool)
+        met[self.surface[closed]] = True
+        out: NDArray[np.bool_] = ~met[self.surface]
+        return out
 
     def let_go(self) -> None:
         """Forget which masters the nodes had, to which they would keep for a while."""
@@ -275,7 +297,7 @@ class Pair:
         if self.tied:
             return np.where(terms.area > COVERED * self.full, CLOSED, OPEN).astype(np.int8)
         _, push = self.trial(terms, p)
-        # What touches without pressure holds, or nothing would hold a body that just rests.
+        # What is closed without pressure stays, or nothing would hold a body that just rests.
         rounding = self.noise if self.law is not None else self.stiffness * self.noise
         shear = self.shear(terms, q)
         if last is not None and self.law is None:
@@ -408,6 +430,17 @@ class Pair:
             mean = np.where(whole, q, 0.5 * (before + q))
             # What parted may have slid back without traction.
             self.friction_work += float(np.maximum(-mean * terms.slip, 0.0).sum())
+
+
+def _surfaces(edges: Ints, nodes: Ints) -> Ints:
+    """Number of the connected piece of surface that each of the nodes lies on."""
+    pairs = np.concatenate([edges[:, :2], edges[:, ::2][edges[:, 2] >= 0]])
+    ids, ends = np.unique(pairs, return_inverse=True)
+    ends = ends.reshape(-1, 2)
+    graph = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), (len(ids), len(ids)))
+    number = connected_components(graph, directed=False)[1]
+    out: Ints = number[np.searchsorted(ids, nodes)].astype(np.int64)
+    return out
 
 
 __all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "Pair", "Terms"]

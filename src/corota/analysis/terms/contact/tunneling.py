@@ -53,7 +53,9 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
     eliminated = np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach
     closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
     chosen = np.flatnonzero(eliminated & ~closed)
-    hit = [k for k in chosen if _crosses(first, last, ends, old, new, int(nodes[k]))]
+    hit = [
+        k for k in chosen if time_of_crossing(first, last, ends, old, new, int(nodes[k])) < math.inf
+    ]
     return np.array(hit, np.int64)
 
 
@@ -99,8 +101,13 @@ def _carried(pieces: Floats, reference: Floats, at: Floats) -> Floats:
     return np.asarray(turned + at[:2])
 
 
-def _crosses(first: Floats, last: Floats, ends: Ints, old: Floats, new: Floats, node: int) -> bool:
-    """Whether a node went through a piece from outside, moving evenly."""
+def time_of_crossing(
+    first: Floats, last: Floats, ends: Ints, old: Floats, new: Floats, node: int
+) -> float:
+    """Share of the way after which a node goes through a piece from outside; inf if it does not.
+
+    All move evenly.
+    """
     own = (ends == node).any(axis=1)
     before, after = first[~own], last[~own]
 
@@ -112,13 +119,14 @@ def _crosses(first: Floats, last: Floats, ends: Ints, old: Floats, new: Floats, 
     a, b = side(before, old[node]), side(after, new[node])
     through = (a > 0.0) & (b < 0.0)
     if not through.any():
-        return False
-    t = (a[through] / (a[through] - b[through]))[:, None]
+        return math.inf
+    share = a[through] / (a[through] - b[through])
+    t = share[:, None]
     p = before[through] + t[:, :, None] * (after[through] - before[through])
     x = old[node, :2] + t * (new[node, :2] - old[node, :2])
     d = p[:, 1] - p[:, 0]
     along = ((x - p[:, 0]) * d).sum(axis=1) / (d * d).sum(axis=1)
-    return bool(((along >= 0.0) & (along <= 1.0)).any())
+    return float(np.min(share[(along >= 0.0) & (along <= 1.0)], initial=math.inf))
 
 
-__all__ = ["other_side", "passed"]
+__all__ = ["UNSEEN", "other_side", "passed", "time_of_crossing"]
