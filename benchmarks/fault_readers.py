@@ -105,7 +105,7 @@ def sound_mesh(mesh: ct.Mesh) -> str:
         return "a mesh without cells or with numbers that are not finite"
     for cells in mesh.cells:
         if cells.nodes.min() < 0 or cells.nodes.max() >= mesh.n_nodes:
-            return "cells with nodes that are not there"
+            return "cells refer to missing nodes"
     for table, size in ((mesh.node_sets, mesh.n_nodes), (mesh.cell_sets, mesh.n_cells)):
         for values in table.values():
             if len(values) and (values.min() < 0 or values.max() >= size):

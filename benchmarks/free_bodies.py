@@ -45,7 +45,7 @@ DRILLING = ("OPT", "Q4D")
 #: Words of which a refusal holds one: a motion, or a reason.
 REASON = re.compile(
     r"can move|can turn|unconstrained|stopped at|limit point|collapse|moves by|"
-    r"turned inside out|used its|no path|free motion|move freely"
+    r"inverted|used its|no path|free motion|move freely"
 )
 
 

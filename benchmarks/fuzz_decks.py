@@ -43,7 +43,7 @@ def sound(model: ct.Model, path: Path) -> str:
         return "node numbers occur twice"
     for cells in mesh.cells:
         if cells.nodes.min() < 0 or cells.nodes.max() >= mesh.n_nodes:
-            return "cells with nodes that are not there"
+            return "cells refer to missing nodes"
     for table in (mesh.node_sets, mesh.cell_sets):
         for values in table.values():
             if len(values) and values.min() < 0:

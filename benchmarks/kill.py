@@ -135,7 +135,7 @@ def look(folder: Path, reference: Path, counts: Counter[str]) -> list[str]:
             saved, refused = newest(folder / JOB)
             wrong += refused
             if frames < saved.files["big"]["vtkhdf"]["count"]:
-                wrong.append(f"{frames} frames, fewer than the checkpoint knows")
+                wrong.append(f"{frames} frames, fewer than the checkpoint expects")
         except FileError as error:
             wrong.append(str(error))
     return wrong

@@ -192,5 +192,5 @@ def test_mixed_units_are_warned_about() -> None:
 def test_unused_sets_are_listed() -> None:
     model = beam()
     model.fix("left")
-    listed = [str(d) for d in check(model) if "nothing uses" in str(d)]
-    assert listed == ["note: sets that nothing uses: bottom, top"]
+    listed = [str(d) for d in check(model) if "unused sets" in str(d)]
+    assert listed == ["note: unused sets: bottom, top"]

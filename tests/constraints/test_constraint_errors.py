@@ -31,7 +31,7 @@ def test_circle_is_named_with_its_places() -> None:
         Equation([(b, 0, 1.0), (c, 0, -1.0)], where=at(12)),
         Equation([(c, 0, 1.0), (a, 0, -1.0)], where=at(14)),
     ]
-    fails(model, "in a circle", "job.inp:10", "job.inp:12", "job.inp:14")
+    fails(model, "circularly", "job.inp:10", "job.inp:12", "job.inp:14")
 
 
 def test_dof_determined_twice_is_named_with_both_places() -> None:
@@ -64,7 +64,7 @@ def test_reference_node_held_by_nothing_is_named() -> None:
 def test_distributing_coupling_needs_two_places() -> None:
     model, reference = beam()
     model.couple([0], reference, kind="distributing")
-    fails(model, "two places")
+    fails(model, "two positions")
 
 
 def test_loose_node_in_a_distributing_coupling() -> None:

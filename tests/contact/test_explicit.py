@@ -361,7 +361,7 @@ def overlapping(**keys):
 
 def test_overlap_of_the_start_is_not_shot_out():
     results = run(overlapping(), 0.1)
-    assert any("stays until it opens" in note for note in results.notes)
+    assert any("remains until the contact opens" in note for note in results.notes)
     assert max(f.scalars["ALLKE"] for f in results.frames) < 1e-20
     ramped = run(overlapping(start="ramp"), 2.0).frames[-1]
     bottom = ramped.U[[0, 1, 2, 3, 4], 1]
@@ -373,7 +373,7 @@ def test_held_surfaces_that_are_pressed_together_are_named():
     model = elastic(ct.Model(ct.mesh.rectangle(2.0, 1.0, 4, 2)), "Q4I")
     model.fix("bottom", x=0.0, y=-0.5)
     model.contact("bottom", ct.RigidCurve.line((-5.0, -0.01), (20.0, -0.01)), name="hit")
-    with pytest.raises(ct.ConvergenceError, match=r"'hit': node \d+ is held and pressed into"):
+    with pytest.raises(ct.ConvergenceError, match=r"'hit': node \d+ is fixed and pressed into"):
         run(model, 0.1)
 
 

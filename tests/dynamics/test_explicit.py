@@ -142,7 +142,7 @@ def string(velocity):
 @pytest.mark.parametrize("velocity", [4.0, -8.0, 20.0])
 def test_a_blow_up_is_refused(velocity):
     """The tight spring's stable increment is 2 / 5; at the start any one is stable."""
-    with pytest.raises(ct.ConvergenceError, match="blows up"):
+    with pytest.raises(ct.ConvergenceError, match="diverges"):
         run(string(velocity), period=50.0, increments=100)
     frames = run(string(velocity), period=5.0, increments=500).frames
     kinetic = 0.5 * MASS * velocity**2
@@ -164,5 +164,5 @@ def test_elements_that_stiffen_are_refused(element):
     with pytest.raises(ct.ModelError) as caught:
         run(model, period=3.0, increments=3)
     stable = float(str(caught.value).split("differences, ")[1].split(";")[0])
-    with pytest.raises(ct.ConvergenceError, match=r"blows up|turned inside out"):
+    with pytest.raises(ct.ConvergenceError, match=r"diverges|inverted"):
         run(model, period=3.0, increments=int(np.ceil(3.0 / (0.98 * stable))))

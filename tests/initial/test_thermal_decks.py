@@ -118,7 +118,7 @@ def test_initial_stress_of_both_programs(tmp_path: Path, line: str) -> None:
     ("old", "new", "said"),
     [
         ("1.2e-5\n", "warm\n", "the coefficient"),
-        ("1.2e-5\n", "1e-5, 50.\n1e-5, 40.\n", "must rise"),
+        ("1.2e-5\n", "1e-5, 50.\n1e-5, 40.\n", "must increase"),
         ("nall, 120.", "nall, 120., 3.", "gradient"),
         ("nall, 120.", "nill, 120.", "did you mean nall"),
         ("*STEP\n", "*INITIAL CONDITIONS, TYPE=STRESS\neall, 1., 2.\n*STEP\n", "1, 3, 4 or 6"),

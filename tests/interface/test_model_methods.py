@@ -49,8 +49,8 @@ def test_the_check_finds_a_free_body_and_prints_as_text(model: ct.Model) -> None
 def test_contact_surfaces_count_as_used(model: ct.Model) -> None:
     model.contact("top", ct.RigidCurve.line((10.0, 2.0), (0.0, 2.0)))
     notes = " ".join(d.message for d in model.check())
-    assert "sets that nothing uses" in notes
-    assert "top" not in notes.split("sets that nothing uses")[1]
+    assert "unused sets" in notes
+    assert "top" not in notes.split("unused sets")[1]
 
 
 def test_results_and_models_draw_themselves(model: ct.Model, tmp_path: Path) -> None:

@@ -100,18 +100,18 @@ def test_constants_of_materials_are_numbers(given: object) -> None:
 
 def test_unknown_objects_among_loads_and_supports_are_refused(model: ct.Model) -> None:
     for item in (("right", "y", 1.0), "right", ct.Static()):
-        with pytest.raises(ct.InputError, match="is no load"):
+        with pytest.raises(ct.InputError, match="is not a load"):
             ct.Static(loads=[item])  # type: ignore[list-item]
-        with pytest.raises(ct.InputError, match="is no support"):
+        with pytest.raises(ct.InputError, match="is not a support"):
             ct.Static(supports=[item])  # type: ignore[list-item]
-    with pytest.raises(ct.InputError, match="is no support"):
+    with pytest.raises(ct.InputError, match="is not a support"):
         ct.Static(supports=[ct.NodalForce([0], "x", 1.0)])  # type: ignore[list-item]
     with pytest.raises(ct.InputError, match="loads is a list"):
         ct.Static(loads=ct.NodalForce([0], "x", 1.0))  # type: ignore[arg-type]
     late = ct.Static()
     late.loads.append(("right", 1.0))  # type: ignore[arg-type]
     model.fix("left")
-    with pytest.raises(ct.InputError, match="is no load"):
+    with pytest.raises(ct.InputError, match="is not a load"):
         ct.solve(model, late, threads=1)
 
 

@@ -99,7 +99,7 @@ def test_what_ends_with_its_step_says_how_it_goes_on(tmp_path: Path) -> None:
         "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.1\n*BOUNDARY, TYPE={}\n1, 1, 1, 1.\n*END STEP\n"
         "*STEP\n*DYNAMIC, DIRECT\n0.01, 0.1\n*END STEP\n"
     )
-    assert "does not say how it goes on" in message(tmp_path, step.format("VELOCITY"))
+    assert "does not continue it" in message(tmp_path, step.format("VELOCITY"))
     again = step.format("VELOCITY").replace(
         "0.1\n*END", "0.1\n*BOUNDARY, TYPE=VELOCITY\n1,1,1,2.\n*END"
     )

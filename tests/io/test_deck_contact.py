@@ -204,7 +204,7 @@ FAULTS = [
     (PROFILE.replace("START, 3., 4.\n", ""), "LINE", "comes first"),
     (PROFILE.replace("CIRCL", "PARAB"), "PARAB", "START, LINE or CIRCL"),
     (BODY, "ANALYTICAL", "no surface named 'Die'"),
-    (BODY.replace("Die", "Low"), "ANALYTICAL", "no rigid profile"),
+    (BODY.replace("Die", "Low"), "ANALYTICAL", "not a rigid profile"),
     ("*TIE, NAME=T\nLow\n", "Low\n", "master surface is missing"),
     (
         INTERACTION + "*SURFACE, NAME=One, TYPE=NODE\n5\n" + PAIR.replace("Low", "One"),

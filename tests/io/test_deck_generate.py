@@ -140,10 +140,10 @@ def test_parameters_are_worked_out(tmp_path: Path) -> None:
         ("x = open('a')", "no function open"),
         ("x = 9**9**9", "too large"),
         ("x = y", "no *PARAMETER named y"),
-        ("x = 1 +", "is no expression"),
+        ("x = 1 +", "is not an expression"),
         ("x", "expected name"),
         ("x = 1/0", "division"),
-        ("x = 'a'*9", "do not mix"),
+        ("x = 'a'*9", "cannot be mixed"),
     ):
         found = faults(tmp_path, f"*PARAMETER\n{line}\n" + DECK)
         assert len(found) == 1

@@ -263,7 +263,7 @@ def test_plot_draws_pictures(tmp_path, here, monkeypatch):
         (["--curve", "U2"], "write two quantities"),
         (["--curve", "U2@NOWHERE,time"], "no set named 'NOWHERE'"),
         (["--curve", "U2@77,time"], "there is no node 77"),
-        (["--field", "U", "--element"], "lives at nodes"),
+        (["--field", "U", "--element"], "is defined at nodes"),
     ],
 )
 def test_wrong_picture_is_2_with_the_way_out(arguments, words, tmp_path, capsys, monkeypatch):

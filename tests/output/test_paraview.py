@@ -102,6 +102,6 @@ def test_what_paraview_does_not_read_is_refused(folder: Path, tmp_path: Path) ->
         write_paraview(folder / "part.frd")
     with pytest.raises(ct.InputError, match="no result variable"):
         write_paraview(folder / "part.vtkhdf", "S77")
-    with pytest.raises(ct.InputError, match="belongs into the folder"):
+    with pytest.raises(ct.InputError, match="must be in the folder"):
         write_paraview(folder / "part.vtkhdf", target=str(tmp_path / "a.py"))
     assert main(["convert", str(folder / "part.vtkhdf"), "-q"]) == 2

@@ -150,7 +150,7 @@ def test_damaged_checkpoints_are_refused_and_the_other_is_used(done, tmp_path):
             at = int(rng.integers(len(data)))
             data[at] ^= 1 << int(rng.integers(8))
         path.write_bytes(data)
-        with pytest.raises(FileError, match=r"ckpt: (damaged|this is no|a checkpoint of)"):
+        with pytest.raises(FileError, match=r"ckpt: (damaged|not a checkpoint|a checkpoint of)"):
             load(path)
     found, refused = newest(folder / "beam")
     assert found.path.name == "beam.ckpt.1"

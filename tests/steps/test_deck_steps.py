@@ -202,7 +202,7 @@ def test_sections_of_beams(
     assert read(tmp_path, text).sections[0].profile[:2] == pytest.approx((area, inertia))
     if kind == "I":
         found = faults(tmp_path, text.replace("1.5, 3.", "1., 3."))
-        assert any("must be the center, 1.5" in d.message for d in found)
+        assert any("must be at the center, 1.5" in d.message for d in found)
 
 
 def test_a_circle_of_unknown_origin_is_refused(tmp_path: Path) -> None:

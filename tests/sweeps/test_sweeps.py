@@ -218,7 +218,7 @@ def test_designs() -> None:
         ({"parameters": {"length": 3.0}}, "give a list of values"),
         ({"parameters": [{"length": 1.0}, {"height": 1.0}]}, "row 1 of the sweep"),
         ({"measures": {}}, "at least one measure"),
-        ({"measures": {"F": 3}}, "a function of the results or a text"),
+        ({"measures": {"F": 3}}, "a function of the results or a string"),
         ({"measures": {"length": force}}, "both a parameter and a measure"),
         ({"workers": 0}, "at least one worker"),
     ],

@@ -122,7 +122,7 @@ def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:
     if turns and len(short):
         raise ModelError(
             f"element {labels[block.cells[short[0]]]} has no length; give its nodes different "
-            "places, or join fixed directions (dofs) of them",
+            "coordinates, or connect fixed directions (dofs) of them",
             section.where,
         )
 
@@ -134,7 +134,7 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
     if len(lost):
         label = model.mesh.node_labels[lost[0]]
         x, y = points[lost[0]].tolist()
-        raise ModelError(f"node {label} has no finite place: ({x}, {y})")
+        raise ModelError(f"node {label} has coordinates that are not finite: ({x}, {y})")
     for block in blocks:
         facts = elements.find(block.section.element)
         if facts.line:
@@ -148,9 +148,9 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
         bad = np.flatnonzero((turn <= 1e-12 * size[:, None]).any(axis=1))
         if len(bad):
             raise ModelError(
-                f"element {labels[block.cells[bad[0]]]} is folded, has no area or goes "
-                f"clockwise ({len(bad)} such elements); its corners must go "
-                "counter-clockwise with every angle below 180 degrees",
+                f"element {labels[block.cells[bad[0]]]} is folded, has no area or is clockwise "
+                f"({len(bad)} such elements); its corners must be counter-clockwise with every "
+                "angle below 180 degrees",
                 block.section.where,
             )
         _check_middles(model, block)
@@ -172,8 +172,8 @@ def _check_middles(model: Model, block: BlockOfCells) -> None:
         label = model.mesh.node_labels[block.nodes[cell, n + k]]
         raise ModelError(
             f"element {labels[block.cells[cell]]}: mid-side node {label} lies at "
-            f"{share[cell, k]:.3g} of its side; between .25 and .75 the element is folded "
-            "nowhere: move the node towards the middle",
+            f"{share[cell, k]:.3g} of its side; only between .25 and .75 the element cannot fold: "
+            "move the node towards the middle",
             block.section.where,
         )
 

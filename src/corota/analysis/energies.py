@@ -34,10 +34,10 @@ TERMS = {
     "ALLKE": "kinetic energy",
     "ALLVD": "viscous dissipation: dashpots, Rayleigh damping",
     "ALLFD": "frictional dissipation",
-    "ALLSD": "dissipation of contact stabilisation",
+    "ALLSD": "dissipation of contact stabilization",
     "ALLCL": "energy stored by contact pressure laws",
     "ALLPW": "work of contact forces in central differences less ALLFD and ALLCL",
-    "ALLWK": "work of loads and of supports that move",
+    "ALLWK": "work of loads and of moving supports",
     "ALLTH": "work of thermal expansion, done by changes of temperature",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }

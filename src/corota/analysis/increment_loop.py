@@ -154,7 +154,7 @@ class IncrementLoop:
             self.save(self.state, shown.number, shown.factor, shown.scalars)
             if self.observers.stop_requested:
                 raise Interrupted(
-                    f"stopped at step {self.number}, {stepper.where}; everything up to there is "
+                    f"stopped at step {self.number}, {stepper.where}; all results up to there are "
                     "kept"
                 )
 

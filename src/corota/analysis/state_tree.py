@@ -54,7 +54,7 @@ class UnsuitableState(CorotaError):
 
 
 class Unstorable(CorotaError):
-    """An object that has no place in a checkpoint."""
+    """An object that cannot be stored in a checkpoint."""
 
 
 def digest(array: Any) -> str:
@@ -140,7 +140,7 @@ class Writer:
             return {"tuple": [self.write(v, f"{place}/{i}") for i, v in enumerate(value)]}
         if _is_code(value):
             if self._by_value:
-                raise Unstorable(f"{place}: a function has no place in a checkpoint")
+                raise Unstorable(f"{place}: a function cannot be stored in a checkpoint")
             return {"code": True}
         self._seen[id(value)] = number = len(self._alive)
         self._alive.append(value)
@@ -170,7 +170,9 @@ class Writer:
         if module in ("corota._core", "builtins"):
             return {"code": True}
         if not module.startswith(PACKAGES):
-            raise Unstorable(f"{place}: a {module}.{kind.__name__} has no place in a checkpoint")
+            raise Unstorable(
+                f"{place}: a {module}.{kind.__name__} cannot be stored in a checkpoint"
+            )
         if isinstance(value, int):
             return {"int": int(value), "class": f"{module}:{kind.__name__}"}
         if module.startswith("corota.model") and module not in FOUND and not self._by_value:
@@ -182,7 +184,7 @@ class Writer:
 
     def _order(self, value: Any) -> dict[str, Any]:
         if value.dtype.kind not in KINDS:
-            raise Unstorable(f"an array of {value.dtype} has no place in a checkpoint")
+            raise Unstorable(f"an array of {value.dtype} cannot be stored in a checkpoint")
         columns = value.flags.f_contiguous and not value.flags.c_contiguous
         body: dict[str, Any] = {"array": self._array(value.T if columns else value)}
         return body | {"columns": True} if columns else body
@@ -306,7 +308,7 @@ class Reader:
                 "csc_matrix",
             )
             if tree["sparse"] not in names:
-                raise UnsuitableState(f"{tree['sparse']} is no sparse array")
+                raise UnsuitableState(f"{tree['sparse']} is not a sparse array")
             first, second, data = (self._arrays[i] for i in tree["parts"])
             coo = tree["sparse"].startswith("coo")
             given = (data, (first, second)) if coo else (data, second, first)
@@ -318,7 +320,7 @@ class Reader:
             return _class(tree["class"])(tree["int"])
         if "model" in tree or "code" in tree:
             return fresh
-        raise UnsuitableState("a part of the tree is of no known kind")
+        raise UnsuitableState("a part of the tree has an unknown kind")
 
     def _object(self, tree: dict[str, Any], fresh: Any) -> Any:
         kind = _class(tree["class"])
@@ -355,7 +357,7 @@ def _beside(trees: list[Any], fresh: Any) -> Iterator[tuple[Any, Any]]:
 def _class(name: str) -> Any:
     module, _, path = name.partition(":")
     if not module.startswith(PACKAGES):
-        raise UnsuitableState(f"{module} makes no part of a state")
+        raise UnsuitableState(f"{module} cannot be part of a state")
     try:
         found: Any = sys.modules.get(module) or import_module(module)
         for part in path.split("."):
@@ -363,7 +365,7 @@ def _class(name: str) -> Any:
     except (ImportError, AttributeError):
         raise UnsuitableState(f"this program has no {path}") from None
     if not isinstance(found, type) or found.__module__ != module:
-        raise UnsuitableState(f"{path} is no class of this program")
+        raise UnsuitableState(f"{path} is not a class of this program")
     return found
 
 

@@ -142,4 +142,4 @@ def _unused(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:
     if not idle:
         return []
     shown = ", ".join(idle[:8]) + (f" and {len(idle) - 8} more" if len(idle) > 8 else "")
-    return [Diagnostic("note", f"sets that nothing uses: {shown}")]
+    return [Diagnostic("note", f"unused sets: {shown}")]

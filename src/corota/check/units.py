@@ -86,7 +86,7 @@ def _doubts(
             yield (
                 f"E = {modulus:g} and density {density:g} give a wave speed of {speed:.3g}, "
                 "which no solid has",
-                "beside N, mm and MPa the density is in t/mm^3 (steel: 7.85e-9)",
+                "with N, mm and MPa the density is in t/mm^3 (steel: 7.85e-9)",
             )
 
 

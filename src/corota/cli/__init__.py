@@ -107,7 +107,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
             raise
         _trace()
         if "can't start new thread" in str(error):
-            terminal.error("the system gives no more threads or memory for them")
+            terminal.error("the system cannot create more threads, or has no memory for them")
             return 5
         frame = error.__traceback__
         while frame is not None and frame.tb_next is not None:

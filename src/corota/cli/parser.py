@@ -211,7 +211,7 @@ def make_parser() -> Parser:
         nargs=5,
         type=float,
         metavar=("X1", "Y1", "X2", "Y2", "WIDTH"),
-        help="N, V and M along an axis, of cuts so wide across it",
+        help="N, V and M along an axis, of cuts of this width across it",
     )
     plot.add_argument("--principal", action="store_true", help="principal stresses as crosses")
     plot.add_argument(

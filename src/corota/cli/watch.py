@@ -41,7 +41,7 @@ def run(args: Any, terminal: Terminal) -> int:
         try:
             while server.watch.at_work():
                 time.sleep(BEAT)
-            terminal.line("The run has ended; Ctrl-C ends this too")
+            terminal.line("The run has ended; Ctrl-C closes this page")
             while True:
                 time.sleep(3600.0)
         except KeyboardInterrupt:
@@ -85,7 +85,7 @@ def _in_terminal(watch: JobWatch, terminal: Terminal) -> None:
         time.sleep(BEAT)
     terminal.status("")
     end = found.end
-    status = end.get("status", "ended without a word")
+    status = end.get("status", "ended without a message")
     terminal.line(
         f"{status} after {duration(float(end.get('elapsed', 0.0)))}: {end.get('message', '')}"
     )

@@ -232,7 +232,7 @@ class TextFile:
             If the file is shorter.
         """
         if self.length < length:
-            raise FileError(f"{self.path}: {self.length} bytes, the checkpoint knows {length}")
+            raise FileError(f"{self.path}: {self.length} bytes, the checkpoint expects {length}")
         try:
             self._file.truncate(length)
             self._file.seek(length)

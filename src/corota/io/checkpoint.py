@@ -209,7 +209,7 @@ def load(path: Path) -> Saved:
             if program != __version__:
                 raise FileError(
                     f"{path}: written by version {program}; this is {__version__}, which may round "
-                    "differently: go on with the program that wrote it"
+                    "differently: continue with that version"
                 )
             own = json.loads(str(file.attrs["head"]))
             tree, arrays = _untree(file["state"])
@@ -232,7 +232,7 @@ def load(path: Path) -> Saved:
 def _check_head(path: Path, head: bytes, raw: Any) -> None:
     """Compare length and digest of a file with what its head says."""
     if not head.startswith(MAGIC.split()[0].encode()):
-        raise FileError(f"{path}: this is no checkpoint")
+        raise FileError(f"{path}: not a checkpoint")
     lines = head.rstrip(b"\0").decode("ascii", "replace").splitlines()
     if lines[0] + "\n" != MAGIC:
         raise FileError(f"{path}: a checkpoint of another format ({lines[0][:40]!r})")

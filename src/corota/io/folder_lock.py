@@ -53,8 +53,8 @@ class FolderLock:
             os.close(file)
             raise FileError(
                 f"{self.path.parent}: another run{f' (process {holder})' if holder else ''} is "
-                f"writing the files of this job ({self._job}); wait "
-                "for it, or take another folder (-o) or name (--name)"
+                f"writing the files of this job ({self._job}); wait for it, or use another folder "
+                "(-o) or name (--name)"
             ) from None
         except OSError:
             return file  # a file system without locks

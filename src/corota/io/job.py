@@ -221,7 +221,7 @@ class JobFiles(BaseObserver):
                 for p in self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")
             ):
                 raise InputError(
-                    f"{path} is an input of this job and would be replaced by its results: take "
+                    f"{path} is an input of this job and would be replaced by its results: use "
                     "another folder (-o) or name (--name)"
                 )
         return name
@@ -279,7 +279,7 @@ class JobFiles(BaseObserver):
         return self.folder / f"{name}.previous.{ending}"
 
     def _take_up(self, saved: Saved) -> None:
-        """Cut the files to what the checkpoint knows, and go on from there."""
+        """Cut the files to what the checkpoint expects, and go on from there."""
         found = saved.files
         for ending, text in self._text.items():
             text.cut(found["text"][ending])

@@ -123,7 +123,7 @@ def from_meshio(found: Any, path: str) -> Mesh:
             if (edges >= 0).all():
                 mesh.edge_sets[str(name)] = edges
             else:
-                mesh.notes.append(f"{path}: lines of set {name!r} are no edges of elements")
+                mesh.notes.append(f"{path}: lines of set {name!r} are not edges of elements")
     return mesh
 
 

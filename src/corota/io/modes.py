@@ -35,7 +35,7 @@ def as_results(results: Results) -> Results:
         If there are no modes.
     """
     if not results.modes:
-        raise InputError("the analysis found no modes: it has no step of buckling or frequencies")
+        raise InputError("there are no modes: the analysis has no buckling or frequency step")
     out = Results(results.model)
     number = 0
     for modes in results.modes:

@@ -37,7 +37,7 @@ SCALE = {scale!r}
 
 try:
     folder = os.path.dirname(os.path.abspath(__file__))
-except NameError:  # some versions do not tell a macro its place
+except NameError:  # some versions do not define __file__ in macros
     folder = os.getcwd()
 source = os.path.join(folder, FILE)
 if not os.path.isfile(source):
@@ -126,7 +126,7 @@ def write_paraview(
     array, component = _array(name)
     script = Path(target) if target else source.with_name(f"{source.stem}.paraview.py")
     if script.resolve().parent != source.resolve().parent:
-        raise InputError(f"{script}: the script belongs into the folder of {source}")
+        raise InputError(f"{script}: the script must be in the folder of {source}")
     text = _SCRIPT.format(
         file=source.name,
         script=script.name,

@@ -435,10 +435,10 @@ def _mesh(file: Any) -> Mesh:
         nodes = chain[offsets[first] : offsets[end]].reshape(-1, N_NODES[kind])
         cells.append(Cells(kind, nodes, labels[first:end]))
     points = root["Points"][:n_nodes, :2]
-    _whole(bool(np.isfinite(points).all()), "points that are no numbers")
+    _whole(bool(np.isfinite(points).all()), "coordinates that are not numbers")
     for block in cells:
         inside = block.nodes.size and block.nodes.min() >= 0 and block.nodes.max() < len(points)
-        _whole(bool(inside), "cells with nodes that are not there")
+        _whole(bool(inside), "cells refer to missing nodes")
     mesh = Mesh(points, cells, node_labels=own["node labels"][:])
     for kind in ("node", "cell", "edge"):
         group = own[f"{kind} sets"]

@@ -104,7 +104,7 @@ def model_of(saved: Saved, model: Model | None = None) -> tuple[Model, list[Step
     if model is None:
         return rebuilt(saved)
     if not model.steps:
-        raise InputError("the model needs its steps (model.steps) to go on from a checkpoint")
+        raise InputError("the model needs its steps (model.steps) to continue from a checkpoint")
     return model, list(model.steps)
 
 

@@ -48,13 +48,13 @@ def into_plane(points: Floats, used: NDArray[np.bool_]) -> tuple[Floats, list[st
         letter = "xyz"[out]
         notes = []
         if name != "xy":
-            notes.append(f"the part lies in the {name} plane: it is turned, {name[1]} becomes y")
+            notes.append(f"the part lies in the {name} plane: it is rotated, {name[1]} becomes y")
             if name == "yz":
                 notes[0] = (
-                    "the part lies in the yz plane: it is turned, y becomes x and z becomes y"
+                    "the part lies in the yz plane: it is rotated, y becomes x and z becomes y"
                 )
         if largest > FLAT * size:
-            notes.append(f"{letter} = {middle:g} of all nodes is left out")
+            notes.append(f"{letter} = {middle:g} of all nodes is dropped")
         elif largest > 0.0:
             notes.append(f"{letter} coordinates up to {largest:g} are taken as 0")
         return np.ascontiguousarray(points[:, list(axes)]), notes

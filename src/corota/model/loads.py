@@ -524,7 +524,7 @@ def check_loads(loads: object, where: Location | None = None) -> None:
     for item in _items(loads, "loads", where):
         if not isinstance(item, NodalForce | EdgeLoad | BodyForce | Temperature | Force):
             raise InputError(
-                f"{item!r} is no load; use the methods force, traction, pressure, gravity, "
+                f"{item!r} is not a load; use the methods force, traction, pressure, gravity, "
                 "centrifugal and temperature of a step or a model, or Force, NodalForce, "
                 "EdgeLoad, BodyForce, Temperature",
                 where,
@@ -542,7 +542,8 @@ def check_supports(supports: object, where: Location | None = None) -> None:
     for item in _items(supports, "supports", where):
         if not isinstance(item, Fixed):
             raise InputError(
-                f"{item!r} is no support; use the method fix of a step or a model, or Fixed", where
+                f"{item!r} is not a support; use the method fix of a step or a model, or Fixed",
+                where,
             )
 
 

@@ -23,9 +23,10 @@ ALIASES = {"simplified": "linear", "modified": "logarithmic"}
 LARGE_STRAIN = 0.05
 #: Which measure to take: the one text of messages, of the check and of the documents.
 ADVICE = (
-    "Up to local strains of 5 % the default, local_strain='linear', is right. Beyond, take "
+    "Up to local strains of 5 % the default, local_strain='linear', is right. Beyond that, use "
     "local_strain='logarithmic' for materials that flow; for elastic ones compare "
-    "'green_lagrange' with 'logarithmic'. Decks say LOCAL STRAIN=LOGARITHMIC or GREEN LAGRANGE."
+    "'green_lagrange' with 'logarithmic'. In decks, use LOCAL STRAIN=LOGARITHMIC or GREEN "
+    "LAGRANGE."
 )
 
 

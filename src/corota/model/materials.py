@@ -76,7 +76,10 @@ class Expansion(Brief):
         if not (finite and np.isfinite(self.zero)):
             raise InputError(f"one or three finite coefficients are expected, not {self.alpha}")
         if len(self.alpha) != max(len(table), 1) or (np.diff(table) <= 0.0).any():
-            raise InputError("each coefficient of a table needs a temperature, and they must rise")
+            raise InputError(
+                "each coefficient of a table needs a temperature, and the temperatures must "
+                "increase"
+            )
 
     def _rows(self) -> NDArray[np.float64]:
         rows = np.array([np.broadcast_to(a, 3) for a in self.alpha], dtype=np.float64)

@@ -83,23 +83,23 @@ class Section(Brief):
         if self.local_strain == "green_lagrange" and self.material.flows:
             raise InputError(
                 "the Green-Lagrange local strain is for elastic materials: with plastic flow it "
-                "compares a true yield stress with the second Piola-Kirchhoff stress; take "
+                "compares a true yield stress with the second Piola-Kirchhoff stress; use "
                 "local_strain='logarithmic' (LOCAL STRAIN=LOGARITHMIC)",
                 self.where,
             )
         element = elements.find(self.element)
         if element.stabilized and self.material.flows and not self.material.remembers:
             raise InputError(
-                f"the hourglass of {element.name} would stay elastic under deformation "
-                "plasticity and the part too stiff in bending: take Q4I or Q8R",
+                f"the hourglass of {element.name} would stay elastic under deformation plasticity "
+                "and the part too stiff in bending: use Q4I or Q8R",
                 self.where,
             )
         pairs = np.asarray(self.table, dtype=np.float64).reshape(-1, 2)
         rising = (np.diff(pairs[:, 0]) > 0.0).all() and len(pairs) != 1
         if not (np.isfinite(pairs).all() and rising):
             raise InputError(
-                "a nonlinear spring needs at least two finite pairs of elongation and force, the "
-                "elongation rising",
+                "a nonlinear spring needs at least two finite pairs of elongation and force, "
+                "with increasing elongation",
                 self.where,
             )
         self.thickness = number(self.thickness, "the thickness", self.where)

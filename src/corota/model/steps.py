@@ -409,7 +409,7 @@ class SteadyState(Step):
         check_loads(self.imaginary_loads, self.where)
         if not 0.0 <= self.lowest < self.highest:
             raise InputError(
-                f"the range of frequencies must rise, not {self.lowest} to {self.highest}",
+                f"the range of frequencies must increase, not {self.lowest} to {self.highest}",
                 self.where,
             )
         check_damping(self.damping, self.rayleigh, self.where)

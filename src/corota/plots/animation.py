@@ -48,8 +48,8 @@ def require_ffmpeg() -> None:
     """
     if shutil.which("ffmpeg") is None:
         raise InputError(
-            "an MP4 needs the program ffmpeg, which is not on the path: install it "
-            "(such as apt install ffmpeg), or write a .gif"
+            "an MP4 needs the program ffmpeg, which is not on PATH: install it (such as apt "
+            "install ffmpeg), or write a .gif"
         )
 
 

@@ -186,7 +186,9 @@ def contour(
     state = results.frame(frame)
     name = vf.match_name(name, results.variables(frame))
     if per_cell and name in vf.NODAL:
-        raise InputError(f"{name} lives at nodes; averages over elements are for stress and strain")
+        raise InputError(
+            f"{name} is defined at nodes; only stress and strain are averaged over elements"
+        )
     drawing = Drawing(results, name, per_cell)
     with look() as mpl:
         positions = results.mesh.points + scale * state.U

@@ -386,9 +386,9 @@ def _frames(
         )
     if len(names) < len(arrays.names):
         gone = [n for n in arrays.names if n not in names]
-        notes.append(f"Left out for the size of the page: {', '.join(gone)}.")
+        notes.append(f"Omitted to limit the size of the page: {', '.join(gone)}.")
     if bits < BITS:
-        notes.append("Values at nodes are rounded to three digits for the size of the page.")
+        notes.append("Values at nodes are rounded to three digits to limit the size of the page.")
     return [*chunks, *rest]
 
 

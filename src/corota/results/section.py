@@ -355,9 +355,9 @@ class Cut:
             facts = elements.known(name)
             if facts is not None and (facts.stabilized or facts.drilling):
                 raise InputError(
-                    f"the nodal forces of {name} do not follow from its stress alone, and this cut "
-                    "severs no part that loads and reactions tell of: call section() on the "
-                    "results of solve(), which hold the elements"
+                    f"the nodal forces of {name} do not follow from its stress alone, and the part "
+                    "cut off cannot be balanced with loads and reactions: call section() on the "
+                    "results of solve(), which contain the elements"
                 )
 
     def _of_lines(self, crossing: _Crossing, positions: Floats, index: int) -> Floats:
@@ -486,7 +486,7 @@ def _thickness(results: Results, crossing: _Crossing) -> Floats:
             depth[:] = value
     found = depth[crossing.cells]
     if np.isnan(found).any():
-        raise InputError("the file does not tell the thickness of the elements at the cut")
+        raise InputError("the file does not contain the thickness of the elements at the cut")
     return found
 
 

@@ -140,7 +140,7 @@ def named(measures: Measures) -> dict[str, Callable[[Results], float]]:
     found: dict[str, Callable[[Results], float]] = {}
     for name, measure in measures.items():
         if not (callable(measure) or isinstance(measure, str)):
-            raise InputError(f"measure {name!r}: give a function of the results or a text")
+            raise InputError(f"measure {name!r}: give a function of the results or a string")
         found[name] = Measure(measure) if isinstance(measure, str) else measure
     return found
 

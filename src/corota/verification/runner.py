@@ -114,7 +114,7 @@ def run(
     for name in lost:
         # One process that ends takes all of a pool with it: the others get another chance.
         if attempt([name], 1):
-            outcomes[name] = Outcome(name, error="its process ended before it did")
+            outcomes[name] = Outcome(name, error="its process ended early")
             done(outcomes[name])
     return [outcomes[p.name] for p in chosen]
 

@@ -76,7 +76,7 @@ def reference_nodes(model: Model) -> Ints:
     }
     for node in found:
         if not 0 <= node < model.mesh.n_nodes:
-            raise ModelError(f"a rigid curve has reference node index {node}: there is none")
+            raise ModelError(f"a rigid curve has reference node index {node}, which does not exist")
     return np.array(sorted(found), np.int64)
 
 
@@ -170,8 +170,8 @@ class Builder:
                     circle = circle[next(i for i, r in enumerate(circle) if r is needed) :]
                     names = " -> ".join(_said(r) for r in [*circle, needed])
                     raise ModelError(
-                        f"constraints depend on each other in a circle: {names}; make another "
-                        "dof the first term of an equation, or leave one of them out",
+                        f"constraints depend on each other circularly: {names}; make another dof "
+                        "the first term of an equation, or leave one of them out",
                         needed.where,
                     )
                 done[id(needed)] = 1
@@ -182,7 +182,9 @@ class Builder:
 
     def _dof(self, node: int, dof: int, where: Location | None) -> int:
         if not 0 <= node < self.model.mesh.n_nodes:
-            raise ModelError(f"a constraint names node index {node}: there is none", where)
+            raise ModelError(
+                f"a constraint refers to node index {node}, which does not exist", where
+            )
         if dof >= self.start[node + 1] - self.start[node]:
             label = self.model.mesh.node_labels[node]
             raise ModelError(
@@ -262,7 +264,7 @@ class Builder:
             if off > OFF_LINE * length:
                 raise ModelError(
                     f"node {labels[node]} is {off:.3g} away from {what}; a constraint cannot move "
-                    "it there: give it a place on the line",
+                    "it there: place it on the line",
                     item.where,
                 )
             axes = self._axes_of(node)
@@ -315,7 +317,8 @@ class Builder:
         arm = points[nodes] - mean
         if not np.any(weight @ arm**2 > 0.0):
             raise ModelError(
-                f"{self._described(item)} needs nodes at two places at least to define a rotation",
+                f"{self._described(item)} needs nodes at two positions or more to define a "
+                "rotation",
                 item.where,
             )
         masters = (self.start[nodes][:, None] + np.arange(2)).ravel()

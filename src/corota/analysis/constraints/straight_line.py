@@ -95,7 +95,7 @@ class OnLine(Relation):
             return ""
         return (
             f"{self.what} has turned to within {angle:.1f} degrees of the displacement that it "
-            "determines; axes of the node (local_axes, *TRANSFORM) that lie otherwise help"
+            "determines; axes of the node (local_axes, *TRANSFORM) with other directions help"
         )
 
     def values(self, u: Floats) -> Floats:

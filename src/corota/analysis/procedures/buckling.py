@@ -242,7 +242,7 @@ def _derivative(
     if np.abs(ahead).max() > CORNER * np.abs(change).max():
         raise UnsupportedError(
             "the tangent changes abruptly at this state (plastic flow, contact), so linear "
-            "buckling has no meaning; follow the path instead (path=ArcLength(...))"
+            "buckling is not meaningful; follow the path instead (path=ArcLength(...))"
         )
     change /= 2.0 * size
     # Entries of the load stiffness join the full tangent, since constraints reduce them too.

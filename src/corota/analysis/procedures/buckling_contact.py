@@ -118,7 +118,7 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
     if abs(geometric_stiffness).max() > CORNER * abs(change).max():
         raise UnsupportedError(
             "the tangent changes abruptly at this state (plastic flow, contact), so linear "
-            "buckling has no meaning; follow the path instead (path=ArcLength(...))"
+            "buckling is not meaningful; follow the path instead (path=ArcLength(...))"
         )
     change = change / (2.0 * size)
     own = system.pattern.zeros()

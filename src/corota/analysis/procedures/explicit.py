@@ -297,7 +297,7 @@ class ExplicitStepper:
         unstable = stiff * dt**2 > 4.0 * inert and kinetic + self.internal > allowed
         if unstable or not np.isfinite(kinetic + self.internal):
             raise ConvergenceError(
-                f"the motion blows up at step time {time:g}; the stable increment has become "
+                f"the solution diverges at step time {time:g}; the stable increment has become "
                 f"smaller than {dt:g}: use automatic increments with a smaller first one"
             )
         self.done = i
@@ -353,9 +353,9 @@ class ExplicitStepper:
         account = self.account
         if account.impact is not None and -account.impact > LARGE_ERROR * account.largest:
             self.state.notes.append(
-                f"impacts have taken {-account.impact / account.largest:.1%} of the largest "
-                "energy (ALLPW): nodes stop at once in central differences, with their mass; "
-                "finer meshes lose less"
+                f"impacts have dissipated {-account.impact / account.largest:.1%} of the largest "
+                "energy (ALLPW): in central differences nodes in contact stop at once and lose "
+                "their kinetic energy; finer meshes lose less"
             )
 
 

@@ -186,8 +186,8 @@ class Reduced:
         ratio = damping_ratios(given, own)
         if complex_ones and ratio.any():
             raise ModelError(
-                f"step {number} has shares of critical damping, which complex modes have not: "
-                "give damping by rayleigh= or dashpots",
+                f"step {number} uses fractions of critical damping, which complex modes do not "
+                "support: give damping by rayleigh= or dashpots",
                 self.step.where,
             )
         whole = np.append(ratio, np.full(m - own, ratio[-1] if own else 0.0))
@@ -207,7 +207,7 @@ class Reduced:
         if self._regular() and missed > MISSED:
             self.state.notes.append(
                 f"the modes of step {number} miss {missed:.0%} of the work of the static response "
-                "to its loads: ask for more modes, or for residual modes (residual=True)"
+                "to its loads: request more modes, or residual modes (residual=True)"
             )
 
     def _regular(self) -> bool:
@@ -250,7 +250,7 @@ def last_modes(system: System, state: State, step: Any, number: int) -> tuple[An
         dof = int(lin.free[np.flatnonzero(constrained != lin.constrained[: lin.nf])[0]])
         raise ModelError(
             f"the supports of step {number} are not those of the modes ({system.describe(dof)}): "
-            "hold the same dofs in the frequency step, with the value 0 where they move later",
+            "fix the same dofs in the frequency step, with the value 0 where they move later",
             step.where,
         )
     return found[-1], lin

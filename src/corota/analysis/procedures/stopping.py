@@ -68,7 +68,7 @@ def collapse(
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):
         return ""
-    how = f", where displacements grow {grown:.0f} times as fast as at first" * (grown > SOFT)
+    how = f", with displacements that grow {grown:.0f} times as fast as initially" * (grown > SOFT)
     return (
         f"plastic collapse: the limit load of step {number} is reached at load factor "
         f"{factor:.6g}{how}; yielding makes the structure a mechanism that cannot carry more"
@@ -118,7 +118,7 @@ def explained(
             f"ahead, where the structure cannot carry more{instead}"
         )
     elif collapses:
-        where += ". To see beyond, prescribe a displacement instead of the load"
+        where += ". To continue beyond it, prescribe a displacement instead of the load"
     return (
         where + ". All converged increments are kept; the last attempt "
         "is results.last_iterate (corota plot JOB.vtkhdf --last-iterate)"

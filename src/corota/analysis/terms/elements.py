@@ -114,7 +114,7 @@ class Elements(Term):
         labels = self.system.model.mesh.cell_labels
         found = [str(labels[self.system.blocks[b].cells[e]]) for b, e in failed]
         shown = ", ".join(found[:5]) + (", ..." if len(found) > 5 else "")
-        known = why if why == NO_NUMBER else "turned inside out or not converged"
+        known = why if why == NO_NUMBER else "inverted or not converged"
         return ElementFailure(f"{known}: element {shown}")
 
     # -- thermal strain ----------------------------------------------------------------

@@ -166,7 +166,7 @@ UNSUPPORTED_FAMILIES: dict[str, str] = {
     "F3D": "fluids are not part of this version",
     "DC": "heat conduction is not part of this version; give temperatures by *TEMPERATURE",
     "COH": "cohesive elements are not part of this version; join the parts by *TIE",
-    "CIN": "infinite elements are not part of this version; hold the outer nodes by *BOUNDARY",
+    "CIN": "infinite elements are not part of this version; fix the outer nodes by *BOUNDARY",
     "CONN": "connectors are not part of this version; use *MPC, *EQUATION or *COUPLING",
     "CPEG": "generalized plane strain is not part of this version; use CPE*",
     "GAP": "gaps are not part of this version; use *CONTACT PAIR",

@@ -291,7 +291,7 @@ IGNORED: dict[str, str] = {
             "JOULEHEATFRACTION",
             "ELECTRICALCONDUCTIVITY",
         ),
-        "it says nothing of stresses; temperatures are given by *TEMPERATURE",
+        "it contains no stresses; temperatures are given by *TEMPERATURE",
     ),
     **dict.fromkeys(
         (
@@ -311,16 +311,16 @@ IGNORED: dict[str, str] = {
         ),
         "this output is not written; forces on a section are the sum of RF on its nodes",
     ),
-    "DIAGNOSTICS": "progress and the events of the run tell it",
+    "DIAGNOSTICS": "the run prints progress and events",
     "PRINTLEVEL": "it controls the message file",
-    "CONTACTDIAGNOSTICS": "progress and the events of the run tell it",
+    "CONTACTDIAGNOSTICS": "the run prints progress and events",
     "BULKVISCOSITY": "explicit dynamics has no artificial viscosity here",
     "HOURGLASSSTIFFNESS": "the hourglass is stabilized by the elements themselves",
-    "DISPLAYBODY": "it is a picture only",
+    "DISPLAYBODY": "it affects pictures only",
 }
 
 _CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
-_CHANGE = "pairs and what happens between their surfaces stay over the steps"
+_CHANGE = "contact pairs and their interactions apply to all steps"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 _HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _PLASTIC = "the material laws are *ELASTIC, *PLASTIC and *DEFORMATION PLASTICITY; use these"
@@ -422,18 +422,18 @@ UNSUPPORTED: dict[str, str] = {
     "NORMAL": "planar elements have no normals of their own",
     "CONNECTORSECTION": "use *MPC, *EQUATION or *COUPLING",
     "COHESIVESECTION": "cohesive elements are not part of this version; join the parts by *TIE",
-    "COHESIVEBEHAVIOR": "surfaces that stick and part are not part of this version; use *TIE",
+    "COHESIVEBEHAVIOR": "surfaces with adhesion are not part of this version; use *TIE",
     "GEOSTATIC": "use *STATIC with *INITIAL CONDITIONS, TYPE=STRESS",
     "SOILS": "pore pressure is not part of this version; use *STATIC",
-    "FIXEDMASSSCALING": "masses stay as they are: the stable increment is found by itself",
-    "VARIABLEMASSSCALING": "masses stay as they are: the stable increment is found by itself",
+    "FIXEDMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
+    "VARIABLEMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
     "IMPERFECTION": "give the imperfect coordinates by *NODE",
     "FIELD": "fields are not part of this version; give temperatures by *TEMPERATURE",
-    "INERTIARELIEF": "hold the body by *BOUNDARY in three dofs",
+    "INERTIARELIEF": "fix the body by *BOUNDARY in three dofs",
     "BASEMOTION": "prescribe the motion by *BOUNDARY with an amplitude",
     "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",
     "FASTENER": "use *MPC or *COUPLING",
-    "RELEASE": "leave the rotations of two nodes apart and join their displacements by *MPC, PIN",
+    "RELEASE": "join only the displacements of two nodes by *MPC, PIN",
     "VALUESATINFINITY": "it belongs to fluid dynamics",
 }
 
@@ -466,7 +466,7 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("FRICTION", "ROUGH"): "give a large friction coefficient",
     ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
     ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
-    ("FRICTION", "TAUMAX"): "the shear traction has no bound of its own",
+    ("FRICTION", "TAUMAX"): "there is no separate limit of the shear traction",
     ("FRICTION", "USER"): "no user subroutine is called",
     ("CLEARANCE", "TABULAR"): "give one VALUE",
     ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",

@@ -313,7 +313,7 @@ class Lexer:
                     card.at("INPUT"),
                     f"{numerals.shown(name)} has keywords; data lines only",
                     card,
-                    hint="take it in by *INCLUDE, INPUT=",
+                    hint="include it by *INCLUDE, INPUT=",
                 )
                 return
             card.chunks.append(Chunk(source, 0, len(source.data), 1))
@@ -376,7 +376,7 @@ class Lexer:
         where = card.at("INPUT")
         path = Path(os.path.normpath(stack[-1].parent / name))
         if len(stack) > MAX_DEPTH:
-            self._error(where, f"files are included more than {MAX_DEPTH} deep", card)
+            self._error(where, f"*INCLUDE is nested more than {MAX_DEPTH} levels deep", card)
             return None
         self._opens += 1
         if self._opens > MAX_FILES:

@@ -135,7 +135,7 @@ class Parameters:
         try:
             tree = ast.parse(text, mode="eval")
         except (SyntaxError, RecursionError, MemoryError):
-            raise ValueError(f"{name}: {text[:60]!r} is no expression") from None
+            raise ValueError(f"{name}: {text[:60]!r} is not an expression") from None
         self.values[key] = self._value(tree.body, 0)
 
     def _value(self, node: ast.AST, depth: int) -> Value:
@@ -154,7 +154,7 @@ class Parameters:
             a, b = self._value(node.left, depth + 1), self._value(node.right, depth + 1)
             texts = isinstance(a, str) + isinstance(b, str)
             if texts and not (texts == 2 and isinstance(node.op, ast.Add)):
-                raise ValueError("texts and numbers do not mix")
+                raise ValueError("strings and numbers cannot be mixed")
             if isinstance(node.op, ast.Pow):
                 return _limited(_power(a, b))
             if type(node.op) in _OPERATORS:
@@ -173,7 +173,7 @@ class Parameters:
 
 def _power(a: Value, b: Value) -> Value:
     if isinstance(a, str) or isinstance(b, str):
-        raise ValueError("texts have no powers")
+        raise ValueError("a string cannot be raised to a power")
     small = isinstance(a, int) and isinstance(b, int) and 0 <= b <= 30 and abs(a) < 1000
     found = a**b if small else float(a) ** float(b)
     if isinstance(found, complex):
@@ -184,7 +184,7 @@ def _power(a: Value, b: Value) -> Value:
 def _limited(value: Value) -> Value:
     if isinstance(value, str):
         if len(value) > 200:
-            raise ValueError("a text is longer than 200 characters")
+            raise ValueError("a string is longer than 200 characters")
     elif not abs(value) < _LARGEST:
         raise ValueError("the number is too large")
     return value

@@ -117,7 +117,7 @@ def _earlier_deck(saved: Saved) -> Path:
     source = saved.options["source"]
     if "sha256" not in source:
         raise FileError(
-            f"{saved.path}: this job was not read from a deck: go on in Python by "
+            f"{saved.path}: this job was not read from a deck: continue in Python with "
             "corota.resume(path, steps=[...])"
         )
     places = [Path(source["path"]), saved.path.with_name(source["deck"])]

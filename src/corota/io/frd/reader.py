@@ -190,7 +190,7 @@ class _Reader:
         def index(nodes: Any) -> Ints:
             at = order[np.minimum(np.searchsorted(labels[order], nodes), len(labels) - 1)]
             if not np.array_equal(labels[at], nodes):
-                raise ValueError("elements with nodes that are not there")
+                raise ValueError("elements refer to missing nodes")
             return np.asarray(at, dtype=np.int64)
 
         cells = []

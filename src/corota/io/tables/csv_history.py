@@ -240,7 +240,7 @@ class CsvWriter:
             raise full(error, self.path) from None
         head, rows = (table[0], table[1:]) if table else ([], [])
         if len(rows) < count or head[: len(names)] != headings(names, self._units):
-            raise FileError(f"{self.path}: {len(rows)} rows, the checkpoint knows {count}")
+            raise FileError(f"{self.path}: {len(rows)} rows, the checkpoint expects {count}")
         self._names = list(names)
         self._rows = [
             {name: float(text) for name, text in zip(names, row, strict=False)}

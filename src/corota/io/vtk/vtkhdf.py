@@ -247,7 +247,7 @@ class VtkhdfWriter:
         try:
             self._drop(state)
         except (KeyError, OSError, ValueError) as error:
-            raise FileError(f"{self.path}: cannot go on with this file: {error}") from None
+            raise FileError(f"{self.path}: cannot continue this file: {error}") from None
 
     def _drop(self, state: dict[str, Any]) -> None:
         self._root = self._file["VTKHDF"]
@@ -255,7 +255,7 @@ class VtkhdfWriter:
         self._count = count = int(state["count"])
         if self._root["Steps"].attrs["NSteps"] < count:
             raise ValueError(
-                f"{self._root['Steps'].attrs['NSteps']} frames, the checkpoint knows {count}"
+                f"{self._root['Steps'].attrs['NSteps']} frames, the checkpoint expects {count}"
             )
         self._known = {
             (place, name): np.broadcast_to(np.zeros(1, dtype), shape)

@@ -213,8 +213,8 @@ class PathStepper:
         """
         if self.found is not None and self.found.closed:
             raise PathStalled(
-                "the branch is closed: it has come back to the bifurcation point where it began "
-                "without an end of the path on it"
+                "the branch is closed: it returned to its bifurcation point without reaching an "
+                "end of the path"
             )
         self.found = self.follower.next()
         return self._accept(self.found)
@@ -282,7 +282,7 @@ class PathStepper:
         if len(point.branches) > 1:
             self.state.notes.append(
                 f"{len(point.branches)} branches leave the bifurcation point at load factor "
-                f"{point.factor:.6g}: branch=1 to {len(point.branches)} takes each of them"
+                f"{point.factor:.6g}: branch=1 to {len(point.branches)} selects one of them"
             )
 
     def _report(

@@ -153,7 +153,7 @@ def _search(
         change = control.change(u - base.u, factor - base.factor, a, b)
         du = a if change is None else a + change * b
         if change is None or not np.isfinite(du).all():
-            done.reason = "no equilibrium near the guess at this length"
+            done.reason = "no equilibrium near the predictor at this arc length"
             return at
         correction = float(np.abs(du[:n]).max(initial=0.0))
         u, factor = u + du, factor + change

@@ -243,7 +243,7 @@ class PathTracer(ABC):
                     found = self._finish(station, done, size, name)
                     if found is not None:
                         return found
-                    reason = "the end or the critical point could not be solved for"
+                    reason = "no solution found for the end or the critical point"
             size = self._cut(size, reason)
 
     def _cut(self, size: float, reason: str) -> float:

@@ -236,13 +236,13 @@ class ContactTerm(Term):
             longest = float(pair.slave.length.max())
             if gap[deepest] < -1e-9 * longest:
                 how = {
-                    "keep": "stays until it opens, for central differences push nothing out at "
-                    "once (start='ramp' spreads it over the step)"
+                    "keep": "remains until the contact opens "
+                    "(start='ramp' removes it over the step)"
                     if explicit
-                    else "is pushed out in the first increment (start='ramp' spreads "
-                    "it over the step, start='adjust' treats it as in contact)",
+                    else "is removed in the first increment (start='ramp' removes it over the "
+                    "step, start='adjust' treats it as in contact)",
                     "adjust": "is treated as in contact without strain",
-                    "ramp": "is pushed out over the first step",
+                    "ramp": "is removed over the first step",
                 }["keep" if adjusted and not moved[deepest] else item.start]
                 label = self.system.model.mesh.node_labels[pair.nodes[deepest]]
                 self.notes.append(

@@ -732,8 +732,8 @@ class ContactEquations:
         if self.loose and not self.presses and FLOATS not in self.contact_term.told:
             self.contact_term.told.add(FLOATS)
             notes.append(
-                f"no contact is closed, and {self.loose}: where that body rests is arbitrary "
-                "until contact or a support constrains it"
+                f"no contact is closed, and {self.loose}: the position of that body is "
+                "undetermined until contact or a support constrains it"
             )
         for number in sorted(self.border.dropped - self.contact_term.told):
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)

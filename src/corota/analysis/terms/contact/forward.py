@@ -378,7 +378,7 @@ class _Increment:
         found = problem.solve(start, self.sense[tangent])
         if found is None:
             raise ConvergenceError(
-                f"no contact forces found for {len(normal)} nodes in contact: the constraints "
+                f"found no contact forces for {len(normal)} nodes in contact: the constraints "
                 "contradict each other; use fewer pairs at the same nodes, or an implicit scheme"
             )
         z, state, sense = found
@@ -436,8 +436,8 @@ class _Increment:
             if wrong.any():
                 label = self.contact.label(pair, int(np.argmax(wrong)))
                 raise ConvergenceError(
-                    f"contact pair {pair.name!r}: node {label} is held and pressed into the "
-                    "other side, which is held too; release one of them"
+                    f"contact pair {pair.name!r}: node {label} is fixed and pressed into the other "
+                    "side, which is fixed too; release one of them"
                 )
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 #: What cannot be judged where friction slips.
 SLIPS = (
-    "friction slips, and has no potential: the tangent is not symmetric, its pivots do not tell "
+    "friction slips, and has no potential: the tangent is not symmetric, its pivots do not show "
     "stability there (use dynamics)"
 )
 
@@ -85,8 +85,8 @@ class ContactPathEquations(ContactEquations):
             if ramped and pair.overlap.any():
                 raise ModelError(
                     f"contact pair {pair.name!r} overlaps at the start, which start='ramp' would "
-                    "push out over a step that follows a path; do so in a static step before, or "
-                    "take start='keep' or 'adjust'",
+                    "remove over a step that follows a path; use a static step before, or "
+                    "start='keep' or 'adjust'",
                     pair.item.where,
                 )
         contact_term.damps = False

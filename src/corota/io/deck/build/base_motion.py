@@ -39,8 +39,8 @@ def base_motion(
         deck.error(
             draft.card,
             where,
-            "a prescribed acceleration starts from rest; a step of motion stands before",
-            hint="give the whole record in the first step of motion, in TIME=TOTAL TIME",
+            "a prescribed acceleration starts from rest; a dynamic step precedes it",
+            hint="give the whole record in the first dynamic step, in TIME=TOTAL TIME",
         )
         return None
     if not total and any(
@@ -50,8 +50,7 @@ def base_motion(
         deck.error(
             draft.card,
             where,
-            f"the {what} ends with its step, and a later step of motion does not say how it goes "
-            "on",
+            f"the {what} ends with its step, and a later dynamic step does not continue it",
             hint="give it again there, or an amplitude with TIME=TOTAL TIME",
         )
         return None

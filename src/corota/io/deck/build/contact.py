@@ -230,8 +230,8 @@ class _Builder:
                 self.deck.error(
                     surface.card,
                     row.where,
-                    "sides of a rigid body need SPOS (the surface is on the left of the way from "
-                    "the first to the second node) or SNEG",
+                    "sides of a rigid body need SPOS (the surface is on the left of the "
+                    "direction from the first to the second node) or SNEG",
                     text=row.text,
                 )
                 return None
@@ -244,7 +244,7 @@ class _Builder:
                 surface.card,
                 surface.card.where,
                 f"the sides of {surface.name} do not follow each other in one line",
-                hint="give each line of sides a surface of its own, all in one direction",
+                hint="give each chain of sides its own surface, all in one direction",
             )
             return None
         reference = self._body_of(set(lines))
@@ -288,7 +288,7 @@ class _Builder:
                     hint=nearest(shown, names),
                 )
             elif key(self.sets.surfaces[name][1].card.value("TYPE")) != "SEGMENTS":
-                text = "the surface is no rigid profile (TYPE=SEGMENTS); use NSET= or ELSET="
+                text = "the surface is not a rigid profile (TYPE=SEGMENTS); use NSET= or ELSET="
                 self.deck.error(card, card.at("ANALYTICALSURFACE"), text)
         named = {key(p.interaction) for p in self.deck.pairs}
         for name, draft in self.deck.interactions.items():

@@ -162,7 +162,8 @@ class LoadBuilder:
             )
         else:
             self.deck.note(
-                f"{draft.card.where}: without NLGEOM a force keeps its direction, FOLLOWER or not"
+                f"{draft.card.where}: without NLGEOM a force keeps its direction, with or without "
+                "FOLLOWER"
             )
         return False
 
@@ -213,7 +214,8 @@ class LoadBuilder:
                     draft.card,
                     draft.row,
                     1,
-                    "a force per volume is taken per mass, and a material here has no density",
+                    "a force per volume is converted to a force per mass, and a material here "
+                    "has no density",
                     "give *DENSITY; statics does not depend on its value",
                 )
                 return

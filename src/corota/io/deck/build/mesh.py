@@ -294,7 +294,8 @@ class MeshBuilder:
             )
         if self.line_nodes:
             self.deck.note(
-                f"{len(self.line_nodes)} line elements are not computed; sets of them name edges"
+                f"{len(self.line_nodes)} line elements are not computed; their sets become edge "
+                "sets"
             )
         if not placed:
             self.deck.error(None, None, "the deck has no elements")
@@ -400,7 +401,7 @@ class MeshBuilder:
             self.deck.note(
                 f"{count} {block.type} elements (such as {found[0].labels[0]}) have a side of one "
                 f"node; they become triangles of {name} nodes, which is the same"
-                + (" but for terms inside the element" if quadratic else "")
+                + (" except for internal terms of the element" if quadratic else "")
             )
         return found
 

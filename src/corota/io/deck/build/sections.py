@@ -210,7 +210,7 @@ class SectionBuilder:
             if self.deck.thicknesses:
                 self.deck.note(
                     f"{draft.card.where}: {draft.card.spelled} has no NODAL THICKNESS: its own "
-                    "thickness is taken, that of *NODAL THICKNESS is not"
+                    "thickness is used, *NODAL THICKNESS is not"
                 )
             return [(cells, draft.thickness)]
         if self.nodal is None:

@@ -144,7 +144,11 @@ def _straight(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
     parts = [model.mesh.nodes_of(n) if isinstance(n, str) else n for n in found if n is not None]
     nodes = np.concatenate([np.zeros(0, np.int64), *parts])
     if len(nodes) < 3:
-        deck.error(tie.card, tie.where, "three nodes at least are expected: the line's two first")
+        deck.error(
+            tie.card,
+            tie.where,
+            "at least three nodes are expected, beginning with the two of the line",
+        )
         return
     ends = int(nodes[0]), int(nodes[1])
     model.constraints.append(StraightLine(nodes[2:], *ends, tie.where))
@@ -163,7 +167,7 @@ def _same(model: Model, find: Find, rotating: NDArray[np.bool_], tie: TieDraft) 
     if len(second) == 1:
         second = np.broadcast_to(second, len(first))
     if len(first) != len(second):
-        raise InputError(f"{len(first)} nodes cannot go with {len(second)} nodes", tie.where)
+        raise InputError(f"{len(first)} nodes cannot be paired with {len(second)} nodes", tie.where)
     for a, b in zip(first.tolist(), second.tolist(), strict=True):
         for dof in tie.dofs:
             if a != b and (dof < 2 or (rotating[a] and rotating[b])):

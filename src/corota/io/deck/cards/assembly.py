@@ -20,7 +20,7 @@ def part(deck: Deck, card: Card) -> None:
     name = deck.required(card, "NAME")
     deck.no_rows(card)
     if deck.in_assembly:
-        deck.error(card, card.where, "a part cannot stand inside the assembly")
+        deck.error(card, card.where, "a part cannot be defined inside the assembly")
         return
     close_part(deck)
     if key(name) in deck.parts:
@@ -49,7 +49,7 @@ def assembly(deck: Deck, card: Card) -> None:
     deck.no_rows(card)
     close_part(deck)
     if deck.in_assembly:
-        deck.error(card, card.where, "there is an open *ASSEMBLY already")
+        deck.error(card, card.where, "another *ASSEMBLY is still open")
     deck.in_assembly = True
 
 
@@ -69,7 +69,9 @@ def instance(deck: Deck, card: Card) -> None:
     name = deck.required(card, "NAME")
     source = deck.required(card, "PART")
     if not deck.in_assembly or deck.instance is not None:
-        deck.error(card, card.where, "an instance stands inside *ASSEMBLY, not in another one")
+        deck.error(
+            card, card.where, "an instance belongs inside *ASSEMBLY, not in another instance"
+        )
         return
     if not name or not source:
         return

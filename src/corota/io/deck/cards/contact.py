@@ -263,7 +263,7 @@ def surface_behavior(deck: Deck, card: Card) -> None:
         if law == "LINEAR":
             numbers = [deck.real(card, row, 0, "the stiffness")]
             if any(row.fields[1:]):
-                text = "tension and the distance at which contact is looked for are not used"
+                text = "tension and the contact search distance are not used"
                 deck.note(f"{row.where}: {card.spelled}: {text}")
         elif law == "TABULAR":
             deck.extra_fields(card, row, 3)

@@ -165,7 +165,7 @@ def steady_state(deck: Deck, card: Card) -> None:
     if low is None or high is None or points is None:
         return
     if not 0.0 <= low < high:
-        deck.row_error(card, rows[0], 1, f"the range must rise, not {low:g} to {high:g}")
+        deck.row_error(card, rows[0], 1, f"the range must increase, not {low:g} to {high:g}")
     elif points < 2:
         deck.row_error(card, rows[0], 2, f"at least 2 points are needed, not {points}")
     else:

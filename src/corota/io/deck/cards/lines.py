@@ -88,7 +88,8 @@ def _common(deck: Deck, card: Card, most: int) -> list[Row] | None:
             deck.error(
                 card,
                 card.at(name),
-                "beams lie on their nodes; a rigid link (*MPC, BEAM) carries one beside them",
+                "the axis of a beam passes through its nodes; use a rigid link (*MPC, BEAM) for "
+                "an offset",
             )
     rows = list(card.rows())
     if not rows:
@@ -171,7 +172,11 @@ def beam_section(deck: Deck, card: Card) -> None:
         centre = sum(w * h * y for w, h, _, y in walls) / sum(w * h for w, h, _, _ in walls)
         if abs(at - centre) > 1e-6 * height:
             deck.row_error(
-                card, row, 0, f"beams lie on their nodes: the place must be the center, {centre:g}"
+                card,
+                row,
+                0,
+                "the axis of a beam passes through its nodes: the node must be at the center, "
+                f"{centre:g}",
             )
             return
         profile = _of_walls(walls, normal)
@@ -344,7 +349,7 @@ def _spring(deck: Deck, draft: LineDraft, type_: str, cells: Ints) -> Section | 
                 )
                 return None
         if any(dof not in PLANAR for dof in dofs):
-            deck.note(f"{card.where}: springs in dofs {dofs} leave the plane and are left out")
+            deck.note(f"{card.where}: springs in dofs {dofs} act out of the plane and are ignored")
             return None
         ends = (PLANAR[dofs[0] or 0], PLANAR[dofs[-1] or 0])
         element = type_ + ("R" if 2 in ends else "")

@@ -30,7 +30,7 @@ _OTHER_LOADS = (
         re.compile(r"(P\d?|BX|BY|TRVEC\d?|TRSHR\d?)NU\Z"),
         "no user subroutine is called: give values",
     ),
-    (re.compile(r"(ROTA|CORIO)\Z"), "turn the base by *BOUNDARY, or give BX and BY"),
+    (re.compile(r"(ROTA|CORIO)\Z"), "rotate the base by *BOUNDARY, or give BX and BY"),
     (re.compile(r"ROTDYNF\Z"), "CENTRIF takes the square of the angular velocity"),
     (re.compile(r"(F|VBF|SBF|SP)\d?\Z"), "give springs by *SPRING, pressures by P1 to P4"),
 )
