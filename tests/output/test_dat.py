@@ -222,8 +222,8 @@ def test_time_points_are_hit(model, fake):
     model.time_points = {"TP": np.array([0.25, 0.75])}
     output = Output("node print", ("U",), time_points="TP")
     step = model.steps[0]
-    asked = [due(output, fake.state(model, 1, i, i / 4, i / 4), step, model) for i in range(5)]
-    assert asked == [False, True, False, True, False]
+    requested = [due(output, fake.state(model, 1, i, i / 4, i / 4), step, model) for i in range(5)]
+    assert requested == [False, True, False, True, False]
 
 
 def test_last_frames_of_steps(model, fake):

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 import pytest
 
 import corota as ct
-from corota.io.stop_request import ask_to_stop, stop_file
+from corota.io.stop_request import request_stop, stop_file
 from corota.report.chunk import unpack
 from corota.report.records import JobPaths
 from corota.report.server import JobWatch, PageServer
@@ -118,7 +118,7 @@ def test_stop_ends_with_a_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_a_request_that_an_earlier_run_left_is_forgotten(tmp_path: Path) -> None:
-    ask_to_stop(tmp_path, "bar")
+    request_stop(tmp_path, "bar")
     with ct.JobFiles(tmp_path) as files:
         results = ct.solve(bar(), ct.Static(increments=3), observers=[files], threads=1)
     assert len(results.frames) == 4

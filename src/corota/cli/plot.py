@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def run(args: Any, terminal: Terminal) -> int:
-    """Draw what was asked for and tell the file."""
+    """Draw the requested picture and print its file."""
     from corota import plots
 
     with plots.width_of(args.width):

@@ -39,26 +39,26 @@ class Stop(BaseObserver):
     ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
 
     def __init__(self, terminal: Terminal, files: JobFiles | None = None) -> None:
-        self.terminal, self.files, self.asked = terminal, files, ""
+        self.terminal, self.files, self.signal = terminal, files, ""
         self.stop = False
 
-    def ask(self, number: int, frame: object) -> None:
+    def end(self, number: int, frame: object) -> None:
         """Note the signal; a second one stops at once."""
-        if self.asked:
+        if self.signal:
             raise KeyboardInterrupt
-        self.asked, self.stop = signal.Signals(number).name, True
+        self.signal, self.stop = signal.Signals(number).name, True
         self.terminal.warning("stopping after this increment; press again to stop at once")
 
     def save(self, number: int, frame: object) -> None:
-        """Ask for a checkpoint after this increment."""
+        """Request a checkpoint after this increment."""
         if self.files is not None:
-            self.files.asked = True
+            self.files.checkpoint_requested = True
 
     @contextlib.contextmanager
     def listening(self) -> Iterator[None]:
         """Take over the signals for a while; one that is ignored, as under nohup, stays so."""
         before: dict[int, Any] = {}
-        handlers = {name: self.ask for name in self.ENDING} | {"SIGUSR1": self.save}
+        handlers = {name: self.end for name in self.ENDING} | {"SIGUSR1": self.save}
         for name, handler in handlers.items():
             number = getattr(signal, name, None)
             if number is None or signal.getsignal(number) is signal.SIG_IGN:
@@ -221,7 +221,7 @@ def carry_out(
 
 @contextlib.contextmanager
 def _served(files: JobFiles, name: str, terminal: Terminal, port: int | None) -> Iterator[None]:
-    """Serve the page of the run while it goes on, if that was asked for."""
+    """Serve the page of the run while it goes on, if requested."""
     if port is None:
         yield
         return

@@ -52,12 +52,12 @@ class Terminal:
         return f"\033[{COLORS[name]}m{text}\033[0m" if self.colored else text
 
     def line(self, text: str = "") -> None:
-        """Print a line of text unless quiet or JSON was asked for."""
+        """Print a line of text unless quiet or JSON was requested."""
         if not self.quiet and not self.json:
             self._write(self._clear() + _plain(text, self.colored) + "\n")
 
     def record(self, record: dict[str, Any]) -> None:
-        """Print a record as one line of JSON, if that was asked for."""
+        """Print a record as one line of JSON, if requested."""
         if self.json:
             from corota.io.events import json_line
 

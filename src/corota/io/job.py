@@ -50,7 +50,7 @@ ENDINGS = (
     *("dat", "sta", "cvg", "jsonl", "csv", "vtkhdf", "pvd", "npz", "vtu"),
     *("last_iterate.vtkhdf", "modes.vtkhdf", "provenance.json", *CHECKPOINTS),
 )
-#: Seconds between checkpoints, unless other intervals are asked for.
+#: Seconds between checkpoints, unless other intervals are requested.
 CHECKPOINT_SECONDS = 60.0
 #: Least time between checkpoints over the cost of one: they take at most a hundredth of a run.
 CHECKPOINT_WAIT = 100.0
@@ -149,7 +149,7 @@ class JobFiles(BaseObserver):
         self._resumed = resume
         self._source = source or {}
         #: Set to ask for a checkpoint after the next increment, from a signal for instance.
-        self.asked = False
+        self.checkpoint_requested = False
         #: The newest checkpoint of this run.
         self.checkpointed: Checkpoint | None = None
         #: What the last checkpoint cost: copying the state, writing it [s].
@@ -322,8 +322,8 @@ class JobFiles(BaseObserver):
 
     @property
     def stop(self) -> bool:
-        """Whether a page or another process asked the run to end after this increment."""
-        return self._end_request is not None and self._end_request.asked
+        """Whether a page or another process requested the end of the run after this increment."""
+        return self._end_request is not None and self._end_request.requested
 
     # Checkpoints.
     @property
@@ -334,7 +334,7 @@ class JobFiles(BaseObserver):
         by_count = every > 0 and self._increment % every == 0
         wait = max(self._seconds, CHECKPOINT_WAIT * sum(self._cost))
         late = self._seconds > 0.0 and time.monotonic() - self._last_checkpoint >= wait
-        due = self.asked or by_count or late
+        due = self.checkpoint_requested or by_count or late
         if due:
             self._due = time.perf_counter()
         return due
@@ -347,7 +347,7 @@ class JobFiles(BaseObserver):
         keep : str
             Ending of a file of its own that is not replaced, such as ``step-1.ckpt``.
         """
-        self.asked, self._last_checkpoint = False, time.monotonic()
+        self.checkpoint_requested, self._last_checkpoint = False, time.monotonic()
         self._cost[0] = time.perf_counter() - self._due
         self.checkpointed = checkpoint
         known = {

@@ -22,7 +22,7 @@ def stop_file(folder: Path, name: str) -> Path:
     return folder / f".{name}.stop"
 
 
-def ask_to_stop(folder: Path, name: str) -> None:
+def request_stop(folder: Path, name: str) -> None:
     """Ask the run of a job to end after the increment at work.
 
     Raises
@@ -50,16 +50,16 @@ class StopRequest:
         self.path = path
         self.clear()
         self._next = 0.0
-        self._asked = False
+        self._requested = False
 
     @property
-    def asked(self) -> bool:
+    def requested(self) -> bool:
         """Whether the run is to end."""
         now = time.monotonic()
-        if not self._asked and now >= self._next:
+        if not self._requested and now >= self._next:
             self._next = now + BEAT
-            self._asked = self.path.exists()
-        return self._asked
+            self._requested = self.path.exists()
+        return self._requested
 
     def clear(self) -> None:
         """Remove the file."""
@@ -67,4 +67,4 @@ class StopRequest:
             self.path.unlink(missing_ok=True)
 
 
-__all__ = ["BEAT", "StopRequest", "ask_to_stop", "stop_file"]
+__all__ = ["BEAT", "StopRequest", "request_stop", "stop_file"]

@@ -80,9 +80,9 @@ def _dat(results: Results, path: Path) -> None:
     check_requests(model.steps)
     text = []
     for frame, last in zip(results.frames, last_of_steps(results.frames), strict=True):
-        asked = due_now(model, model.steps, frame)
-        asked += left_over(model, model.steps, frame) if last else []
-        text.append(dat_blocks(model, asked, frame))
+        requested = due_now(model, model.steps, frame)
+        requested += left_over(model, model.steps, frame) if last else []
+        text.append(dat_blocks(model, requested, frame))
     replace_text(path, "".join(text))
 
 

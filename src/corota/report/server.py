@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from corota.errors import CorotaError
 from corota.io.result_reader import read_vtkhdf
-from corota.io.stop_request import ask_to_stop
+from corota.io.stop_request import request_stop
 from corota.report.content import BITS, facts_of, frame_chunk, history_chunk, model_chunk
 from corota.report.fields import NodalArrays
 from corota.report.page import page
@@ -142,7 +142,7 @@ class JobWatch:
 
     def stop(self) -> None:
         """Ask the run to end after the increment at work, with a checkpoint."""
-        ask_to_stop(self.job.folder, self.job.name)
+        request_stop(self.job.folder, self.job.name)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -157,7 +157,7 @@ class _Handler(BaseHTTPRequestHandler):
         name = self._name()
         if name is None:
             return self._fail(HTTPStatus.NOT_FOUND)
-        self.server.asked()
+        self.server.note_request()
         if name == "":
             text = page(None, title=self.watch.job.name, live=f"/{self.token}")
             return self._answer(text.encode(), "text/html; charset=utf-8")
@@ -180,7 +180,7 @@ class _Handler(BaseHTTPRequestHandler):
         return self._answer(b"{}", "application/json")
 
     def _name(self) -> str | None:
-        """What is asked for; None if the address is not that of this page.
+        """The requested name; None if the address is not that of this page.
 
         A page of another site that has its name resolve to this machine sends its own name.
         """
@@ -246,8 +246,8 @@ class PageServer(ThreadingHTTPServer):
             daemon=True,
         )
 
-    def asked(self) -> None:
-        """Note that a page asked."""
+    def note_request(self) -> None:
+        """Note the time of a request by a page."""
         self._last = time.monotonic()
 
     def __enter__(self) -> PageServer:

@@ -328,10 +328,10 @@ class FrdWriter:
         if self._fields is not None:
             return block is DISP or block.request in self._fields or block.name in self._fields
         held = in_force(self._steps, frame.step) if frame.step <= len(self._steps) else []
-        asked = [o for o in held if o.kind.endswith(" file")]
-        if not asked:
+        requested = [o for o in held if o.kind.endswith(" file")]
+        if not requested:
             return True
-        names = {name for o in asked for name in o.variables}
+        names = {name for o in requested for name in o.variables}
         return block.request in names or (block is CONTACT and bool(names & {"CDIS", "CSTR"}))
 
     def sync(self) -> None:

@@ -99,8 +99,8 @@ def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
         "el print": _element_tables,
         "contact print": contact_tables,
     }
-    asked = (o for o in outputs if o.kind in tables)
-    return "".join(text for o in asked for text in tables[o.kind](model, o, frame))
+    requested = (o for o in outputs if o.kind in tables)
+    return "".join(text for o in requested for text in tables[o.kind](model, o, frame))
 
 
 def _head(title: str, output: Output, frame: Frame) -> str:
