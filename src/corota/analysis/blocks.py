@@ -1,4 +1,4 @@
-"""The cells of a model grouped into blocks of the core, and what is wrong with them."""
+"""The cells of a model grouped into blocks of the core, with checks."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -31,7 +31,7 @@ class BlockOfCells:
 
 
 def core_input(block: BlockOfCells) -> dict[str, Any]:
-    """A block as the core takes it."""
+    """The block in the format of the core."""
     section, material = block.section, block.section.material
     return {
         "element": section.element,
@@ -109,7 +109,7 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
 
 
 def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:
-    """Refuse lines without length and laws that line elements do not take."""
+    """Refuse lines without length and material laws that line elements do not support."""
     labels, section = model.mesh.cell_labels, block.section
     if not section.material.for_lines:
         raise ModelError(

@@ -1,4 +1,4 @@
-"""A checkpoint: the whole state of an analysis after an increment, to go on from to the bit."""
+"""A checkpoint: the whole state of an analysis after an increment, for bitwise identical resume."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Checkpoint:
 
 @dataclass
 class Begun:
-    """What the beginnings of steps depend on that is no state of an increment.
+    """Data at the start of a step that are not part of the state of an increment.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Begun:
 
 
 class Analysis(Protocol):
-    """What checkpoints ask of a run."""
+    """Interface of a run for checkpoints."""
 
     system: System
     steps: list[Step]
@@ -82,7 +82,7 @@ class Analysis(Protocol):
     as_built: dict[str, str]
 
     def known(self) -> dict[str, Any]:
-        """Objects that stand for themselves in checkpoints."""
+        """Objects stored by reference in checkpoints."""
         ...
 
     def mass(self, number: int) -> MovingMass:
@@ -92,7 +92,7 @@ class Analysis(Protocol):
 
 @dataclass
 class Resumption:
-    """A checkpoint and the analysis that it goes into."""
+    """A checkpoint and the analysis that it restores."""
 
     analysis: Analysis
     checkpoint: Checkpoint
@@ -108,7 +108,7 @@ class Resumption:
         return self.checkpoint.kind
 
     def restore(self, state: State) -> None:
-        """Put everything into the fresh objects of the analysis."""
+        """Restore the state of all objects of the analysis."""
         Reader(self.checkpoint.arrays, self.known, self.built).read(
             self.checkpoint.tree, root(self.analysis, state)
         )
@@ -154,7 +154,7 @@ def model_tree(model: Model, steps: list[Step]) -> tuple[Any, list[Any], str]:
 
 
 def replay(analysis: Analysis, begun: list[Begun]) -> None:
-    """Begin the steps of a checkpoint again, for the objects that loads are made of.
+    """Begin the steps of a checkpoint again to rebuild the load objects.
 
     Their numbers follow with the rest of the state.
     """

@@ -1,7 +1,7 @@
-"""Distributed loads over the steps: pressures, tractions and body forces; forces that turn.
+"""Distributed loads over the steps: pressures, tractions and body forces; follower forces.
 
-A load is known by what it acts on. On an edge of an element that is the edge and the kind
-(pressure, traction or shear), whatever the name of the set; of a nodal force that turns with its
+A load is identified by what it acts on. On an edge of an element that is the edge and the kind
+(pressure, traction or shear), whatever the name of the set; of a nodal force that follows its
 node, the node and the direction. Of a body it is the set, the kind, and the
 direction of gravity or the axis of rotation: gravity in another direction is another load. A
 load that is given again in a later step replaces the one before; loads of one step add up.
@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Item = EdgeLoad | BodyForce | NodalForce
 
-#: Directions and axes are the same within this (CalculiX's own tolerance).
+#: Tolerance for equal directions and axes (CalculiX's own tolerance).
 SAME = 1e-10
-#: Sides of an element are numbered below this.
+#: Upper bound of the side numbers of an element.
 SIDES = 8
 
 
@@ -57,15 +57,15 @@ class DistributedLoad:
     amplitude : int
         Index into the names of amplitudes; 0 for none.
     removed : bool
-        Whether the step took the load away.
+        Whether the step removed the load.
     force : Distribution
         Its force per unit scale, given when the load is built.
     faces : ndarray, shape (n, 2), or None
-        Cell and side of loaded edges; node and direction of forces that turn.
+        Cell and side of loaded edges; node and direction of follower forces.
     traction : tuple of float
-        Of tractions and shear: force per area and unit scale; of forces that turn, their values.
+        Of tractions and shear: force per area and unit scale; of follower forces, their values.
     item : EdgeLoad, BodyForce or NodalForce
-        What the load was made of; the first of several.
+        The load's definition; the first of several.
     """
 
     begin: float
@@ -79,7 +79,7 @@ class DistributedLoad:
 
 
 class DistributedLoads:
-    """The distributed loads that act now, and how a step changes them.
+    """The active distributed loads, and how a step changes them.
 
     Parameters
     ----------
@@ -94,13 +94,13 @@ class DistributedLoads:
         self._cells: dict[int, tuple[int, int]] = {}
 
     def set_mass(self, kind: str) -> None:
-        """Let body forces act on the mass of this kind."""
+        """Apply body forces to the mass of this kind."""
         self.mass = kind
         for load in self.loads:
             load.force.set_mass(kind)
 
     def carry(self, scale: Callable[[DistributedLoad], float], runs_on: NDArray[np.bool_]) -> None:
-        """Start the next step from what was reached, except where an amplitude runs on."""
+        """Start the next step from the reached values, except where an amplitude continues."""
         for load in self.loads:
             load.begin, load.removed = scale(load), False
             if not runs_on[load.amplitude]:
@@ -108,13 +108,13 @@ class DistributedLoads:
         self.loads = [load for load in self.loads if load.begin != 0.0 or load.end != 0.0]
 
     def remove(self, kind: LoadKind = "distributed") -> None:
-        """Take all loads of a kind away: distributed ones, or forces that turn."""
+        """Remove all loads of a kind: distributed ones, or follower forces."""
         for load in self.loads:
             if kind_of(load.item) == kind:
                 load.end, load.amplitude, load.removed = 0.0, 0, True
 
     def set(self, items: Sequence[Item], amplitude: Callable[[str, Location | None], int]) -> None:
-        """Add the loads of a step in place of those that act on the same."""
+        """Add the loads of a step in place of those on the same edges, nodes or sets."""
         fresh = self._bodies([i for i in items if isinstance(i, BodyForce)], amplitude)
         fresh += self._on_edges([i for i in items if isinstance(i, EdgeLoad)], amplitude)
         fresh += self._turning([i for i in items if isinstance(i, NodalForce)], amplitude)
@@ -125,7 +125,7 @@ class DistributedLoads:
     # -- replacing ----------------------------------------------------------------------
 
     def _replace(self, new: DistributedLoad) -> None:
-        """Let older loads on the same fade while the new one grows: a ramp between the two."""
+        """Ramp from older loads on the same edges, nodes or sets to the new one."""
         kept: list[DistributedLoad] = []
         for old in self.loads:
             if old.faces is None or new.faces is None:
@@ -190,7 +190,7 @@ class DistributedLoads:
     def _turning(
         self, items: Sequence[NodalForce], amplitude: Callable[[str, Location | None], int]
     ) -> list[DistributedLoad]:
-        """Forces that turn; dead ones are there to replace those of earlier steps."""
+        """Follower forces; dead ones are included to replace those of earlier steps."""
         found = []
         for item in items:
             nodes = self.system.model.mesh.node_indices(item.nodes)
@@ -201,7 +201,7 @@ class DistributedLoads:
         return found
 
     def _at_nodes(self, load: DistributedLoad) -> DistributedLoad:
-        """Give forces that turn what their nodes need."""
+        """Build follower forces with the data of their nodes."""
         assert load.faces is not None
         assert isinstance(load.item, NodalForce)
         nodes, system = load.faces[:, 0], self.system
@@ -217,7 +217,7 @@ class DistributedLoads:
         return load
 
     def _edge_load(self, load: DistributedLoad) -> DistributedLoad:
-        """Give a load on edges what its faces need in the core."""
+        """Build a load on edges with the data of its faces in the core."""
         assert load.faces is not None
         assert isinstance(load.item, EdgeLoad)
         if load.item.kind in ("following traction", "shear"):
@@ -232,7 +232,7 @@ class DistributedLoads:
         return load
 
     def _following(self, load: DistributedLoad) -> FollowingTraction:
-        """A traction that turns with its edges, those of drilling elements apart."""
+        """A follower traction; edges of drilling elements are separate."""
         assert load.faces is not None
         nodes, thickness, alpha = self._edges(load.faces)
         x = self.system.model.mesh.points
@@ -286,7 +286,7 @@ class DistributedLoads:
         return table, np.asarray(thickness, np.float64), np.asarray(alpha, np.float64)
 
     def _core(self, faces: Ints) -> tuple[_core.EdgeLoads, bool]:
-        """The core's edges, and whether rotations bulge some of them."""
+        """The core's edges, and whether some of them bulge with rotations."""
         nodes, thickness, alpha = self._edges(faces)
         points = self.system.model.mesh.points
         edges = _core.EdgeLoads(points, nodes.astype(np.uint32), thickness, alpha)
@@ -314,7 +314,7 @@ def _codes(faces: Ints) -> Ints:
 
 
 def _fading(old: DistributedLoad, new: DistributedLoad) -> list[DistributedLoad]:
-    """What is left of a load that `new` replaces: nothing if an amplitude drives the new one."""
+    """Remainder of a load that `new` replaces: none if the new one has an amplitude."""
     if new.amplitude or old.begin == 0.0:
         return []
     left = replace(old, end=0.0, amplitude=0, removed=False)
@@ -328,7 +328,7 @@ def _family(item: Item) -> str:
 
 
 def _is_dead(item: Item) -> bool:
-    """Whether a nodal force keeps its direction: it acts elsewhere."""
+    """Whether a nodal force keeps its direction: it is applied elsewhere."""
     return isinstance(item, NodalForce) and not item.follower
 
 
@@ -341,7 +341,7 @@ def _same_body(old: Item, new: Item) -> bool:
     if old.kind == "centrifugal":
         return float(np.hypot(*np.subtract(old.value[1:3], new.value[1:3]))) <= SAME
     one, other = old.axis, new.axis
-    # Gravity of no size and direction ends gravity in every direction.
+    # Gravity of size zero ends gravity in every direction.
     return one is None or other is None or float(np.dot(one, other)) > 1.0 - SAME
 
 

@@ -2,8 +2,8 @@
 
 A load is linear in its scale. Without nlgeom it acts on the reference; with it, on the current
 shape: a pressure follows its edge, a centrifugal force grows with the distance from the axis,
-and the end moments of drilling elements turn with their edges. What does not depend on the
-displacement is worked out once.
+and the end moments of drilling elements rotate with their edges. What does not depend on the
+displacement is computed once.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -29,15 +29,15 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     Triplets = tuple[Ints, Ints, Floats]
 
-#: No tangent, and no start: the core borrows both at once, so they are two arrays.
+#: Empty tangent and empty start: two arrays, because the core borrows both at once.
 EMPTY, END_POINT = np.zeros(0), np.zeros(0)
-#: Mass that gravity and spin act on where nothing moves.
+#: Mass for gravity and spin in static steps.
 STATIC_MASS = "consistent"
 
 
 @dataclass
 class LoadSum:
-    """What distributed loads add up to.
+    """Sum of distributed loads.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class LoadSum:
     entries: list[Triplets] = field(default_factory=list)
 
     def middle(self, u: Floats) -> Floats:
-        """Displacement at which loads are taken that have no mean of their own."""
+        """Displacement at which loads without a closed-form mean are evaluated."""
         return 0.5 * (self.start + u) if len(self.start) else u
 
     @property
@@ -71,7 +71,7 @@ class LoadSum:
 
 
 class Distribution(Protocol):
-    """A distributed load without its course."""
+    """A distributed load without its history."""
 
     follows: bool  # whether its force depends on the displacement
 
@@ -84,7 +84,7 @@ class Distribution(Protocol):
         ...
 
     def set_mass(self, kind: str) -> None:
-        """Take the mass that moves as the mass that is heavy."""
+        """Use the inertial mass for gravity."""
         ...
 
 
@@ -122,7 +122,7 @@ class BodyLoad:
                     item.where,
                 )
         drilling = [f.drilling and mask.any() for f, mask in zip(facts, self.masks, strict=True)]
-        #: Elements whose force turns with them: sides of drilling elements have mass.
+        #: Elements whose force follows their rotation: sides of drilling elements have mass.
         self.nlgeom = [
             mask if turns else np.zeros_like(mask)
             for mask, turns in zip(self.masks, drilling, strict=True)
@@ -162,7 +162,7 @@ class BodyLoad:
 
     @property
     def _couples(self) -> bool:
-        """Whether the force on some elements is no linear function of the displacement."""
+        """Whether the force on some elements is a nonlinear function of the displacement."""
         return self.turns and self.mass == "consistent"
 
     def _where_linear(self) -> tuple[Floats, Floats]:
@@ -196,7 +196,7 @@ class BodyLoad:
         force: Floats,
         values: Floats,
     ) -> None:
-        """Add to force and derivative (times `share`) what the core says; in global axes."""
+        """Add force and derivative (times `share`) of the core; in global axes."""
         # Of a centrifugal force the scale is that of the square of the angular velocity.
         item, first = self.item, 2 if self.item.kind == "gravity" else 1
         value = [scale * v for v in item.value[:first]] + list(item.value[first:])
@@ -206,7 +206,7 @@ class BodyLoad:
 
 
 class Traction:
-    """A dead traction; on drilling elements its end moments turn with the edges."""
+    """A dead traction; on drilling elements its end moments rotate with the edges."""
 
     def __init__(
         self,
@@ -235,7 +235,7 @@ class Traction:
         to.force += force
         if not len(to.values):
             return
-        # Symmetric, between nodes of one element: the pattern has places for it.
+        # Symmetric, between nodes of one element: the pattern contains it.
         if self._places is None:
             upper = np.flatnonzero(rows <= columns)
             self._places = (upper, self.system.pattern.places(rows[upper], columns[upper])[0])

@@ -1,4 +1,4 @@
-"""Nodal forces of single elements at a state that was found, for free-body cuts."""
+"""Nodal forces of single elements at a given state, for free-body cuts."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Share of the largest stress by which a stress found anew may differ from the recorded one.
+#: Share of the largest stress by which a recomputed stress may differ from the recorded one.
 SAME = 1e-8
 
 
@@ -49,7 +49,7 @@ def element_forces(
     found : list of (ndarray, ndarray, ndarray)
         Cells (n,), their nodes (n, k), force and moment (n, k, 3).
     exact : bool
-        Or None for both, if the core cannot tell.
+        None for both if the core cannot compute them.
     """
     found, exact = [], True
     for block in blocks_of(model):
@@ -125,7 +125,7 @@ def _of_stress(
         axis=-1,
     )
     values = np.zeros((*local.shape[:2], 16))
-    # The internal modes are at rest in the strains that are asked for, and so is the stress.
+    # The internal modes are in equilibrium at the given strains, and so is the stress.
     values[..., :3] = problem.strains(0, u, nlgeom, True).reshape(local.shape)
     values[..., 3:6] = local
     rows, columns = np.triu_indices(3)
@@ -137,7 +137,7 @@ def _of_stress(
 def _alone(
     model: Model, block: BlockOfCells, given: dict[str, Any], frame: Frame
 ) -> tuple[Any, Floats]:
-    """Elements that share no node, as a problem of the core, and their displacements."""
+    """A core problem of elements without common nodes, and their displacements."""
     flat = block.nodes.ravel()
     own = np.arange(len(flat), dtype=np.uint32)
     points = np.ascontiguousarray(model.mesh.points[flat])

@@ -1,9 +1,9 @@
-"""The energy account of an analysis: one for all procedures, over all steps.
+"""The energy balance of an analysis: one for all procedures, over all steps.
 
-Every increment adds the work of loads, of supports that move, and of viscous forces by the
+Every increment adds the work of loads, of moving supports and of viscous forces by the
 trapezoidal rule (the energy-momentum scheme: by its mid-point forces). Terms of the equation
-contribute what they store or have dissipated so far. What is stored is a function of the state;
-dissipation comes from the return map and from slip. The total must stay: what it changes by is
+contribute their stored and dissipated energy. Stored energy is a function of the state;
+dissipation comes from the return map and from slip. The total must be constant: its change is
 an error of the integration in time.
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Energies as Abaqus names them, and what they are; ALLTH and ALLCL are ours.
+#: Energies by Abaqus's names, with descriptions; ALLTH and ALLCL are ours.
 TERMS = {
     "ALLSE": "recoverable strain energy",
     "ALLPD": "plastic work",
@@ -41,16 +41,16 @@ TERMS = {
     "ALLTH": "work of thermal expansion, done by changes of temperature",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }
-#: How Python and decks ask for the scheme that keeps energy.
+#: Names of the energy-conserving scheme in Python and decks.
 CONSERVES = "scheme='energy_momentum' (*DYNAMIC, SCHEME=ENERGY MOMENTUM)"
 #: Share of the largest energy from which a balance error is worth a warning.
 LARGE_ERROR = 0.02
-#: Share of an energy that rounding leaves.
+#: Relative rounding error of an energy.
 NEGLIGIBLE_ENERGY = 1e-12
 
 
 class Energies:
-    """The account of one analysis.
+    """The energy balance of one analysis.
 
     Parameters
     ----------
@@ -69,13 +69,13 @@ class Energies:
     def __init__(self, system: System) -> None:
         self.system = system
         self.work = self.viscous = self.contact = self.internal = self.kinetic = 0.0
-        #: Of contact in central differences, less friction and what laws store; None without.
+        #: Of contact in central differences, less friction and stored energy; None without.
         self.impact: float | None = None
         self.error, self.where = 0.0, (1, 0)
         self.scheme = "static"
         self._reference: float | None = None
         self._largest = self._worst = 0.0
-        # Forces that do work, at the committed state: loads, and reactions of held dofs.
+        # Forces that do work, at the committed state: loads, and reactions of prescribed dofs.
         self._driving: Floats | None = None
 
     # -- steps and increments ----------------------------------------------------------
@@ -83,8 +83,8 @@ class Energies:
     def begin(self, step: Step, internal: Floats) -> None:
         """Start a step; in a static one nothing moves.
 
-        What is not in equilibrium then, as initial stress or a motion that was stopped, lets go
-        in the first increment, as if a force had held it.
+        Forces not in equilibrium then, such as initial stress or a stopped motion, are released
+        in the first increment, as if an external force had balanced them.
         """
         if self._driving is None or (step.procedure == "static" and self.scheme != "static"):
             self._driving = internal - self.system.contact_term.force
@@ -93,13 +93,13 @@ class Energies:
             self.set_kinetic(0.0)
 
     def set_kinetic(self, kinetic: float) -> None:
-        """A kinetic energy that a new step begins with, and not the last one's end."""
+        """Set the kinetic energy at the start of a step, in place of the last one's."""
         if self._reference is not None:
             self._reference += kinetic - self.kinetic
         self.kinetic = kinetic
 
     def drive(self, external: Floats, reaction: Floats) -> None:
-        """Forces at the start of a motion; statics go on from the forces of the step before."""
+        """Forces at the start of a dynamic step; statics continues from those before."""
         self._driving = self._sum(external, reaction)
 
     def _sum(self, external: Floats, reaction: Floats) -> Floats:
@@ -110,7 +110,7 @@ class Energies:
         self.add_work(u - before, at.external, self.system.reaction(at))
 
     def add_work(self, d: Floats, external: Floats, reaction: Floats, middle: bool = False) -> None:
-        """Work on an increment `d` of forces at its end, or of those in its middle."""
+        """Work on an increment `d`, of forces at its end or at its middle."""
         driving = self._sum(external, reaction)
         mean = driving
         if not middle and self._driving is not None:
@@ -123,7 +123,7 @@ class Energies:
     def add_to(
         self, scalars: dict[str, Any], sums: dict[str, float] | None, where: tuple[int, int]
     ) -> None:
-        """Write the account into a frame's scalars.
+        """Write the energy balance into a frame's scalars.
 
         `sums` are those of the elements; without them the work of their forces counts.
         """
@@ -167,7 +167,7 @@ class Energies:
         scalars["energy balance error"] = missing / self._largest if known else 0.0
 
     def _negligible(self) -> float:
-        """Energy that is rounding: of forces, or of strains that free expansion cancels."""
+        """Energy of rounding size: of forces, or of strains cancelled by free expansion."""
         free, scales, length = self.system.free, self.system.scales, self.system.length
         expansion = free.largest(free.start - free.now) * length if free.expands else 0.0
         rounding = scales.nothing * max(scales.moved, NEGLIGIBLE_ENERGY * length)
@@ -180,12 +180,12 @@ class Energies:
 
     @property
     def made_by_contact(self) -> bool:
-        """Whether impacts have made more energy than rounding and increments explain."""
+        """Whether impacts have created more energy than rounding and increments explain."""
         implicit = self.scheme in ("newmark", "hht", "generalized_alpha")
         return implicit and self.system.opens and self.error > LARGE_ERROR
 
     def remark(self) -> str:
-        """What to say of the largest error, empty where it is small."""
+        """Message on the largest error; empty where it is small."""
         if abs(self.error) <= LARGE_ERROR:
             return ""
         verb = "gained" if self.error > 0.0 else "lost"
@@ -212,7 +212,7 @@ class Energies:
 
 
 class Balance:
-    """What a dynamic step adds to the account, increment by increment.
+    """Contributions of a dynamic step to the energy balance, per increment.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ class Balance:
         return self.account.work
 
     def driven(self, now: MotionState) -> float:
-        """Energy of the body in the frame of what drives it: that of an impact from rest."""
+        """Energy of the body in the frame of the driver: that of an impact from rest."""
         moved = self.system.conditions.constrained & ~self.system.is_rotation
         speed = np.abs(now.v[moved]).max(initial=0.0)
         return 0.5 * self.mass * float(speed) ** 2

@@ -1,7 +1,7 @@
-"""A model numbered for analysis: what the drivers see.
+"""The discrete equations of a model, as the procedures use them.
 
-A system gives the residual and the tangent at a displacement and a time; it knows dofs,
-elements, loads and supports, and nothing of increments or iterations.
+A system gives the residual and the tangent at a displacement and a time; it has dofs,
+elements, loads and supports, but no increments or iterations.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 #: Tangents whose memory is kept for the next ones.
 SPARE = 2
-#: Values of a tangent that was given back.
+#: Values of a returned tangent.
 NOWHERE = np.empty(0)
 
 
@@ -58,9 +58,9 @@ class System(NumberedModel):
         self.elements = Elements(self, self.conditions)
         self.contact_term = ContactTerm(self)
         more = [term for make in TERMS.values() if (term := make(self)) is not None]
-        #: All terms of the equation but those of a motion; the elements come first.
+        #: All terms of the equation except inertia and damping; the elements come first.
         self.terms: list[Term] = [self.elements, self.conditions, *more, self.contact_term]
-        #: Whether the structure without its loads was seen to have no free motion in this step.
+        #: Whether the structure without its loads has no free motion in this step.
         self.free_motion_excluded = False
         self.scales = Scales(self, self.conditions, self.contact_term)
         self._spare: list[Floats] = []
@@ -72,7 +72,7 @@ class System(NumberedModel):
 
     @property
     def joined(self) -> bool:
-        """Whether terms hold bodies that supports do not."""
+        """Whether terms such as contact constrain bodies without supports."""
         return any(term.joins for term in self.terms)
 
     @property
@@ -83,7 +83,7 @@ class System(NumberedModel):
     # -- evaluation --------------------------------------------------------------------
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
-        """Make a step's loads and supports the current ones."""
+        """Activate the loads and supports of a step."""
         self.nlgeom = step.nlgeom
         self.constraints.set_nlgeom(step.nlgeom)
         self.constraints.complete(u)
@@ -93,11 +93,11 @@ class System(NumberedModel):
         self.free_motion_excluded = False
 
     def borrow_tangent(self) -> Floats:
-        """Memory for the values of a tangent: large arrays cost as much to get as to fill."""
+        """Memory for the values of a tangent: allocation costs as much as filling."""
         return self._spare.pop() if self._spare else np.empty(self.pattern.nnz)
 
     def return_tangent(self, at: Evaluation) -> None:
-        """Take the memory of a tangent back that nobody looks at any more."""
+        """Return the memory of a tangent that is no longer used."""
         if len(self._spare) < SPARE:
             self._spare.append(at.values)
         at.values = NOWHERE
@@ -108,7 +108,7 @@ class System(NumberedModel):
         Raises
         ------
         ElementFailure
-            If an element turned inside out or its material did not converge.
+            If an element is inverted or its material did not converge.
         """
         self.constraints.complete(u)
         at = self.blank(self.borrow_tangent())
@@ -150,11 +150,11 @@ class System(NumberedModel):
         return at.reaction
 
     def holds(self, step_time: float) -> bool:
-        """Whether an evaluation is that of another step time, loads apart."""
+        """Whether an evaluation is that of another step time, except for loads."""
         return all(term.holds(step_time) for term in self.terms)
 
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
-        """Change of forces and of held dofs per unit of load factor, shapes (n_dofs,)."""
+        """Change of forces and of prescribed dofs per unit of load factor, shapes (n_dofs,)."""
         return self.conditions.rate(u)
 
     def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
@@ -170,14 +170,14 @@ class System(NumberedModel):
     # -- linear algebra ----------------------------------------------------------------
 
     def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
-        """Newton correction: free dofs solve the linearised equilibrium, held ones move.
+        """Newton correction: free dofs solve the linearized equilibrium, prescribed ones move.
 
         Parameters
         ----------
         at : Evaluation
-            Overwritten: the tangent's held rows become diagonal.
+            Overwritten: the tangent's prescribed rows become diagonal.
         du_prescribed : ndarray, shape (n_dofs,)
-            Prescribed increments at held dofs, 0 elsewhere. They act through the tangent.
+            Prescribed increments at constrained dofs, 0 elsewhere. They act through the tangent.
 
         Returns
         -------
@@ -188,25 +188,25 @@ class System(NumberedModel):
         Raises
         ------
         SingularError
-            Naming the node and dof that nothing holds.
+            Naming the unconstrained node and dof.
         """
         return self._correct(at, at.external - at.internal, du_prescribed)
 
     def correct_with_last_factor(self, at: Evaluation) -> Floats:
-        """Newton correction with the last factorisation; held dofs stay."""
+        """Newton correction with the last factorization; prescribed dofs do not change."""
         return self.solve_with_last_factor(-at.residual)
 
     def correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
-        """Factorise the tangent at a state and solve for one or several right-hand sides.
+        """Factorize the tangent at a state and solve for one or several right-hand sides.
 
         Parameters
         ----------
         at : Evaluation
-            Overwritten: the tangent's held rows become diagonal.
+            Overwritten: the tangent's prescribed rows become diagonal.
         rhs : ndarray, shape (n_dofs,) or (n_dofs, k)
-            Forces; those at held dofs do not matter.
+            Forces; those at prescribed dofs are ignored.
         du_prescribed : ndarray, of the same shape
-            Prescribed increments at held dofs, 0 elsewhere. They act through the tangent.
+            Prescribed increments at constrained dofs, 0 elsewhere. They act through the tangent.
 
         Returns
         -------
@@ -217,7 +217,7 @@ class System(NumberedModel):
         Raises
         ------
         SingularError
-            Naming the node and dof that nothing holds.
+            Naming the unconstrained node and dof.
         """
         return self._correct(at, np.array(rhs, order="F"), np.asfortranarray(du_prescribed))
 
@@ -227,8 +227,8 @@ class System(NumberedModel):
         if (at.load_stiffness is not None or (link.couples and self.nlgeom)) and not (
             self.free_motion_excluded or at.heft
         ):
-            # Loads that follow, and those on rigid parts that turn, give a free motion stiffness
-            # that is none.
+            # Follower loads, and loads on rotating rigid parts, give a free motion a stiffness
+            # that does not constrain it.
             self._refuse_free(at)
         unsymmetric = None
         if at.load_stiffness is not None:
@@ -252,7 +252,7 @@ class System(NumberedModel):
         return link.expand(x), (inertia[1] if inertia is not None else -1)
 
     def _refuse_free(self, at: Evaluation) -> None:
-        """Refuse a structure whose stiffness without that of its loads lets a motion free."""
+        """Refuse a structure that has a free motion without the stiffness of its loads."""
         link, pattern = at.link, self.constraints.pattern
         values = link.reduce(at.values.copy(), self.at_nodes(at.internal))
         pattern.mask(values, link.unknowns(self.conditions.constrained))
@@ -264,7 +264,7 @@ class System(NumberedModel):
         self.free_motion_excluded = True
 
     def solve_with_last_factor(self, rhs: Floats) -> Floats:
-        """Solve with the last factorisation, held dofs at rest; shape as in `correct`."""
+        """Solve with the last factorization, prescribed dofs fixed; shape as in `correct`."""
         link = self.link
         constrained = link.unknowns(self.conditions.constrained)
         force = np.array(link.unknowns(link.gather(rhs)), order="K")
@@ -293,7 +293,7 @@ class System(NumberedModel):
         upper_extra = sp.triu(0.5 * (extra + extra.T)).tocoo()
         places, known = self.pattern.places(upper_extra.row, upper_extra.col)
         if not known.all():
-            # Nodes that share no element: the pattern has no place for them.
+            # Nodes without a common element: not in the pattern.
             return False, self._full.build(at.values, rows, columns, -values)
         at.values[places] += upper_extra.data
         return True, None

@@ -1,4 +1,4 @@
-"""What the equations are at a state: forces, tangent, linearized constraints."""
+"""The equations at a state: forces, tangent, linearized constraints."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -36,9 +36,9 @@ class Evaluation:
     link : LinearizedConstraints
         The constraints linearised at the state.
     added : ndarray, shape (n_dofs,), or None
-        What damping added to the diagonal of the tangent: no stiffness.
+        Contribution of damping to the diagonal of the tangent, which is not stiffness.
     inertia, damping : ndarray, shape (n_dofs,), or None
-        Forces of a motion. The equation adds them to those of the displacement.
+        Forces of inertia and damping, added to those of the displacement.
     contact : ContactState or None
         Of pairs and ties, once their term has been added.
     heft, momentum : float

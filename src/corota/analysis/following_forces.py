@@ -1,4 +1,4 @@
-"""Tractions that turn with their edges, and nodal forces that turn with their nodes."""
+"""Follower tractions on edges, and nodal follower forces."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -27,7 +27,7 @@ _LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 class FollowingTraction:
-    """A traction whose components along and across the edge stay as they are on the reference.
+    """A traction with constant components tangential and normal to the edge.
 
     It acts on the current length. With t and n the current tangent and the normal to its left,
     the force is the integral of s_t t + s_n n, and t times the length is linear in the positions
@@ -135,7 +135,7 @@ def _shapes(straight: NDArray[np.bool_]) -> tuple[Floats, Floats]:
 
 
 class TurningForce:
-    """Forces at nodes that turn with the rotation of their node.
+    """Nodal forces that follow the rotation of their node.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Motions that nothing holds, in words: which part moves, and how."""
+"""Free motions in words: which part moves, and how."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Share of the largest motion below which a part rests or a motion is a rigid one.
+#: Fraction of the largest motion below which a part is at rest, or a motion is rigid.
 SMALL = 1e-5
-#: Ratio of nodal stiffnesses from which a soft part cannot be told from none.
+#: Ratio of nodal stiffnesses above which a soft support cannot be distinguished from none.
 RATIO = 1e9
-#: Most bodies looked at.
+#: Largest number of bodies that are examined.
 MOST = 400
 
 
@@ -64,7 +64,7 @@ def name_motion(system: NumberedModel, error: SingularError, ratio: float) -> Si
 
 
 def describe(system: NumberedModel, modes: Floats) -> str:
-    """What motions are, part by part; empty if parts deform in them.
+    """Description of motions by part; empty if parts deform.
 
     Parameters
     ----------
@@ -148,14 +148,14 @@ def _words(motion: Floats, centre: Floats, length: float) -> str:
 
 
 def plain(modes: Floats, nothing: float = 1e-7) -> Floats:
-    """Basis of the free modes with as many zeros as it can have, one mode a row.
+    """Basis of the free modes with as many zeros as possible, one mode per row.
 
     Parameters
     ----------
     modes : ndarray, shape (3 n_bodies, n_modes)
         Motion in x, y and turn of each body.
     nothing : float
-        Entries that count as none.
+        Entries that count as zero.
     """
     rows = np.array(modes.T)
     lead = 0

@@ -1,8 +1,8 @@
 """The one loop over the increments of a step.
 
-A procedure brings a stepper, which takes one increment at a time. The loop does what all have in
-common: the budget of increments, output, checkpoints, and the stop that an observer asks for.
-Steppers that solve by Newton's method share their attempts and cut-backs, too.
+A procedure provides a stepper, which takes one increment at a time. The loop does what all have in
+common: the limit of increments, output, checkpoints, and stops requested by observers.
+Steppers that use Newton's method also share attempts and cut-backs.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     Save = Callable[[State, int, float, dict[str, float]], None]
     Report = Callable[[int, ResidualNorms, float, str], None]
 
-#: What helps where a step has used all its increments.
+#: Advice where a step has used all its increments.
 MORE_OR_LONGER = "allow more (INC=) or longer ones"
 
 
 @dataclass
 class Accepted:
-    """An increment that was taken and is shown.
+    """An accepted increment for output.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Accepted:
     factor : float
         Load factor, or share of the period.
     scalars : dict of str to float
-        What its frame says of it.
+        Scalars of its frame.
     """
 
     number: int
@@ -55,14 +55,14 @@ class Accepted:
 
 
 class Stepper(Protocol):
-    """What is particular to a procedure.
+    """The part of a step that depends on the procedure.
 
     Attributes
     ----------
     kind : str
         Name of the procedure's state in checkpoints; empty where it cannot be resumed.
     advice : str
-        What helps where the step has used all its increments; empty where it has no such bound.
+        Advice where the step has used all its increments; empty where it has no such limit.
     """
 
     kind: str
@@ -80,11 +80,11 @@ class Stepper(Protocol):
 
     @property
     def where(self) -> str:
-        """How far the step has come, in words."""
+        """Progress of the step in words."""
         ...
 
     def advance(self) -> Accepted | None:
-        """Take increments up to the next one that is shown, or None where the step has ended.
+        """Take increments up to the next one for output; None at the end of the step.
 
         Raises
         ------
@@ -94,7 +94,7 @@ class Stepper(Protocol):
         ...
 
     def memory(self) -> dict[str, Any]:
-        """What the stepper goes on from, beside the committed state, by name."""
+        """State of the stepper beside the committed state, by name."""
         ...
 
 
@@ -110,7 +110,7 @@ class IncrementLoop:
     state : State
     observers : Observers
     save : callable
-        Told state, increment, load factor and scalars of every increment that is shown.
+        Called with state, increment, load factor and scalars of every increment for output.
     """
 
     def __init__(
@@ -126,7 +126,7 @@ class IncrementLoop:
         self.observers, self.save = observers, save
 
     def show_start(self, scalars: dict[str, float]) -> None:
-        """Show the state at the start of an analysis that starts in motion, as increment 0."""
+        """Output the initial state of an analysis that starts in motion, as increment 0."""
         if self.number == 1 and not self.state.resumes:
             self.save(self.state, 0, 0.0, scalars)
 
@@ -138,7 +138,7 @@ class IncrementLoop:
         ConvergenceError
             If the step needs more increments than it may take, or one cannot be taken.
         Interrupted
-            If an observer asks to stop.
+            If an observer requests a stop.
         """
         most = self.step.max_increments if stepper.advice else math.inf
         while not stepper.finished:
@@ -198,7 +198,7 @@ class IncrementLoop:
 
 @dataclass
 class Attempt:
-    """An increment as Newton's method left it.
+    """Result of Newton's method for an increment.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ class Attempt:
     contact : ContactIncrement or None
         None where nothing was solved.
     reason : str
-        Why it is not taken; empty where it is.
+        Why it is refused; empty if it is accepted.
     """
 
     target: float
@@ -218,7 +218,7 @@ class Attempt:
 
 
 class NewtonStepper(ABC):
-    """Increments that Newton's method solves, cut where that fails.
+    """Increments solved by Newton's method, cut back on failure.
 
     Parameters
     ----------
@@ -247,11 +247,11 @@ class NewtonStepper(ABC):
 
     @property
     def where(self) -> str:
-        """How far the step has come, in words."""
+        """Progress of the step in words."""
         return f"step time {self.control.time:g} of {self.control.step.period:g}"
 
     def target(self) -> float:
-        """Step time that the next attempt aims at [time]."""
+        """Target step time of the next attempt [time]."""
         return self.control.target()
 
     @abstractmethod
@@ -259,15 +259,15 @@ class NewtonStepper(ABC):
         """Attempt an increment that ends at a step time."""
 
     def rescue(self, failed: Attempt, end: str) -> Attempt | None:
-        """Another way to the next increment, or None; `end` says why none is shorter, or nothing.
+        """Another method for the next increment, or None; `end`: why it cannot be shorter, if so.
 
-        Where it comes to the end of the step it leaves the stepper `finished`.
+        At the end of the step it leaves the stepper `finished`.
         """
         return None
 
     @abstractmethod
     def refusal(self, failed: Attempt, end: str) -> str:
-        """What to say where no increment is left to try."""
+        """Message where no increment is left to try."""
 
     @abstractmethod
     def accept(self, attempt: Attempt) -> Accepted:
@@ -279,7 +279,7 @@ class NewtonStepper(ABC):
 
     @property
     def report(self) -> Report | None:
-        """Tells observers, if there are any, of an iteration of the attempt that is being made."""
+        """Reports an iteration of the current attempt to observers, if there are any."""
         if not self.loop.observers.each:
             return None
         control = self.control

@@ -1,4 +1,4 @@
-"""How large the next increment is: growth after easy ones, cut-back after failures."""
+"""Size of the next increment: growth after easy ones, cut-back after failures."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -53,14 +53,14 @@ class Increments:
         return self.time >= self.step.period * (1.0 - SAME)
 
     def target(self) -> float:
-        """Step time that the next attempt aims at [time]."""
+        """Target step time of the next attempt [time]."""
         stop = next(s for s in self.stops if s > self.time + SAME * self.step.period)
         left = stop - self.time
-        # A crumb at the end would cost an increment of its own.
+        # A small rest at the end would cost an extra increment.
         return stop if self.size >= left * (1.0 - 1e-6) else self.time + self.size
 
     def accept(self, time: float, iterations: int) -> None:
-        """Move on after a converged attempt."""
+        """Continue after a converged attempt."""
         self.time = time
         self.number += 1
         self.easy = self.easy + 1 if iterations <= EASY and self.attempt == 1 else 0

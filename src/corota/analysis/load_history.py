@@ -1,4 +1,4 @@
-"""How prescribed numbers go through a step."""
+"""Prescribed values over a step."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -26,7 +26,7 @@ class LoadHistory:
     amplitude : ndarray of int, shape (n,)
         Index into the names of amplitudes; 0 for none.
     removed : ndarray of bool, shape (n,)
-        Whether the step took the number away instead of giving a new one.
+        Whether the step removed the value instead of giving a new one.
     """
 
     def __init__(self, n: int) -> None:
@@ -45,7 +45,7 @@ class LoadHistory:
         return out
 
     def carry(self, reached: Floats, runs_on: NDArray[np.bool_]) -> None:
-        """Start the next step from `reached`, except where the amplitude runs on.
+        """Start the next step from `reached`, except where the amplitude continues.
 
         Parameters
         ----------
@@ -60,7 +60,7 @@ class LoadHistory:
         self.removed[:] = False
 
     def remove(self, value: Floats | float = 0.0) -> None:
-        """Take all numbers away: they go to `value`."""
+        """Remove all values: they change to `value`."""
         self.end[:] = value
         self.amplitude[:] = 0
         self.removed[:] = True

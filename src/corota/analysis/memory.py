@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory of a model, asked for before it is laid out.
+"""Memory of a model, checked before it is allocated.
 
-What a failed allocation of the core does cannot be caught; so the large pieces are estimated
-first. The factor is judged by the solver, which knows its size from the order of elimination.
+A failed allocation in the core cannot be caught, so the large arrays are estimated
+first. The solver checks the factor, whose size follows from the ordering.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ ENTRY, NODE = 7.0, 700.0
 
 
 def require_model(blocks: Sequence[BlockOfCells], n_nodes: int) -> None:
-    """Refuse a model that is too large for what is free.
+    """Refuse a model that exceeds the available memory.
 
     Raises
     ------
     ResourceError
-        With what it takes and what there is.
+        With the memory needed and available.
     """
     entries = 0.0
     for b in blocks:

@@ -1,6 +1,6 @@
 """Newton's method for one increment, with line search and full rollback.
 
-Prescribed displacements enter through the tangent: their increment is part of the first
+Prescribed displacements act through the tangent: their increment is part of the first
 linear solve, so that the elements at the moved edge do not take all of it.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: A residual this many times the rounding error of the internal force is as good as zero.
+#: A residual below this multiple of the rounding error of the internal force counts as zero.
 FLOOR = 10.0
 #: Growth of the residual over its start that is given up as divergence.
 DIVERGED = 1e6
@@ -35,7 +35,7 @@ PROGRESS = 0.9
 
 
 def larger(a: float, b: float) -> float:
-    """The larger of two; unlike ``max`` this passes on what is not a number."""
+    """The larger of two; unlike ``max``, it propagates NaN."""
     return a if a > b or a != a else b
 
 
@@ -44,11 +44,11 @@ class ElementFailure(Exception):
 
 
 class GiveUp(Exception):
-    """No correction of this increment can be of use; a smaller one may."""
+    """No correction of this increment helps; a smaller increment may."""
 
 
 class EvaluationLike(Protocol):
-    """What the method reads of an evaluation."""
+    """Attributes of an evaluation that the method uses."""
 
     @property
     def residual(self) -> Floats: ...
@@ -74,14 +74,14 @@ class SystemLike(Protocol[E]):
 
 @dataclass
 class ResidualNorms:
-    """Size of a residual against its scale, forces and moments apart."""
+    """Size of a residual against its scale, for forces and moments separately."""
 
     force: float  # largest free residual force / force scale
     moment: float
     floor: float  # relative size of rounding errors of forces
     worst: int  # dof with the largest relative residual
     moment_floor: float = 0.0  # and of moments, whose scale may be much smaller
-    #: Whether nothing acts that is above rounding, in a motion that may be as slow as that.
+    #: Whether all forces are of rounding size, in a motion that may be that slow.
     idle: bool = False
     #: Residuals of forces and moments over all that acts, be it force, moment or inertia.
     honest: tuple[float, float] = (0.0, 0.0)
@@ -103,7 +103,7 @@ class Settings:
 
     tolerance: float = 1e-9
     max_iterations: int = 16
-    #: Corrects with the last factorisation, for an iteration that converges with it all the same.
+    #: Correct with the last factorization, for an iteration that converges with it.
     reuse: Callable[[Any], Floats] | None = None
     #: Iterations without a clearly smaller residual after which the attempt is given up; 0: never.
     patience: int = 0
@@ -111,7 +111,7 @@ class Settings:
 
 @dataclass
 class Outcome(Generic[E]):
-    """What became of an increment.
+    """Result of an increment.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class Outcome(Generic[E]):
     reason : str
         Why it did not converge.
     note : str
-        How it converged, where that is not by the tolerance.
+        How it converged, if not by the tolerance.
     """
 
     converged: bool
@@ -158,14 +158,14 @@ def newton(
     u : ndarray, shape (n_dofs,)
         Converged displacement of the increment before; not changed.
     prescribed : ndarray, shape (n_dofs,)
-        Target of the held dofs, `u` elsewhere.
+        Target of the prescribed dofs, `u` elsewhere.
     step_time : float
         Time at which loads are taken.
     settings : Settings
     start : EvaluationLike, optional
         Evaluation at `u` and `step_time`, if it is known.
     report : callable, optional
-        Told iteration number, judgement, largest correction and a note.
+        Called with iteration number, residual norms, largest correction and a note.
 
     Returns
     -------
@@ -174,7 +174,7 @@ def newton(
     Raises
     ------
     SingularError
-        If the structure is not held.
+        If the structure is not constrained.
     """
     try:
         at = start if start is not None else system.evaluate(u, step_time)
@@ -186,7 +186,7 @@ def newton(
     norms = system.residual_norms(at, u)
     size = norms.size
     outcome.sizes.append(size)
-    # With moving supports the first residual says nothing about the one to be reached.
+    # With moving supports the first residual gives no scale for the one to be reached.
     if not moved and size <= settings.tolerance and not norms.idle:
         outcome.converged = True
         return outcome
@@ -279,9 +279,9 @@ def _search(
     before: float,
     iteration: int,
 ) -> tuple[Floats, E, float] | str:
-    """Take the step; shorten it where elements fail or the method has begun to lose ground.
+    """Take the step; shorten it where elements fail or the residual grows.
 
-    Early growth of the residual is left alone: in slender structures it is stretching that
+    Early growth of the residual is accepted: in slender structures it is stretching that
     the next iteration removes.
     """
     length = 1.0

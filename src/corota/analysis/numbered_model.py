@@ -1,6 +1,6 @@
 """A model numbered for analysis: elements in the core, dofs, constraints, matrix pattern.
 
-What the terms of the equation are built on. It knows no loads, no supports and no contact.
+The basis of the terms of the equation, without loads, supports and contact.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -57,7 +57,7 @@ class NumberedModel:
     def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
         self.model = model
         self.blocks = blocks_of(model)
-        #: Mass that gravity acts on in steps that do not move.
+        #: Mass for gravity in static steps.
         self.mass = MovingMass()
         self.linear = LinearSystem(solver)
         mesh = model.mesh
@@ -106,11 +106,11 @@ class NumberedModel:
         return out
 
     def in_space(self, vector: Floats) -> Floats:
-        """A vector along the axes of its nodes in global axes, shape (n_dofs,)."""
+        """A vector in nodal axes, converted to global axes, shape (n_dofs,)."""
         return self.constraints.to_global(vector)
 
     def at_nodes(self, vector: Floats) -> Floats:
-        """A vector in global axes along the axes of its nodes, shape (n_dofs,)."""
+        """A vector in global axes, converted to nodal axes, shape (n_dofs,)."""
         return self.constraints.to_axes(vector)
 
     def from_nodes(self, values: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""The observers of a run as one; a failing observer stops the run with its own error."""
+"""All observers of a run combined; a failing observer stops the run with its own error."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Observers:
     """Passes every event on to each observer.
 
-    An observer that sets an attribute ``stop`` to True asks for an end after the current
+    An observer that sets an attribute ``stop`` to True requests the end after the current
     increment.
     """
 
@@ -27,7 +27,7 @@ class Observers:
 
     @property
     def stop_requested(self) -> bool:
-        """Whether any observer asks to stop."""
+        """Whether any observer requests a stop."""
         return any(getattr(o, "stop", False) for o in self.each)
 
     @property
@@ -37,12 +37,12 @@ class Observers:
 
     @property
     def checkpoint_due(self) -> bool:
-        """Whether a checkpoint is wanted after the current increment."""
+        """Whether a checkpoint is due after the current increment."""
         takers: list[Any] = [o for o in self.each if hasattr(o, "checkpoint")]
         return any(o.checkpoint_due for o in takers) or (bool(takers) and self.stop_requested)
 
     def checkpoint(self, checkpoint: Checkpoint, keep: str = "") -> None:
-        """Hand a checkpoint to those who keep them; `keep` is the ending of a lasting file."""
+        """Pass a checkpoint to observers that store them; `keep`: ending of a permanent file."""
         for o in self.each:
             if hasattr(o, "checkpoint"):
                 o.checkpoint(checkpoint, keep)
@@ -73,7 +73,7 @@ class Observers:
             o.cut_back(step, increment, attempt, reason, dt)
 
     def note(self, step: int, text: str) -> None:
-        """Send a notice of what a step does by itself, such as a switch to arc length."""
+        """Send a note on an automatic action of a step, such as a switch to arc length."""
         for o in self.each:
             if (tell := getattr(o, "note", None)) is not None:
                 tell(step, text)

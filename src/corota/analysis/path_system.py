@@ -1,4 +1,4 @@
-"""What the followers of paths see of a system: rates and corrections per unit of load factor."""
+"""Interface of a system for path following: rates and corrections per unit of load factor."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Mask = NDArray[np.bool_]
 
-#: What cannot be judged when the tangent is not symmetric.
+#: Message for an unsymmetric tangent, where stability is unknown.
 NOT_CONSERVATIVE = (
     "the loads follow the structure and have no potential: the tangent is not symmetric, so its "
     "pivots do not show stability (non-conservative: use dynamics)"
 )
 
 
-#: Places on a chord at which forces are compared, evenly apart.
+#: Number of equidistant points on a chord at which forces are compared.
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 #: Ratio of second differences below which forces are not smooth.
 CORNER = 0.2
@@ -67,7 +67,7 @@ class Tangent:
     negative: int
 
     def reversed(self) -> Tangent:
-        """The other sense."""
+        """The opposite direction."""
         return Tangent(-self.u, -self.factor, self.negative)
 
 
@@ -96,10 +96,10 @@ class Metric:
 
 
 class PathSystem(Protocol):
-    """A system whose load has a factor.
+    """A system with a load factor.
 
-    Its unknowns are the dofs and whatever the system adds behind them, which a path neither
-    measures nor steers by.
+    Its unknowns are the dofs, followed by those that the system adds; a path neither
+    measures nor controls the latter.
     """
 
     @property
@@ -118,9 +118,9 @@ class PathSystem(Protocol):
         ...
 
     def restart(self, loose: bool = False, like: Any = None) -> None:
-        """Begin an attempt at an increment: forget what another one left.
+        """Begin an attempt at an increment: discard the data of earlier attempts.
 
-        `loose` allows what moves freely to be brought to a hold, as bodies into contact; `like`
+        `loose` allows free bodies to be moved until they are constrained, as into contact; `like`
         is an evaluation that the guess was taken from.
         """
         ...
@@ -138,11 +138,11 @@ class PathSystem(Protocol):
         ...
 
     def explain(self, at: Any) -> str:
-        """What an attempt that failed at an evaluation hung on, for its message."""
+        """Cause of a failed attempt, for its message."""
         ...
 
     def load_rate(self, u: Floats) -> tuple[Floats, Floats]:
-        """Change of forces and of held dofs per unit of load factor."""
+        """Change of forces and of prescribed dofs per unit of load factor."""
         ...
 
     def advance(self, at: Any, force: Floats, move: Floats) -> tuple[Floats, Floats]:
@@ -161,16 +161,16 @@ class PathSystem(Protocol):
         ...
 
     def ahead(self, at: Any, rate: Floats) -> float:
-        """Whether a direction leads away from the kink since the committed state.
+        """Whether a direction points away from the kink since the committed state.
 
-        Positive if so, negative if it leads back, 0 where the path has no kink.
+        Positive if so, negative if it points back, 0 where the path has no kink.
         """
         ...
 
     def around(
         self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
     ) -> tuple[Point, Tangent] | None:
-        """Predict a point behind kinks that lie on the way from a committed one.
+        """Predict a point behind the kinks between it and a committed one.
 
         Also the direction there; None where there is no kink within a distance.
         """
@@ -222,11 +222,11 @@ class SmoothPath:
         """Nothing is kept between attempts."""
 
     def refuse(self, at: Evaluation, u: Floats) -> str:
-        """A body that nothing holds and that is far away is in no equilibrium."""
+        """An unconstrained body far away is not in equilibrium."""
         return self.system.scales.senseless(u)
 
     def explain(self, at: Evaluation) -> str:
-        """The residual says all."""
+        """The residual is the explanation."""
         return ""
 
     def ahead(self, at: Evaluation, rate: Floats) -> float:
@@ -237,7 +237,7 @@ class SmoothPath:
         """No kinks are known."""
 
     def has_corner(self, base: Point, point: Point, period: float) -> bool:
-        """Whether forces along the chord of two near equilibria bend in one place only.
+        """Whether forces along the chord of two near equilibria have a single corner.
 
         Where they are smooth, their second differences are alike; a corner of a law leaves some of
         them without any.

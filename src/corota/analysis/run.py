@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Threads beyond so many for each core, and beyond this number, only cost memory.
+#: Largest useful number of threads per core, and in total.
 THREADS_PER_CORE, LEAST_CAP = 4, 64
 
 #: Procedures that find the equilibrium of their own theory.
@@ -72,17 +72,17 @@ def solve(
     steps : Step or sequence of Step, optional
         The model's own steps by default, or one ``Static()``.
     observers : iterable of Observer
-        Told of every iteration and increment.
+        Called with every iteration and increment.
     solver : str or LinearSolver
         Name in :data:`corota.analysis.linear.solvers.SOLVERS`, or an object with its three methods.
     threads : int, optional
         All cores by default. Results do not depend on it.
     keep : {"all", "last"}
-        Frames held in memory.
+        Frames kept in memory.
     fields : bool
         Recover stress and strain at the points of every increment.
     start : Checkpoint, optional
-        Go on from there instead of the beginning; see :func:`corota.resume`.
+        Continue from there instead of the beginning; see :func:`corota.resume`.
 
     Returns
     -------
@@ -92,11 +92,11 @@ def solve(
     Raises
     ------
     InputError
-        If the model cannot be analysed as it stands.
+        If the model cannot be analyzed.
     ConvergenceError
         If an increment cannot be converged; ``error.results`` has everything before it.
     SingularError
-        If the structure is not held.
+        If the structure is not constrained.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def solve(
 
 
 def keep_nlgeom(steps: Sequence[Step]) -> tuple[list[Step], list[str]]:
-    """Steps in which large rotations stay in force once they are, and what to say about it.
+    """Steps that keep the large rotations of earlier ones, with notes.
 
     The linear theory has another displacement under the same loads: a linear step after a
     nonlinear one would jump.
@@ -179,14 +179,14 @@ class Analysis:
             self.solver.threads = self.threads
         self.system: System
         self.warned: set[str] = set()
-        #: Starts of the steps so far, digests of what the system was built with, and the
-        #: checkpoint that the run goes on from.
+        #: Starts of the steps so far, digests of the system's initial arrays, and the
+        #: checkpoint that the run continues from.
         self.begun: list[Begun] = []
         self.as_built: dict[str, str] = {}
         self.start = self.resumed = start
 
     def run(self) -> Results:
-        """Run all steps; observers hear the end whatever happens."""
+        """Run all steps; observers are always notified of the end."""
         results, begin = self.results, clock.perf_counter()
         error: BaseException | None = None
         stands: State | None = None
@@ -283,7 +283,7 @@ class Analysis:
         return system.reaction(state.at)
 
     def _resume(self, start: Checkpoint, state: State) -> None:
-        """Make everything ready for the procedure to take the state of a checkpoint."""
+        """Prepare the procedure for the state of a checkpoint."""
         begun = Reader(start.arrays, {}).read(dict_of(start.tree)["begun"])
         built = copies_as_built({"system": self.system}, self.known())
         replay(self, begun)
@@ -308,7 +308,7 @@ class Analysis:
             state.at = system.evaluate(state.u, system.conditions.end_time)
 
     def known(self) -> dict[str, Any]:
-        """Objects that stand for themselves in checkpoints."""
+        """Objects stored by reference in checkpoints."""
         found: dict[str, Any] = {f"steps/{i}": step for i, step in enumerate(self.steps)}
         found |= {"model": self.model, "observers": self.observers}
         system = self.system
@@ -324,7 +324,7 @@ class Analysis:
         """Start a step from the committed state."""
         system = self.system
         nlgeom = system.nlgeom
-        # Of a linear state about which this step is a small motion or a bifurcation.
+        # Of a linear state, about which this step is linearized.
         linear_energy = 0.0
         if not nlgeom and step.nlgeom and step.procedure not in EQUILIBRATING and state.u.any():
             linear_energy = system.recover(state.u)[1]["strain energy"]
@@ -374,14 +374,14 @@ class Analysis:
         )
 
     def _warn(self, kind: str, note: str) -> None:
-        """Say a thing once, and keep it."""
+        """Issue a warning once, and keep it."""
         if kind not in self.warned:
             self.warned.add(kind)
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)
 
     def _stops(self, step: Step) -> list[float]:
-        """Step times that outputs ask for."""
+        """Step times requested by outputs."""
         tables = getattr(self.model, "time_points", {})
         return [
             float(t) for out in step.outputs if out.time_points for t in tables[out.time_points]

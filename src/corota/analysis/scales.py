@@ -1,9 +1,10 @@
-"""How large a residual may be: its scale, its rounding, and displacements without sense.
+"""Scales of the residual: tolerance, rounding, and excessive displacements.
 
-The scale of a residual must not grow with the failure it is to tell. It is the largest of
+The scale of a residual must not grow with the failure that it detects. It is the largest of
 external forces, element forces, contact forces and inertia forces, here and in the committed
-state. What is above the tolerance counts as rounding if it is no more than rounding of the
-positions makes of it at the dof's own stiffness, and never above a millionth of the scale.
+state. A residual above the tolerance counts as rounding if it is at most the effect of rounding of
+the
+positions with the dof's own stiffness, and never above a millionth of the scale.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -26,15 +27,15 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Forces below this many rounding errors of the coordinates are none.
+#: Forces below this multiple of the rounding errors of the coordinates count as zero.
 NEGLIGIBLE_FORCE = 1e3
-#: Rounding counts as such up to this share of all that acts, and where nothing is loaded up to
-#: forces of none this many times over.
+#: Rounding is accepted up to this fraction of all acting forces; without loads, up to
+#: this multiple of the zero force.
 LARGEST_NOISE, FARTHEST = 1e-6, 10.0
 #: Share of the moments over the size of the model that forces are measured by at least, and
 #: of the forces times that size for moments: either may vanish altogether.
 LEAST = 1e-6
-#: A body that moves this many sizes of the model and supports is unconstrained.
+#: A body that moves by this multiple of the model size beyond its supports is unconstrained.
 FAR = 1e2
 EPS = float(np.finfo(float).eps)
 
@@ -55,7 +56,7 @@ class Scales:
     ratio : float
         Of the largest and the smallest of these.
     moved : float
-        Largest displacement of the state judged last [length].
+        Largest displacement of the last checked state [length].
     tolerance : float
         Of the current step.
     """
@@ -66,10 +67,10 @@ class Scales:
         self.system, self.conditions, self.contact_term = system, conditions, contact_term
         self.stiffest, self.ratio, self.moved = 0.0, 1.0, 0.0
         self.tolerance = 1e-9
-        #: Of the state judged last: inertia per displacement [force/length], all that acts, the
+        #: Of the last checked state: inertia per displacement [force/length], all that acts, the
         #: largest rounding and the rounding of the stiffest dof [force].
         self._heft = self.whole = self._most = self._noise = 0.0
-        #: Largest force and moment of the state judged last, and of the committed one.
+        #: Largest force and moment of the last checked state, and of the committed one.
         self._sizes = self._committed = [0.0, 0.0]
         self._begun: Floats | None = None
         self._bodies = any(not elements.find(b.section.element).line for b in system.blocks)
@@ -90,7 +91,7 @@ class Scales:
         return out
 
     def commit(self) -> None:
-        """The state judged last is accepted."""
+        """Accept the last checked state."""
         self._committed = self._sizes
 
     @property
@@ -100,20 +101,20 @@ class Scales:
 
     @property
     def force(self) -> float:
-        """Largest force of the state judged last or of the committed one."""
+        """Largest force of the last checked state or of the committed one."""
         return max(self._sizes[0], self._committed[0])
 
     def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
-        """Size of the residual against its scale, forces and moments apart.
+        """Size of the residual against its scale, for forces and moments separately.
 
-        The committed state counts because a body that is unloaded altogether has no forces of
-        its own to compare with. In motion `at.momentum` is the largest of the terms that the
+        The committed state is included because a fully unloaded body has no forces of
+        its own to compare with. In dynamics `at.momentum` is the largest of the terms that the
         acceleration is a difference of: it measures rounding, not the residual.
         """
         system, length = self.system, self.system.length
         scale, internal, external = at.scale, at.internal, at.external
         if at.link.couples:
-            # What constraints pass on from load to load is no scale: the residual alone is judged.
+            # Forces transmitted by constraints are no scale: only the residual is checked.
             internal = at.reaction
             scale = external = at.link.gather_sizes(np.maximum(scale, np.abs(external)))
         self._sizes, residual, worst, displacement = system.core.sizes(
@@ -130,7 +131,7 @@ class Scales:
         self._noise = EPS * (self.stiffest + at.heft) * moved
         loaded = bool(at.external.any())
         if whole <= self.nothing and not loaded:
-            # A slow motion may be as small as that: nothing is known before a correction.
+            # A slow motion may be that small: its size is unknown before a correction.
             return ResidualNorms(0.0, 0.0, 0.0, 0, idle=at.heft > 0.0 and bool(max(residual)))
         relative = (_ratio(residual[0], force), _ratio(residual[1], moment))
         norms = ResidualNorms(*relative, 0.0, worst[0] if relative[0] >= relative[1] else worst[1])
@@ -170,7 +171,7 @@ class Scales:
         return out[0], out[1]
 
     def add_complementarity(self, norms: ResidualNorms, complementarity: float) -> None:
-        """Judge the contact residual, a force, with the residual judged last."""
+        """Add the contact residual, a force, to the last residual norms."""
         # Where nothing is loaded yet, and where all surfaces part, forces of rounding size are
         # the measure.
         force = max(self.force, self.nothing)
@@ -179,17 +180,17 @@ class Scales:
         least, moment = norms.honest
         norms.honest = (max(least, _ratio(complementarity, max(self.whole, self.nothing))), moment)
         if norms.force > self.tolerance:
-            # The stiffness by which gaps become forces is that of the nodes.
+            # Gaps become forces by the stiffness of the nodes.
             rounding = min(self._noise, self._most / FLOOR)
             norms.floor = max(norms.floor, _ratio(rounding, force))
             if ratio > 1.0:
-                # The residual is told as 1, whatever it is: so is its rounding.
+                # The residual is reported as 1, and so is its rounding.
                 norms.floor = min(norms.floor / ratio, _ratio(rounding, complementarity))
 
     def senseless(self, u: Floats) -> str:
-        """Why a static displacement makes no sense, or nothing.
+        """Why a static displacement is implausible; empty if it is not.
 
-        What is held moves at most as its supports and its own deformation do.
+        A constrained body moves at most by its supports and its own deformation.
         """
         system = self.system
         if not self._bodies or not (system.nlgeom or self.contact_term.joins):

@@ -1,4 +1,4 @@
-"""Where an analysis stands between increments."""
+"""The state of an analysis between increments."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Resumption(Protocol):
-    """A checkpoint that an analysis goes on from."""
+    """A checkpoint from which an analysis continues."""
 
     checkpoint: Any
 
@@ -34,13 +34,13 @@ class Resumption(Protocol):
         ...
 
     def restore(self, state: State) -> None:
-        """Put everything into the fresh objects of the analysis."""
+        """Restore the state of all objects of the analysis."""
         ...
 
 
 @dataclass
 class State:
-    """Where an analysis stands: the committed state.
+    """The committed state of an analysis.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class State:
     at : Evaluation or None
         Evaluation at `u`.
     energies : Energies or None
-        The energy account.
+        The energy balance.
     reaction : ndarray, shape (n_dofs,), or None
         Reactions at `u` where inertia takes part in them; else they follow from `at`.
     negative : int
@@ -76,9 +76,10 @@ class State:
     failed : Outcome or None
         The last attempt at an increment that did not converge.
     loop : dict or None
-        What the procedure needs to go on from here, by name; None where it cannot be resumed.
+        Data that the procedure needs to continue from here, by name; None where it cannot be
+        resumed.
     resumption : Resumption or None
-        The checkpoint that the procedure is to go on from.
+        The checkpoint from which the procedure continues.
     """
 
     u: Floats
@@ -103,11 +104,11 @@ class State:
 
     @property
     def resumes(self) -> str:
-        """Kind of the loop that a checkpoint is to be put into; empty for none."""
+        """Kind of the loop that a checkpoint restores; empty for none."""
         return "" if self.resumption is None else self.resumption.kind
 
     def resume(self, kind: str, **fresh: Any) -> dict[str, Any]:
-        """Take the state of the checkpoint; its own of a procedure goes into `fresh` objects.
+        """Restore the checkpoint; the state of a procedure goes into `fresh` objects.
 
         Returns
         -------
@@ -123,7 +124,7 @@ class State:
         return self.loop
 
     def stand_still(self) -> None:
-        """Take the velocity of a motion away: a static step has none, nor what follows it."""
+        """Reset the velocity: a static step has none, and neither has the step after it."""
         if self.v is not None:
             self.v, self.a = np.zeros_like(self.u), np.zeros_like(self.u)
         self.carried = None

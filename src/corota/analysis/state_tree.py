@@ -1,12 +1,12 @@
 """The state of an analysis as a tree of plain values and arrays, and back into fresh objects.
 
-Whatever an analysis holds between two increments is state, unless this module says otherwise:
-attributes of :data:`DERIVED` are computed anew, the model stands for itself, and code is not
-stored. So an attribute that is added later is part of every checkpoint without being listed.
-Objects of the compiled core give and take their state as arrays.
+All data of an analysis between two increments are state, unless this module excludes them:
+attributes of :data:`DERIVED` are recomputed, the model is stored by reference, and code is not
+stored. An attribute that is added later is therefore part of every checkpoint automatically.
+Objects of the compiled core export and import their state as arrays.
 
-Arrays of the system that still are as they were built are not stored again: the tree holds their
-digest only, by which a system of another model is told.
+Arrays of the system that did not change since it was built are not stored: the tree holds their
+digest only, which identifies a system of another model.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -50,7 +50,7 @@ KINDS = "biufcSU"
 
 
 class UnsuitableState(CorotaError):
-    """A tree that does not belong to the objects it is to be put into."""
+    """A tree that does not fit the objects to be restored."""
 
 
 class Unstorable(CorotaError):

@@ -1,9 +1,9 @@
 """Constraints by elimination: dependent dofs as functions of the others.
 
-With the state ``u = g(v)`` of the independent dofs v, G = dg/dv and Q the turn from the nodes'
+With the state ``u = g(v)`` of the independent dofs v, G = dg/dv and Q the rotation from the nodes'
 own axes to the global ones, equilibrium is ``G^T r = 0`` and Newton's matrix is
 ``(Q G)^T K (Q G) + sum_s r_s d2 g_s / dv dv``. Only entries in rows and columns of constrained
-dofs change, so a map of places is made once and numbers are put through it.
+dofs change, so a map of positions is built once and applied to the values.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def local_axes(model: Model) -> dict[int, Floats]:
-    """Axes (columns) of the nodes that have their own, the last given counts."""
+    """Axes (columns) of the nodes with local axes; the last definition counts."""
     axes: dict[int, Floats] = {}
     for item in model.axes:
         nodes = (
@@ -60,7 +60,7 @@ def local_axes(model: Model) -> dict[int, Floats]:
 
 @dataclass(eq=False)
 class LinearizedConstraints:
-    """The constraints linearised at a state.
+    """The constraints linearized at a state.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class LinearizedConstraints:
     direct : sparse array, shape (n_dependent, n_dofs)
         Dependent dofs by their masters, before substitution.
     curvature : float
-        Weight of the second derivatives in the reduced matrix: 0 where it is no tangent.
+        Weight of the second derivatives in the reduced matrix: 0 where it is not a tangent.
     """
 
     constraints: Constraints
@@ -80,7 +80,7 @@ class LinearizedConstraints:
     direct: Any
     curvature: float = 1.0
 
-    #: Whether any dof depends on others or has axes of its own.
+    #: Whether any dof depends on others or has local axes.
     couples = True
 
     def gather(self, force: Floats) -> Floats:
@@ -105,7 +105,7 @@ class LinearizedConstraints:
         return out
 
     def unknowns(self, x: Any) -> Any:
-        """Entries of the unknowns of what has one for each dof."""
+        """Entries of the unknowns of a vector with one for each dof."""
         return x[self.constraints.free]
 
     def expand(self, x: Floats) -> Floats:
@@ -115,7 +115,7 @@ class LinearizedConstraints:
         return self.move(out)
 
     def linear(self) -> LinearizedConstraints:
-        """The same without second derivatives: for matrices that are no tangents."""
+        """The same without second derivatives: for matrices that are not tangents."""
         return replace(self, curvature=0.0)
 
     @cached_property
@@ -137,11 +137,11 @@ class LinearizedConstraints:
         return self.transform.T @ entries.matrix(n) @ self.transform
 
     def neighbors(self, dofs: Ints) -> Ints:
-        """Unknowns that stand for dofs in a pattern that looks ahead: none are known."""
+        """Unknowns for dofs of a predicted pattern: none."""
         return dofs[:0]
 
     def geometric_stiffness(self, residual: Floats) -> Floats:
-        """Entries of ``sum_s r_s d2 g_s`` where the relations bend, in the map's order."""
+        """Entries of ``sum_s r_s d2 g_s`` of nonlinear relations, in the map's order."""
         constraints = self.constraints
         force = self.curvature * residual[constraints.dependent]
         own = force
@@ -248,7 +248,7 @@ class Constraints:
         return max(level.values(), default=0)
 
     def _turns(self) -> None:
-        """The turn from the axes of nodes to the global ones."""
+        """The rotation from the axes of nodes to the global ones."""
         import scipy.sparse as sp
 
         nodes = np.array([n for n in sorted(self.axes) if self.start[n + 1] > self.start[n]], int)
@@ -302,7 +302,7 @@ class Constraints:
             relation.nlgeom = nlgeom
 
     def complete(self, u: Floats) -> None:
-        """Set the dependent dofs of `u` to what the others make them, in place."""
+        """Set the dependent dofs of `u` from the others, in place."""
         for relation in self.relations:
             u[relation.dependent] = relation.values(u)
 
@@ -316,18 +316,18 @@ class Constraints:
                 a[relation.dependent] = j @ a[relation.masters] + relation.curve(u, v)
 
     def near_their_limit(self, u: Floats) -> str:
-        """What may keep an increment from converging at `u`, or nothing."""
+        """What may prevent convergence at `u`; empty if nothing."""
         return next(filter(None, (r.near_its_limit(u) for r in self.relations)), "")
 
     def link(self, u: Floats) -> LinearizedConstraints:
-        """Linearise at `u`."""
+        """Linearize at `u`."""
         g, direct = self._substituted(lambda r: r.jacobian(u))
         return LinearizedConstraints(self, u, g, direct)
 
     def secant(self, begin: Floats, end: Floats) -> LinearizedConstraints:
         """The exact discrete derivatives between two states, for the energy-momentum scheme."""
         g, direct = self._substituted(lambda r: r.secant(begin, end))
-        # Forces at the middle: half of what a change at the end bends.
+        # Forces at the middle: half of the geometric stiffness of a change at the end.
         return LinearizedConstraints(self, end, g, direct, 0.5)
 
     def _substituted(self, jacobian: Any) -> tuple[Any, Any]:
@@ -386,7 +386,7 @@ class Constraints:
             )
 
     def refuse_loaded(self, dofs: Ints, where: Location | None) -> None:
-        """Refuse forces at dofs that nothing carries."""
+        """Refuse forces at dofs without elements and constraints."""
         for dof in dofs[self.inert[dofs]].tolist():
             raise ModelError(
                 f"{self.builder.name(dof)} belongs to no element and no constraint, so it cannot "

@@ -1,4 +1,4 @@
-"""A model without constraints: every dof is an unknown, and nothing is transformed."""
+"""A model without constraints: every dof is an unknown; no transformation."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Identity(LinearizedConstraints):
-    """Constraints that leave forces, changes and matrices as they are; nothing is copied."""
+    """Identity constraints: forces, changes and matrices are returned without copies."""
 
     couples = False
 
@@ -70,7 +70,7 @@ IDENTITY = Identity()
 
 
 class NoConstraints(Constraints):
-    """See :class:`Constraints`; all that depends on their number costs nothing here.
+    """See :class:`Constraints`; empty, at no cost.
 
     Parameters
     ----------

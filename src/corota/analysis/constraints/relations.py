@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Relation(ABC):
-    """What all relations have.
+    """Interface of all relations.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Relation(ABC):
     what: str
     where: Location | None
 
-    #: What to hold in place of a dependent dof.
+    #: Dof to support in place of a dependent dof.
     instead = "another term of the equation"
     #: Whether the dependents are linear in the masters.
     linear = True
@@ -56,7 +56,7 @@ class Relation(ABC):
         """Derivative of the dependents by the masters at `u`, shape (d, m)."""
 
     def near_its_limit(self, u: Floats) -> str:
-        """What may keep an increment from converging at `u`, or nothing."""
+        """What may prevent convergence at `u`; empty if nothing."""
         return ""
 
     def geometric_stiffness(self, u: Floats, force: Floats) -> Floats:
@@ -64,7 +64,7 @@ class Relation(ABC):
         return np.zeros((len(self.masters), len(self.masters)))
 
     def curve(self, u: Floats, v: Floats) -> Floats:
-        """Acceleration of the dependents while the masters move on evenly at `v`, shape (d,)."""
+        """Acceleration of the dependents at constant velocity `v` of the masters, shape (d,)."""
         return np.zeros(len(self.dependent))
 
     def secant(self, begin: Floats, end: Floats) -> Floats:
@@ -116,12 +116,12 @@ class LinearRelation(Relation):
 
 
 def _skew(v: Floats) -> Floats:
-    """Vectors turned by a right angle, shape (n, 2)."""
+    """Vectors rotated by a right angle, shape (n, 2)."""
     return np.stack([-v[:, 1], v[:, 0]], axis=1)
 
 
 def _turned(v: Floats, angle: float) -> Floats:
-    """Vectors turned by an angle, shape (n, 2)."""
+    """Vectors rotated by an angle, shape (n, 2)."""
     out: Floats = np.cos(angle) * v + np.sin(angle) * _skew(v)
     return out
 
@@ -144,7 +144,7 @@ class Follow(Relation):
     arm : ndarray, shape (d, 2)
         ``X_s - X_ref`` of the node of each dependent [length].
     axis : ndarray, shape (d, 3)
-        What the dependent measures: direction of a displacement, or (0, 0, 1).
+        Component of the dependent: direction of a displacement, or (0, 0, 1).
     axes : ndarray, shape (2, 2)
         Columns: axes of the reference node.
     nlgeom : bool
@@ -220,7 +220,7 @@ class Mean(Relation):
     offset : ndarray, shape (2,)
         Position of the reference node from that mean [length].
     axis : ndarray, shape (d, 3)
-        What each dependent measures, as in :class:`Follow`.
+        Component of each dependent, as in :class:`Follow`.
     axes : ndarray, shape (n, 2, 2)
         Columns: axes of each node.
     nlgeom : bool

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 NAMES = ("x", "y", "rotation")
-#: Nodes of a straight line may be off it by this share of its length, which is taken off.
+#: Nodes of a straight line may be off it by this fraction of its length; the offset is removed.
 OFF_LINE = 1e-6
 
 
@@ -37,7 +37,7 @@ def _nodes(model: Model, where: str | Ints) -> Ints:
 def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Dofs that constraints give to nodes, shape (n_nodes,); empty without constraints.
 
-    Reference nodes get a rotation; nodes without elements get what is asked of them.
+    Reference nodes get a rotation; nodes without elements get the dofs that constraints use.
     """
     if not model.constraints:
         return np.zeros(0, np.uint8)
@@ -111,7 +111,7 @@ class Builder:
         Raises
         ------
         ModelError
-            If two constraints determine the same dof, or they go round in a circle.
+            If two constraints determine the same dof, or they depend on each other circularly.
         """
         relations: list[Relation] = []
         for item in self.model.constraints:
@@ -214,7 +214,7 @@ class Builder:
         return self.axes.get(int(node), np.eye(2))
 
     def _measured(self, nodes: Ints, dofs: tuple[int, ...]) -> tuple[Ints, Ints, Floats]:
-        """Dofs of nodes out of a list, where they exist: numbers, nodes, what they measure."""
+        """Existing dofs of the nodes of a list: numbers, nodes, components."""
         numbers, owners, axis = [], [], []
         for node in nodes.tolist():
             for dof in sorted(set(dofs)):

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 #: The axis of the dependent displacement may come this close to the line (sine of the angle).
 CLOSEST = 1e-3
-#: From this angle on an increment that fails is said to fail for that [degrees].
+#: Angle from which a failed increment is attributed to this [degrees].
 CLOSE = 15.0
-#: ``S v`` turns v by a right angle; ``e . S t = t . M e`` with M its transpose.
+#: ``S v`` rotates v by a right angle; ``e . S t = t . M e`` with M its transpose.
 S = np.array([[0.0, -1.0], [1.0, 0.0]])
 M = S.T
 
@@ -43,7 +43,7 @@ class OnLine(Relation):
     axes : ndarray, shape (2, 2, 2)
         Columns: axes of the two ends.
     nlgeom : bool
-        Whether the line moves with its ends; else it is linearised about the reference.
+        Whether the line moves with its ends; else it is linearized about the reference.
     """
 
     points: Floats

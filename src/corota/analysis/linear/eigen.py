@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Complex = NDArray[np.complex128]
 
-#: Unknowns up to which the dense eigenvalue solver is quicker.
+#: Unknowns up to which the dense eigenvalue solver is faster.
 DENSE = 150
 #: Shift of a free body, relative to the largest ratio of stiffness to mass.
 SHIFT = 1e-9
 #: Eigenvalues of the inverse below this share of the largest belong to unknowns without mass.
 MASSLESS = 1e-13
-#: Modes beside the wanted ones in which an instability is looked for.
+#: Additional modes that are searched for an instability.
 BESIDE = 6
 
 
@@ -88,7 +88,7 @@ def symmetric_modes(lin: LinearMotion, count: int) -> tuple[Floats, Floats]:
 
     values, shapes = run(count, "LM" if factor.negative == 0 else "LA")
     if factor.negative != 0:
-        # An inertia that is not known is looked for: whatever is unstable shows at this end.
+        # Unknown inertia: instabilities appear at this end of the spectrum.
         below, unstable = run(factor.negative if factor.negative > 0 else 4, "SA")
         real = below < -shift
         values = np.concatenate([below[real], values])
@@ -188,7 +188,7 @@ def _nearest(apply: Any, n: int, count: int) -> tuple[Complex, Complex]:
 
 
 def _first(values: Complex, x: Complex, count: int) -> tuple[Complex, Complex]:
-    """The first of them by frequency; what grows is never left out."""
+    """The first of them by frequency; growing modes are never omitted."""
     growing = values.real > 1e-6 * np.abs(values)
     order = np.lexsort((values.imag, np.abs(values)))
     chosen = np.zeros(len(values), bool)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Relative size of a product that is nothing but rounding.
+#: Relative size of a product that consists of rounding errors only.
 NULL = 1e-9
 
 
@@ -29,7 +29,7 @@ class Factor:
     matrix : scipy CSC array, shape (n, n)
     symmetric : bool
     node : ndarray of int, shape (n,)
-        Node of each unknown; unknowns of one node stand together.
+        Node of each unknown; unknowns of one node are contiguous.
     multiplier : ndarray of bool, shape (n,)
     threads : int
 
@@ -53,8 +53,8 @@ class Factor:
                 self._symmetric(matrix, node, multiplier, threads)
                 return
             except SingularError as error:
-                # The test for motions without stiffness goes by energy, which multipliers make
-                # vanish for what is no such motion.
+                # The test for motions without stiffness uses the energy, which multipliers make
+                # vanish also for other motions.
                 if not multiplier.any() or _is_null(matrix, error.mode):
                     raise
         solver = Multifrontal(symmetric=False)
@@ -85,7 +85,7 @@ class Factor:
 
 
 def _is_null(matrix: Any, mode: Any) -> bool:
-    """Whether a symmetric matrix takes a vector to nothing but rounding."""
+    """Whether a symmetric matrix maps a vector to rounding errors only."""
     if mode is None:
         return True
     v = np.asarray(mode, float).reshape(matrix.shape[0], -1)[:, 0]

@@ -1,6 +1,6 @@
 """A process is not forked while one of its threads orders a matrix.
 
-Orderings take turns by a lock of the core. A child that is forked while it is held would wait for
+A lock of the core serializes orderings. A child that is forked while it is held would wait for
 a thread that it does not have.
 """
 
@@ -28,17 +28,17 @@ class Unforked:
             self._changed.notify_all()
 
     def before(self) -> None:
-        """Wait until nobody is inside, and let nobody in."""
+        """Wait until no ordering runs, and block new ones."""
         self._changed.acquire()
         while self._inside:
             self._changed.wait()
 
     def after(self) -> None:
-        """Go on in the parent."""
+        """Continue in the parent."""
         self._changed.release()
 
     def after_in_child(self) -> None:
-        """Begin anew: there are no other threads."""
+        """Reset: there are no other threads."""
         self._changed = threading.Condition(threading.Lock())
         self._inside = 0
 

@@ -1,10 +1,10 @@
 """Eigenvalues of a symmetric pencil of large sparse matrices by block Lanczos.
 
-The drivers bring a factorised matrix; each step costs one solution with two right-hand sides
-and no factorisation. Linear buckling and free vibration are both of this form.
+The procedures supply a factorized matrix; each step costs one solution with two right-hand sides
+and no factorization. Linear buckling and free vibration are both of this form.
 
 Source: R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994)
-228-272; here with full reorthogonalisation and without restart.
+228-272; here with full reorthogonalization and without restart.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Vectors in a block: a double eigenvalue is found at once.
+#: Vectors in a block: a double eigenvalue is found together.
 BLOCK = 2
 #: Longest basis.
 LONGEST = 240
-#: Basis in which every positive eigenvalue that is not noise has shown itself.
+#: Basis that contains every positive eigenvalue above noise.
 TELLING = 60
 #: Directions whose square is below this share of a block's largest are dependent.
 DEPENDENT = 1e-12
@@ -51,7 +51,7 @@ def largest(
     start : ndarray, shape (n, k)
         Right-hand sides to start from; k is the size of a block.
     count : int
-        Eigenvalues that are wanted.
+        Number of requested eigenvalues.
     tolerance : float
         Residual of a vector relative to its eigenvalue; the eigenvalue's own error is of its
         square.
@@ -104,7 +104,7 @@ def largest(
         exhausted = len(block) == 0
         good = wanted
         if not exhausted and m >= LONGEST:
-            # What has not shown itself by now is hidden below many others.
+            # Eigenvalues not found by now are below many others.
             good = int(np.cumprod(error <= tolerance * values[:wanted]).sum())
             exhausted = True
         enough = wanted == count or m >= TELLING

@@ -1,7 +1,7 @@
-"""Sparse symmetric matrices: one pattern, and arrays of values that belong to it.
+"""Sparse symmetric matrices: one pattern, and arrays of values.
 
 Tangents, masses and dampings share the pattern of the elements. Their values are plain arrays of
-shape (nnz,); all that depends on where an entry stands is asked of the pattern.
+shape (nnz,); the pattern provides all operations that depend on positions.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 
 class SymmetricPattern:
-    """Where the entries of a symmetric matrix stand: its upper triangle by columns.
+    """Pattern of a symmetric matrix: its upper triangle by columns.
 
     Parameters
     ----------
     indptr : ndarray of int, shape (n + 1,)
         Start of each column; the diagonal, which is always there, is its last entry.
     indices : ndarray of int, shape (nnz,)
-        Row of each entry, rising in each column.
+        Row of each entry, increasing in each column.
     node : ndarray of int, shape (n,)
-        Node of each equation; equations of one node stand together.
+        Node of each equation; equations of one node are contiguous.
     after : ndarray of int, optional
         Equations of multipliers, to be eliminated after what they connect.
     """
@@ -121,7 +121,7 @@ class SymmetricPattern:
     def impose(
         self, values: Floats, rhs: Floats, moved: Floats, constrained: NDArray[np.bool_]
     ) -> None:
-        """Take prescribed changes to the right-hand side and mask their equations, in place.
+        """Move prescribed changes to the right-hand side and mask their equations, in place.
 
         Parameters
         ----------
@@ -138,13 +138,13 @@ class SymmetricPattern:
 
     def analyze(self, solver: LinearSolver) -> None:
         """Let a linear solver order and prepare."""
-        # Solvers need not know of multipliers where there are none.
+        # Solvers get no multipliers where there are none.
         more = () if self.after is None else (self.after,)
         solver.analyze(self.indptr, self.indices, self.node, *more)
 
 
 class AssembledPattern(SymmetricPattern):
-    """The pattern of the elements, whose products the compute core forms.
+    """The pattern of the elements, with products computed by the core.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ _REFUSE_ABOVE = 1e-9
 
 
 def find_mkl() -> Path | None:
-    """Where oneMKL's single library is: beside this Python, or where the system looks."""
+    """Path of oneMKL's single library: in this environment, or on the system's search path."""
     prefix = Path(sys.prefix)
     for folder, pattern in (("lib", "libmkl_rt.*"), ("Library/bin", "mkl_rt*.dll")):
         found = sorted((prefix / folder).glob(pattern))
@@ -86,7 +86,7 @@ class Pardiso:
 
         self._release()
         n = self._n = len(indptr) - 1
-        # Rows instead of columns, every diagonal entry there: PARDISO asks for both.
+        # Rows instead of columns, every diagonal entry there: PARDISO needs both.
         starts = np.asarray(indptr, dtype=np.int64)
         columns = np.repeat(np.arange(n), starts[1:] - starts[:-1])
         rows = np.asarray(indices, np.int64)
@@ -97,7 +97,7 @@ class Pardiso:
             shape=(n, n),
         ).tocsr()
         place.sort_indices()
-        self._place = place.data  # 0: an entry that the caller does not have
+        self._place = place.data  # 0: an entry missing in the caller's pattern
         self._indptr = place.indptr.astype(np.int32)
         self._indices = place.indices.astype(np.int32)
         self._values = np.zeros(len(self._place))
@@ -117,7 +117,7 @@ class Pardiso:
         Raises
         ------
         SingularError
-            A pivot vanished; PARDISO does not tell which.
+            A pivot vanished; PARDISO does not report which.
         """
         if not np.all(np.isfinite(data)):
             raise SingularError("the matrix has entries that are not finite")

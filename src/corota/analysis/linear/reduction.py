@@ -1,4 +1,4 @@
-"""Where the entries of a matrix go when dofs are eliminated."""
+"""Positions of matrix entries after the elimination of dofs."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Rows:
 
 
 class Layout:
-    """The fixed places of rows whose numbers change.
+    """The fixed pattern of rows whose values change.
 
     Row i of the full matrix has columns ``column[ptr[i]:ptr[i + 1]]`` and its numbers stand
     at ``at`` in the vector that :meth:`numbers` gives, whose entry 0 is one.

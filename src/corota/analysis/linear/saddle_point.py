@@ -1,10 +1,11 @@
-"""Linear systems with multipliers: the tangent bordered by the constraints of contact.
+"""Linear systems with multipliers: the tangent with the constraints of contact as borders.
 
 Unknowns are the free dofs and then the multipliers. The pattern holds every coupling that was
-seen so far and those next to them, so that it, the ordering and the symbolic factorisation stay
-while contact moves about. What slipping friction and follower loads make unsymmetric is kept
-apart: the symmetric part is factorised, and a few steps of GMRES, preconditioned with it, take
-the rest in; where they do not converge, a factorisation LU of the whole does.
+seen so far and those next to them, so that it, the ordering and the symbolic factorization remain
+valid while contact moves. The unsymmetric part of slipping friction and follower loads is kept
+separate: the symmetric part is factorized, and a few steps of GMRES, preconditioned with it,
+include
+the rest; where they do not converge, an LU factorization of the whole matrix is used.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -36,16 +37,16 @@ if TYPE_CHECKING:
 
 #: GMRES: relative residual that is enough, and steps after which LU takes over.
 GMRES_TOLERANCE, GMRES_STEPS = 1e-9, 60
-#: Share of a constraint that does not follow from others, below which it is dropped, and most
-#: constraints among which that is looked for.
+#: Independent fraction of a constraint below which it is dropped, and the largest number of
+#: constraints for this test.
 DEPENDENT, MOST_DENSE = 1e-9, 2000
-#: Relative size of a product that is nothing but rounding.
+#: Relative size of a product that consists of rounding errors only.
 NULL = 1e-10
 
 
 @dataclass
 class Coupling:
-    """What contact adds to the linearised equations, in dofs and multipliers.
+    """Contribution of contact to the linearized equations, in dofs and multipliers.
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ class Coupling:
 
 
 class Reduced(Protocol):
-    """What a saddle point asks of the system without multipliers."""
+    """Interface of the system without multipliers."""
 
     n_dofs: int
     node_of_dof: Ints
@@ -97,7 +98,7 @@ class Reduced(Protocol):
 
 
 class SaddlePointSystem:
-    """Solves the bordered systems of a model.
+    """Solves the saddle-point systems of a model.
 
     Parameters
     ----------
@@ -118,19 +119,19 @@ class SaddlePointSystem:
         self.after = self.nf + np.arange(n)
         self.keys = np.zeros(0, np.int64)
         self._held: NDArray[np.bool_] | None = None
-        #: The last system solved: its held unknowns, constraints, and what solves it again.
+        #: The last system solved: its prescribed unknowns, constraints and solver.
         self._at_rest = np.zeros(self.size, bool)
         self._link: LinearizedConstraints = system.link
         self._resolve: Callable[[Floats], Floats] = system.linear.solver.solve
         #: Steps of GMRES so far and fall-backs to LU, for reports.
         self.steps = self.whole = 0
-        #: Multipliers of constraints that followed from others.
+        #: Multipliers of redundant constraints.
         self.dropped: set[int] = set()
 
     # -- pattern -----------------------------------------------------------------------
 
     def _place(self, rows: Ints, columns: Ints, spare: Callable[[], Ints]) -> Ints:
-        """Places of entries of the upper triangle; the pattern grows where it lacks them."""
+        """Positions of entries of the upper triangle; missing ones are added to the pattern."""
         wanted = columns * self.size + rows
         if len(self.keys):
             at = np.minimum(np.searchsorted(self.keys, wanted), len(self.keys) - 1)
@@ -156,7 +157,7 @@ class SaddlePointSystem:
         self._held = None
 
     def _mask(self, constrained: NDArray[np.bool_]) -> Ints:
-        """Places of the entries of held unknowns beside the diagonal."""
+        """Positions of the off-diagonal entries of prescribed unknowns."""
         if self._held is None or not np.array_equal(constrained, self._held):
             self._held = constrained.copy()
             off = (constrained[self.rows] | constrained[self.columns]) & (self.rows != self.columns)
@@ -179,7 +180,7 @@ class SaddlePointSystem:
         rhs : ndarray, shape (n, k)
             And of the constraints.
         du_prescribed : ndarray, shape (n_dofs, k)
-            Prescribed changes at held dofs, 0 elsewhere.
+            Prescribed changes at constrained dofs, 0 elsewhere.
 
         Returns
         -------
@@ -190,7 +191,7 @@ class SaddlePointSystem:
         """
         system, link = self.system, at.link
         if at.load_stiffness is not None and not (system.free_motion_excluded or at.heft):
-            # Loads that follow give a free motion stiffness that is none.
+            # Follower loads give a free motion a stiffness that does not constrain it.
             bare = replace(at, load_stiffness=None)
             self.solve(
                 bare, coupling, np.zeros_like(force), np.zeros_like(rhs), 0.0 * du_prescribed
@@ -238,7 +239,7 @@ class SaddlePointSystem:
     def correct_with_last_factor(self, force: Floats) -> tuple[Floats, Floats]:
         """The same for one more force, shape (n_dofs,), with the last factorisation.
 
-        Held dofs are at rest and so are the constraints.
+        Prescribed dofs and constraints do not change.
         """
         b = np.zeros((self.size, 1))
         b[: self.nf, 0] = self._link.unknowns(self._link.gather(force))
@@ -252,7 +253,7 @@ class SaddlePointSystem:
         return self._link.expand(x[: self.nf])
 
     def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
-        """Take constraints out that follow from others, in place; returns their multipliers."""
+        """Remove redundant constraints, in place; returns their multipliers."""
         import scipy.linalg
 
         own = self.columns >= self.nf
@@ -285,7 +286,7 @@ class SaddlePointSystem:
         """The same error in terms of nodes."""
         equation, mode = error.equation, error.mode
         if not 0 <= equation < self.nf and mode is not None:
-            # The dof that moves most stands for a multiplier.
+            # A multiplier is named by the dof that moves most.
             moved = np.abs(np.asarray(mode).reshape(self.size, -1)[: self.nf, 0])
             equation = int(np.argmax(moved)) if moved.any() else equation
         if not 0 <= equation < self.nf:
@@ -304,7 +305,7 @@ class SaddlePointSystem:
     def _entries(
         self, c: Coupling, load: Triplets, link: LinearizedConstraints
     ) -> tuple[Triplets, Triplets]:
-        """Upper triangle of what contact and loads add, and what is not symmetric."""
+        """Upper triangle of the contributions of contact and loads, and the unsymmetric part."""
         n, own = self.system.n_dofs, np.arange(self.n) + self.nf
         upper, rest = [link.symmetric_half(c.geometric_stiffness)], []
         if len(load.values):
@@ -321,7 +322,7 @@ class SaddlePointSystem:
         return Triplets(x.rows, x.columns + self.nf, x.values)
 
     def _spare(self, c: Coupling, link: LinearizedConstraints) -> Ints:
-        """Keys of couplings that may soon be wanted, some of them more than once."""
+        """Keys of couplings that may be needed soon, possibly repeated."""
         dofs, own = link.neighbors(c.near[0]), c.near[1]
         if not len(dofs):
             return np.zeros(0, np.int64)
@@ -358,15 +359,15 @@ class SaddlePointSystem:
                 self._resolve = lambda more: self._resolved(data, rest, more)
                 return x, -1
         except SingularError as error:
-            # The test for motions without stiffness goes by energy, which multipliers make
-            # vanish for what is no such motion.
+            # The test for motions without stiffness uses the energy, which multipliers make
+            # vanish also for other motions.
             if not len(rest.values) and self._is_null(data, error.mode):
                 raise
         with linear.timed("factor"):
             return self._by_lu(data, rest, b), -1
 
     def _is_null(self, data: Floats, mode: Any) -> bool:
-        """Whether the matrix takes a vector to nothing but rounding."""
+        """Whether the matrix maps a vector to rounding errors only."""
         if mode is None:
             return True
         v = np.asarray(mode, float).reshape(self.size, -1)[:, 0]
@@ -400,7 +401,7 @@ class SaddlePointSystem:
             return v + solve(product)
 
         r = solve(b)
-        # Multipliers and displacements have sizes of their own.
+        # Multipliers and displacements have different magnitudes.
         scale = np.ones(self.size)
         for part in (slice(0, self.nf), slice(self.nf, self.size)):
             top = float(np.abs(r[part]).max(initial=0.0))

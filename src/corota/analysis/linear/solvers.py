@@ -2,7 +2,7 @@
 """Linear solvers behind one interface of three methods, and the list of them.
 
 Any object with ``analyze``, ``factorize`` and ``solve`` as in `LinearSolver` can
-be handed to the drivers; those of `SOLVERS` can also be asked for by name.
+be passed to the procedures; those of `SOLVERS` can also be requested by name.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class LinearSolver(Protocol):
-    """What the drivers ask of a direct solver.
+    """Interface of a direct solver.
 
-    Matrices come in compressed columns with rising rows. A symmetric matrix is
+    Matrices come in compressed columns with increasing rows. A symmetric matrix is
     given by its upper triangle (row <= column), an unsymmetric one in full; a
     solver is made for one of the two kinds.
     """
@@ -50,7 +50,7 @@ class LinearSolver(Protocol):
         indices : ndarray of int, shape (nnz,)
             Row of each entry.
         node_of_dof : ndarray of int, shape (n,)
-            Node of each equation; equations of one node stand together.
+            Node of each equation; equations of one node are contiguous.
         after : ndarray of int, optional
             Equations of multipliers, to be eliminated after what they connect.
         """
@@ -132,7 +132,7 @@ class Multifrontal:
 
 
 class SuperLU:
-    """SciPy's SuperLU: slow, always there, the reference of the tests.
+    """SciPy's SuperLU: slow, always available, the reference of the tests.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ class SuperLU:
         node_of_dof: NDArray[Any],
         after: NDArray[Any] | None = None,
     ) -> None:
-        """Keep the pattern; SuperLU orders anew with each factorisation."""
+        """Keep the pattern; SuperLU computes an ordering with each factorization."""
         self._indptr = np.asarray(indptr, dtype=np.int32)
         self._indices = np.asarray(indices, dtype=np.int32)
 

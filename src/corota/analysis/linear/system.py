@@ -1,4 +1,4 @@
-"""Linear systems of one analysis: who was factorized last, and for which pattern."""
+"""Linear systems of one analysis, with the last factorization and its pattern."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class LinearSystem:
-    """A direct solver that orders a pattern when it first meets it, and an LU beside it.
+    """A direct solver that orders a new pattern at its first use, and an LU solver beside it.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class LinearSystem:
     Attributes
     ----------
     last : LinearSolver or MaskedLu
-        What the last factorization is in.
+        Solver with the last factorization.
     """
 
     def __init__(self, solver: LinearSolver) -> None:

@@ -70,7 +70,7 @@ def nonempty_columns(matrix: Any) -> Ints:
 
 
 def arrays_of(matrix: Any) -> list[Any]:
-    """The arrays that a scipy sparse matrix consists of: places, then numbers."""
+    """The arrays of a scipy sparse matrix: positions, then values."""
     coo = matrix.format == "coo"
     names = ("row", "col", "data") if coo else ("indptr", "indices", "data")
     return [getattr(matrix, name) for name in names]

@@ -1,4 +1,4 @@
-"""Unsymmetric tangents: one pattern as long as loads stay, so that their LU is prepared once."""
+"""Unsymmetric tangents: one pattern while loads stay, so that their LU is prepared once."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -60,7 +60,7 @@ class FullMatrix:
         if not len(self._entries) or not np.array_equal(
             np.take(self._entries, found, mode="clip"), wanted
         ):
-            # What was met once stays: an entry may vanish in one state and come back.
+            # Entries are never removed: one may vanish in one state and return.
             self._more = np.union1d(self._more, wanted)
             self._lay_out()
             found = np.searchsorted(self._entries, wanted)
@@ -73,7 +73,7 @@ class FullMatrix:
 
 
 class MaskedLu:
-    """LU of unsymmetric matrices with held dofs; ordered once for a pattern."""
+    """LU of unsymmetric matrices with prescribed dofs; ordered once per pattern."""
 
     def __init__(self) -> None:
         self._solver = Multifrontal(symmetric=False)
@@ -81,7 +81,7 @@ class MaskedLu:
         self._held = np.zeros(0, bool)
 
     def factorize(self, matrix: Any, constrained: NDArray[np.bool_], node: Ints) -> None:
-        """Factorise a scipy CSC matrix with the rows and columns of held dofs made diagonal.
+        """Factorize a scipy CSC matrix with diagonal rows and columns of prescribed dofs.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class MaskedLu:
         size = np.abs(matrix.data[own])
         data[own] = np.where(size > 0.0, size, 1.0)
         if not self._same(matrix) or not np.array_equal(constrained, self._held):
-            # What is held anew, or no more, is looked at for free motions with the pattern.
+            # Newly prescribed or released dofs are checked for free motions with the pattern.
             self._solver.analyze(matrix.indptr, matrix.indices, node)
             self._indptr, self._indices = matrix.indptr, matrix.indices
             self._held = constrained.copy()

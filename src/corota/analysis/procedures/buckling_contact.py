@@ -30,7 +30,7 @@ DIFFERENCE = 1e-5
 CORNER = 0.1
 #: Imaginary part of a factor, relative to its size, that is rounding.
 REAL = 1e-6
-#: Unknowns up to which the dense eigenvalue solver is quicker.
+#: Unknowns up to which the dense eigenvalue solver is faster.
 DENSE = 300
 #: Factors that are looked for beside the wanted ones, as many of them may be negative.
 BESIDE = 6

@@ -152,7 +152,7 @@ class DynamicStepper(NewtonStepper):
         }
 
     def target(self) -> float:
-        """Step time that the next attempt aims at [time]."""
+        """Target step time of the next attempt [time]."""
         target = super().target()
         if self.step.fixed_increments:
             return target

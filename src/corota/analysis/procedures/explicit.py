@@ -34,7 +34,7 @@ POWER = 60
 BLOW_UP = 10.0
 #: Moves within an increment, relative to the model's size, that are as good as none.
 ROUND_OFF = 1e-12
-#: Unbalanced force at dofs without mass, relative to the largest force, that is none.
+#: Unbalanced force at dofs without mass, relative to the largest force, that counts as zero.
 BALANCED = 1e-9
 #: Most frames that are kept of a step unless outputs ask for times.
 FRAMES = 200
@@ -246,11 +246,11 @@ class ExplicitStepper:
 
     @property
     def where(self) -> str:
-        """How far the step has come, in words."""
+        """Progress of the step in words."""
         return f"step time {self.done * self.dt:g} of {self.step.period:g}"
 
     def advance(self) -> Accepted:
-        """Take increments up to the next one that is shown."""
+        """Take increments up to the next one for output."""
         while True:
             shown = self._one()
             if shown is not None:

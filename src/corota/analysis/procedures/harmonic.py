@@ -106,7 +106,7 @@ class HarmonicStepper:
 
     @property
     def where(self) -> str:
-        """How far the step has come, in words."""
+        """Progress of the step in words."""
         return f"frequency {self.frequencies[self.taken - 1]:g}"
 
     def memory(self) -> dict[str, Any]:

@@ -97,7 +97,7 @@ class ModalStepper:
 
     @property
     def where(self) -> str:
-        """How far the step has come, in words."""
+        """Progress of the step in words."""
         return f"step time {self.taken * self.dt:g} of {self.step.period:g}"
 
     def memory(self) -> dict[str, Any]:

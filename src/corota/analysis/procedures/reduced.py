@@ -93,7 +93,7 @@ class Reduced:
     forces : ndarray, shape (n_dofs, nf)
         Patterns of the loads.
     moves : ndarray, shape (n_dofs, ns)
-        Patterns of the displacements of held dofs, 0 elsewhere.
+        Patterns of the displacements of prescribed dofs, 0 elsewhere.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class Reduced:
         return found
 
     def _with_residuals(self, basis: Floats, forces: Floats) -> Floats:
-        """The basis with the static responses to forces that it lacks."""
+        """The basis with the static responses to forces that it does not contain."""
         x = self._factor.solve(np.asfortranarray(forces))
         size = np.sqrt(np.einsum("ij,ij->j", x, self._mass @ x))
         x = x[:, size > 0.0] / size[size > 0.0]
@@ -181,7 +181,7 @@ class Reduced:
         return np.hstack([basis, x @ turn])
 
     def _modal(self, given: Any, own: int, complex_ones: bool, number: int) -> Floats:
-        """Damping by shares of the critical one of each mode; residual modes have the last's."""
+        """Damping by critical fractions of each mode; residual modes have that of the last."""
         m = self.shapes.shape[1]
         ratio = damping_ratios(given, own)
         if complex_ones and ratio.any():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Module and function of each procedure; a module is imported when a step asks for it.
+#: Module and function of each procedure; a module is imported when a step needs it.
 PROCEDURES = {
     "static": ("static", "static_step"),
     "buckle": ("buckling", "buckle_step"),

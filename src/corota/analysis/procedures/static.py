@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
 relax = lazy("corota.analysis.terms.contact.relaxation:relax")
 
-#: Failed attempts under growing negative pivots after which a limit point is looked for.
+#: Failed attempts with increasing negative pivots before a limit point is searched.
 STALLED = 3
-#: Increments that are tried by relaxation where none that is shorter is found, of the period.
+#: Increments tried by relaxation where no shorter one is found, relative to the period.
 RELAXED = (1e-3, 1e-2)
-#: And first increments, in which bodies that only contact will hold come to be held.
+#: The same for first increments, in which bodies held only by contact come into contact.
 FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.3)
 #: Attempt from which an increment is tried by relaxation before it is cut further.
 RESTS = 4
@@ -46,14 +46,14 @@ def static_step(
     save: Callable[[State, int, float, dict[str, float]], None],
     stops: list[float],
 ) -> None:
-    """Run a static step from the committed state; `save` is told every accepted increment.
+    """Run a static step from the committed state; `save` is called with every accepted increment.
 
     Raises
     ------
     ConvergenceError
         With the reason, when no smaller increment helps.
     SingularError
-        If the structure is not held.
+        If the structure is not constrained.
     """
     if not state.resumes:
         state.step_time = 0.0
@@ -103,7 +103,7 @@ class StaticStepper(NewtonStepper):
     # -- attempts ----------------------------------------------------------------------
 
     def solve(self, target: float) -> Attempt:
-        """Newton's method, and what a state in equilibrium is refused for."""
+        """Newton's method, and reasons to refuse an equilibrium state."""
         system, state, step = self.system, self.state, self.step
         prescribed = system.conditions.prescribed(target, state.u)
         contact = None
@@ -147,7 +147,7 @@ class StaticStepper(NewtonStepper):
                 return relaxed
             outcome.reason += relaxed
         softer = outcome.negative > max(self.state.negative, 0)
-        # A snap under moving supports is for relaxation, once no increment is short enough.
+        # A snap under moving supports is solved by relaxation, once no increment is short enough.
         softer = softer and not (self.step.at_limit == "stop" and self.may_relax())
         fixed = self.step.fixed_increments and self.step.at_limit == "stop"
         if not fixed and (end or (softer and control.attempt > STALLED)):
@@ -167,7 +167,7 @@ class StaticStepper(NewtonStepper):
         )
 
     def accept(self, attempt: Attempt) -> Accepted:
-        """Commit an increment, and look at its size for the next."""
+        """Commit an increment and set the size of the next."""
         system, state, control, outcome = self.system, self.state, self.control, attempt.outcome
         assert attempt.contact is not None
         assert outcome.at is not None
@@ -210,7 +210,7 @@ class StaticStepper(NewtonStepper):
     # -- where load control ends -------------------------------------------------------
 
     def may_relax(self) -> bool:
-        """Whether contact is driven by supports alone, so that relaxation may find what follows."""
+        """Whether supports alone drive contact: relaxation may find the next equilibrium."""
         if not self.system.joined:
             return False
         return not np.any(self.system.load_rate(self.state.u)[0])
@@ -218,8 +218,8 @@ class StaticStepper(NewtonStepper):
     def relaxed(self, early: bool) -> Attempt | str:
         """The increment by relaxation, where contact is driven by supports; or why it fails.
 
-        Where loads drive, an equilibrium that ends is a limit point, which is for the user to
-        judge. While increments may still be cut (`early`), what is far away is not taken.
+        With loads, the end of an equilibrium is a limit point, which the user has to
+        assess. While increments may still be cut (`early`), a distant state is refused.
         """
         system, state, control = self.system, self.state, self.control
         if not self.may_relax():
@@ -237,7 +237,7 @@ class StaticStepper(NewtonStepper):
             except SingularError:
                 continue
             if outcome.converged and first and not contact.presses:
-                # Bodies that nothing holds float where they were: that is no first equilibrium.
+                # Unconstrained bodies did not move: this is not a first equilibrium.
                 system.contact_term.restore()
                 outcome.reason = "no contact has closed"
                 continue
@@ -266,7 +266,7 @@ class StaticStepper(NewtonStepper):
         )
 
     def go_along_path(self) -> bool:
-        """Go on by arc length from where load control stalls; False where that is no help.
+        """Continue by arc length from where load control stalls; False where that does not help.
 
         Raises
         ------
@@ -294,7 +294,7 @@ class StaticStepper(NewtonStepper):
         kept = [control.time / step.period]
         resumed = state.resumption
         if resumed is not None:
-            kept = [resumed.checkpoint.factor] * 2  # the note is among those of the state
+            kept = [resumed.checkpoint.factor] * 2  # the note is in those of the state
 
         def keep(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
             if len(kept) == 1:

@@ -1,4 +1,4 @@
-"""Why a static step stopped, in words, and advice that fits what was done."""
+"""Why a static step stopped, with advice that fits the step."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from corota.analysis.state import State
     from corota.model.steps import Static, Step
 
-#: Displacement per load that has grown by this factor since the first increment is collapse.
+#: Growth of the displacement per load since the first increment that indicates collapse.
 SOFT = 10.0
-#: Words by which a tangent without stiffness is told.
+#: Words that identify a tangent without stiffness.
 FREE = "can move freely"
 
 
@@ -54,7 +54,7 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
 def collapse(
     system: System, number: int, factor: float, rates: tuple[float, float], why: str
 ) -> str:
-    """What to say of plastic collapse under loads, or nothing where it is none.
+    """Message on plastic collapse under loads; empty if there is none.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def collapse(
         Why the last attempt failed: where all yields at once, by a mechanism.
     """
     if system.contact_term.damped.any():
-        return ""  # a body flies away as its damping ends: that is no collapse
+        return ""  # a body moves away at the end of its damping: not a collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):
         return ""
@@ -88,7 +88,7 @@ def explained(
     end: str,
     rates: tuple[float, float],
 ) -> str:
-    """Say what happened, where, why, and what helps.
+    """Message with cause, place and advice.
 
     Parameters
     ----------

@@ -102,12 +102,12 @@ class Conditions(Term):
         #: Temperatures of nodes, absolute.
         self.temperature = LoadHistory(len(system.free.start))
         self.temperature.begin[:] = self.temperature.end[:] = system.free.start
-        #: What is to be said of the step.
+        #: Notes on the step.
         self.notes: list[str] = []
         self.names = ["", *system.model.amplitudes]
-        #: Amplitudes that count total time go on in later steps.
+        #: Amplitudes of total time continue in later steps.
         self._runs_on = np.array([False, *(a.total_time for a in system.model.amplitudes.values())])
-        #: Amplitudes that move supports on from where the step finds them.
+        #: Amplitudes that move supports from their position at the start of the step.
         self._moves_on = np.array(
             [False] + [isinstance(a, IntegratedAmplitude) for a in system.model.amplitudes.values()]
         )
@@ -115,8 +115,8 @@ class Conditions(Term):
         self.end_time = 1.0  # step time at which the step ended: a path may end anywhere
         self.time = 0.0
         self.ramp = True
-        self.abrupt = False  # whether loads that are taken away go at once
-        self._loaded = False  # whether the model's own loads act yet
+        self.abrupt = False  # whether removed loads vanish at once
+        self._loaded = False  # whether the model's own loads already act
         #: Amplitudes of the harmonic steps so far, apart from the loads of the state.
         self.harmonic: Conditions | None = None
         self._starting = False
@@ -151,7 +151,7 @@ class Conditions(Term):
             self._refuse_conflicts(supports)
             self._set_supports(supports)
         if step.procedure in PERTURBATION or harmonic:
-            # What perturbs a state is none of the loads that later steps start from.
+            # Perturbation loads are not among the loads that later steps start from.
             self.end_time = 0.0
             if harmonic:
                 self._begin_harmonic(step, model.supports if first else [])
@@ -196,7 +196,7 @@ class Conditions(Term):
         waves._known = {}
 
     def _change_loads(self, step: Step) -> None:
-        """Take away what the step does not keep, and set what it names."""
+        """Remove the loads that the step does not keep, and set those that it defines."""
         if step.renews("force"):
             self.force.begin, self.timed = self._reached.copy(), {}
             self.force.remove()
@@ -211,7 +211,7 @@ class Conditions(Term):
         self._set_loads([*again, *step.loads])
 
     def _carry(self) -> None:
-        """Let the loads go on from what the step reached, or along their amplitudes."""
+        """Continue the loads from the values that the step reached, or along their amplitudes."""
         end = self.end_time
         self.distributed.carry(lambda load: self._scale(load, end), self._runs_on)
         self.temperature.carry(self.temperatures(end), self._runs_on)
@@ -230,7 +230,7 @@ class Conditions(Term):
         self._known = {}
 
     def prescribed(self, step_time: float, u: Floats) -> Floats:
-        """Values at held dofs, and `u` elsewhere; shape (n_dofs,)."""
+        """Values at prescribed dofs, and `u` elsewhere; shape (n_dofs,)."""
         values = self._values(self.support, step_time)
         course = self.support
         on = self._moves_on[course.amplitude]
@@ -241,7 +241,7 @@ class Conditions(Term):
         return out
 
     def support_rates(self, step_time: float, window: float) -> tuple[Floats, Floats]:
-        """Velocity and acceleration of held dofs at a time, 0 elsewhere; shapes (n_dofs,).
+        """Velocity and acceleration of prescribed dofs at a time, 0 elsewhere; shapes (n_dofs,).
 
         Amplitudes are seen over a window (half its width), which is the increment: what
         changes faster than that is a pulse of the right impulse.
@@ -275,12 +275,12 @@ class Conditions(Term):
         return out
 
     def set_mass(self, kind: str) -> None:
-        """Let gravity and spin act on the mass that moves: free fall is free of stress."""
+        """Apply gravity and spin to the inertial mass: free fall is free of stress."""
         self._known = {}
         self.distributed.set_mass(kind)
 
     def reset_mass(self) -> None:
-        """Let them act on the mass of the motion that this step belongs to."""
+        """Apply them to the mass of the dynamic step that this step belongs to."""
         mass = self.system.mass
         set_moving_mass(self.system, mass.kind, massless_nodes(self.system, mass.redistribute))
         self.set_mass(mass.kind)
@@ -358,7 +358,7 @@ class Conditions(Term):
         return force
 
     def rate(self, u: Floats) -> tuple[Floats, Floats]:
-        """Change of external forces and of held dofs per unit of load factor, at `u`.
+        """Change of external forces and of prescribed dofs per unit of load factor, at `u`.
 
         Loads and supports are linear in the load factor (the share of the period), so the
         difference over one unit is exact once :meth:`check_proportional` has passed. Thermal
@@ -415,7 +415,7 @@ class Conditions(Term):
 
     @contextmanager
     def as_reached(self) -> Iterator[None]:
-        """Let forces be those that earlier steps reached: none of this step acts yet."""
+        """Reset forces to those that earlier steps reached: no load of this step acts yet."""
         self._starting, self._known = True, {}
         try:
             yield
@@ -428,7 +428,7 @@ class Conditions(Term):
         return step_time / self.period if self.ramp else 1.0
 
     def _removal(self, step_time: float) -> float:
-        """Share of a load that is taken away which is gone by now."""
+        """Removed fraction of a load that the step removes."""
         return 1.0 if self.abrupt else step_time / self.period
 
     def _factors(self, step_time: float) -> Floats:
@@ -483,7 +483,7 @@ class Conditions(Term):
         for item in supports:
             nodes = self._nodes(item.nodes)
             dofs = self.system.dofs(nodes, item.dof)
-            # A rotation may be named for nodes without one, as dofs 1-6 of decks do.
+            # A rotation may be given for nodes without one, as with dofs 1-6 in decks.
             if item.dof == 2 and item.value != 0.0 and (dofs < 0).any():
                 label = self.system.model.mesh.node_labels[nodes[dofs < 0][0]]
                 raise ModelError(
@@ -526,7 +526,7 @@ class Conditions(Term):
                 other, own = value[dofs[at]], item.value
                 what = f"two values, {other:g} and {own:g}" if other != own else "two amplitudes"
                 dof = f"{name} (dof {(1, 2, 6)[item.dof]})"
-                if item.where is not None:  # a deck: as CalculiX does, but not without a word
+                if item.where is not None:  # a deck: as CalculiX does, but with a note
                     self.notes.append(
                         f"{item.where}: node {label} is given {what}, in {dof}; the later one is "
                         "used"
@@ -581,7 +581,7 @@ class Conditions(Term):
         return dofs
 
     def _replace_forces(self, forces: list[NodalForce]) -> None:
-        """Take away what the step names again: at once if only amplitudes follow it."""
+        """Remove forces that the step redefines: at once if only amplitudes follow."""
         named = np.zeros(self.system.n_dofs, bool)
         ramped = np.zeros(self.system.n_dofs, bool)
         for item in forces:

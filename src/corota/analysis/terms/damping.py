@@ -27,7 +27,7 @@ class Damping(Term):
     Parameters
     ----------
     inertia : Inertia
-        Its mass damps, and its dashpots.
+        Provides mass and dashpots.
     per_mass : float
         Of the whole model [1/time].
     elements : ViscousElements

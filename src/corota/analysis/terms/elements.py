@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 class Elements(Term):
     """All elements of a model.
 
-    They are the first term: what the others add to, they fill.
+    They are the first term: they initialize the arrays to which the others add.
 
     Parameters
     ----------
     system : NumberedModel
     conditions : Conditions
-        Knows the temperatures.
+        Provides the temperatures.
     """
 
     name = "elements"
@@ -48,7 +48,7 @@ class Elements(Term):
         Raises
         ------
         ElementFailure
-            If an element turned inside out or its material did not converge.
+            If an element is inverted or its material did not converge.
         """
         system = self.system
         self.heat(point.time)
@@ -97,7 +97,7 @@ class Elements(Term):
     def _run(
         self, here: Floats, assemble: Callable[[], None], between: Floats | None = None
     ) -> None:
-        """Assemble with the answers of materials in Python; failures name their elements.
+        """Assemble with the results of materials in Python; failures name their elements.
 
         Forces `between` two states have the tangent that is given.
         """

@@ -36,9 +36,9 @@ class MotionState:
     internal, external, inertia, damping : ndarray, shape (n_dofs,)
         Forces at `u`, each with the sign of the residual's first term but `external`.
     link : LinearizedConstraints
-        What the constraints make of these forces.
+        The linearized constraints for these forces.
     carried : ndarray, shape (n_dofs,), or None
-        Acceleration that Newmark's relations go on with; None where that is `a`.
+        Acceleration that Newmark's relations continue with; None where that is `a`.
     """
 
     u: Floats
@@ -64,7 +64,7 @@ class MotionState:
         return self.link.gather(force)
 
     def reaction(self) -> Floats:
-        """What supports and nothing else must carry, at held dofs."""
+        """Force that supports carry, at prescribed dofs."""
         return self.gathered(self.internal + self.damping + self.inertia - self.external)
 
 
@@ -83,7 +83,7 @@ class Inertia(Term):
     massless : ndarray of bool, shape (n_dofs,)
         Displacements without mass.
     remark : str
-        What the redistribution of mass does to a body, or nothing.
+        Message on the redistribution of mass, or empty.
     """
 
     name = "inertia"
@@ -108,7 +108,7 @@ class Inertia(Term):
         self._largest = float(moves.max(initial=0.0))
 
     def weigh(self, at: Evaluation, du: Floats, weight: float) -> None:
-        """Tell an evaluation the sizes of inertia: `weight` times the mass of a change `du`."""
+        """Set the sizes of inertia of an evaluation: `weight` times the mass of a change `du`."""
         at.heft = weight * self._largest
         terms = weight * self._own * np.abs(du)
         turn = self.system.is_rotation
@@ -119,7 +119,7 @@ class Inertia(Term):
     def settle(self, begin: MotionState, end: MotionState, dt: float) -> None:
         """Give displacements without mass the mean velocity of the increment, in place.
 
-        They follow quasi-statically; what the scheme carries on for them is noise.
+        They follow quasi-statically; the velocities of the scheme for them are noise.
         """
         if self.massless.any():
             end.v[self.massless] = (end.u - begin.u)[self.massless] / dt

@@ -2,7 +2,7 @@
 
 The unknowns z are the independent dofs and the multipliers of ties and closed contact. Surfaces
 that are closed stay closed and stick, if they have friction; open ones stay open. All linear
-procedures (frequencies, modal and harmonic response) see only these matrices.
+procedures (frequencies, modal and harmonic response) use only these matrices.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -49,14 +49,15 @@ class Linearized:
     states : list of ndarray, optional
         Of their constraints; the committed ones by default, with what slips stuck.
     load : ndarray, shape (n_dofs,), optional
-        Forces that act beside those of the steps, under which constraints bend.
+        Additional forces, for the geometric stiffness of constraints.
 
     Attributes
     ----------
     stiffness : scipy CSC array, shape (n, n)
-        Tangent with that of loads, constraints and contact, of all unknowns, held ones included.
+        Tangent with that of loads, constraints and contact, of all unknowns, including prescribed
+        ones.
     active : ndarray of int
-        Unknowns that no support holds.
+        Unknowns without supports.
     symmetric : bool
         Whether the stiffness of the active unknowns is.
     """
@@ -137,7 +138,7 @@ class Linearized:
         triplets : tuple of ndarray, optional
             Rows, columns and values of further entries.
         residual : ndarray, shape (n_dofs,), optional
-            Forces under which constraints bend: for a tangent.
+            Forces for the geometric stiffness of constraints: for a tangent.
         """
         system = self.system
         n = system.n_dofs
@@ -162,7 +163,7 @@ class Linearized:
         return matrix[self.active][:, self.active].tocsc()
 
     def coupled(self, matrix: Any, moves: Floats) -> Floats:
-        """Rows of the active unknowns times moves of the held ones, shape (n_active, k)."""
+        """Rows of the active unknowns times the prescribed displacements, shape (n_active, k)."""
         out: Floats = (matrix @ moves)[self.active]
         return out
 
@@ -188,12 +189,12 @@ class Linearized:
         return out
 
     def tractions(self, force: Floats) -> Floats:
-        """Forces of closed surfaces and ties where they leave least of a force at free dofs.
+        """Forces of closed surfaces and ties that best balance a force at free dofs.
 
         Parameters
         ----------
         force : ndarray, shape (nf,)
-            What stiffness, inertia and loads of a response leave at the independent dofs.
+            Sum of stiffness, inertia and loads of a response at the independent dofs.
 
         Returns
         -------
@@ -271,7 +272,7 @@ class LinearMotion(Linearized):
         u: Floats,
         kind: str = "consistent",
     ) -> None:
-        # Body loads have the stiffness of the mass that moves, see `loads.body`.
+        # Body loads have the stiffness of the inertial mass, see `loads.body`.
         system.conditions.set_mass(kind)
         super().__init__(system, u)
         self.kind = kind
@@ -302,7 +303,7 @@ class LinearMotion(Linearized):
         return self._damping[rayleigh]
 
     def coriolis(self) -> Any:
-        """Coriolis matrix, skew, of a model that turns as its centrifugal load says.
+        """Coriolis matrix, skew, of a model that rotates with the speed of its centrifugal load.
 
         Exact for displacements; drilling rotations and beams take the mean of the masses along
         both axes, which converges with the mesh.
@@ -330,7 +331,7 @@ def spin(system: System) -> float:
     Raises
     ------
     UnsupportedError
-        If bodies turn at several speeds.
+        If bodies rotate at several speeds.
     """
     with system.conditions.as_reached():
         rates = {

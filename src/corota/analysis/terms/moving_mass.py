@@ -1,7 +1,8 @@
-"""The mass that gravity and spin act on in a step that does not move itself.
+"""The mass for gravity and spin in a static step.
 
-A state of rest is one for the motion that follows only if its weight is that of the mass that
-will move: lumped masses, and those that contact redistributes, weigh down other nodes than the
+A static state is an equilibrium of the dynamic step that follows only if its weight is that of the
+mass
+in motion: lumped and redistributed masses load other nodes than the
 consistent mass does, with the same sum.
 """
 
@@ -30,7 +31,7 @@ class MovingMass:
     ----------
     kind : {"consistent", "constant", "lumped"}
     redistribute : bool
-        Whether slave nodes of contact leave their mass to other nodes.
+        Whether slave nodes of contact pass their mass to other nodes.
     """
 
     kind: str = "consistent"

@@ -1,4 +1,4 @@
-"""The mass that nodes of contact leave to other nodes of their elements.
+"""Redistribution of the mass of contact nodes to other nodes of their elements.
 
 Where an element has no inner nodes at two distances, its mass moves off the skin. The densities
 of the elements of a body are then changed a little, so that its mass, its center and its moment of
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 #: Least factor on a density.
 LEAST = 0.1
-#: Relative rest of conditions that hold.
+#: Relative residual of satisfied conditions.
 HOLDS = 1e-9
 #: Share of a body's size by which its center may move without a remark.
 SMALL = 0.01
 
 
 def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) -> str:
-    """Tell the core which nodes carry no mass and what becomes of the others.
+    """Set the massless nodes in the core, and the densities of the others.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) 
     Returns
     -------
     str
-        A remark, empty if all is kept.
+        A remark; empty if mass, center and moment of inertia are kept.
     """
     core, none = system.core, np.zeros(0)
     core.set_massless(np.zeros(0, bool))

@@ -1,4 +1,4 @@
-"""What a term of the equation of motion is: whatever adds a force to its residual."""
+"""Interface of a term of the equation of motion: anything that adds a force to its residual."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class StatePoint:
-    """Where a term is evaluated, and how a time scheme weighs its derivatives.
+    """State at which a term is evaluated, and weights of its derivatives in a time scheme.
 
     Parameters
     ----------
@@ -52,15 +52,15 @@ class StatePoint:
 class Term(Protocol):
     """A term of the equation.
 
-    What it knows of the committed state is in its attributes: a checkpoint holds them all.
+    Its committed state is in its attributes: a checkpoint holds them all.
     """
 
-    #: What it is called in messages.
+    #: Name in messages.
     name: str
 
     @property
     def joins(self) -> bool:
-        """Whether it holds bodies that may be free otherwise, and turns with them."""
+        """Whether it constrains bodies without supports, and rotates with them."""
         return False
 
     @property
@@ -75,7 +75,7 @@ class Term(Protocol):
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Add the force to `at`, its size to the scale, and its derivative to the tangent.
 
-        The tangent is not asked for where `at.values` is empty.
+        The tangent is not needed where `at.values` is empty.
         """
         ...
 
@@ -88,11 +88,11 @@ class Term(Protocol):
         return
 
     def energies(self) -> dict[str, float]:
-        """What it stores (``ALLSE``) or has dissipated so far in the committed state, by name."""
+        """Energy stored (``ALLSE``) or dissipated so far in the committed state, by name."""
         return {}
 
 
-#: Terms of one's own: each entry gives the term of a model, or ``None`` where it has none. They
+#: User-defined terms: each entry gives the term of a model, or ``None`` where it has none. They
 #: act on displacements, in every implicit scheme and in all linear procedures.
 TERMS: dict[str, Callable[[NumberedModel], Term | None]] = {}
 

@@ -57,7 +57,7 @@ class _Block:
 
 
 class FreeStrains:
-    """The free strains of a model, and the temperatures that they follow.
+    """The free strains of a model and their temperatures.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class FreeStrains:
     now : ndarray, shape (n_nodes,)
         Temperature in the core.
     offset : ndarray or None
-        Added to every temperature while a driver looks at neighbouring states.
+        Added to every temperature while a procedure evaluates neighboring states.
     expands : bool
         Whether any material expands.
     """
@@ -151,7 +151,7 @@ class FreeStrains:
         return found
 
     def require_expansion(self, where: Any) -> None:
-        """Refuse temperatures that nothing responds to.
+        """Refuse temperatures without effect.
 
         Raises
         ------
@@ -169,7 +169,7 @@ class FreeStrains:
         return not self.expands or np.array_equal(self._wanted(temperature), self.now)
 
     def apply(self, temperature: Floats) -> None:
-        """Give the core the strains at temperatures of the nodes, shape (n_nodes,)."""
+        """Set the strains of the core from nodal temperatures, shape (n_nodes,)."""
         if self.follows(temperature):
             return
         self.now = self._wanted(temperature)
@@ -207,7 +207,7 @@ class FreeStrains:
         index : int
             Block.
         force : ndarray, shape (n, p, 4)
-            What the elements hold against the strains, in their rows [stress].
+            Stress of the elements that is conjugate to the strains, in their rows [stress].
         volume : ndarray, shape (n, p)
         """
         block = next(b for b in self._blocks if b.index == index)
@@ -219,7 +219,7 @@ class FreeStrains:
 
 
 def _rows(block: _Block, free: Floats) -> Floats:
-    """What the core takes from free strains in rows xx, yy, zz, xy, shape (n, p, 4)."""
+    """Values for the core from free strains in rows xx, yy, zz, xy, shape (n, p, 4)."""
     rows = np.zeros(free.shape)
     if block.line:
         rows[..., 0] = free[..., 0]
@@ -231,7 +231,7 @@ def _rows(block: _Block, free: Floats) -> Floats:
     rows[..., 3] = -free[..., ZZ] / s[ZZ, ZZ]
     rows[..., :3] += s[IN, ZZ] * rows[..., 3:]
     if block.spherical:
-        # The same stress as a pressure on all sides, which leaves the deviator alone.
+        # The same stress as a pressure on all sides, which does not change the deviator.
         share = -s[ZZ, IN] / s[ZZ, ZZ]
         reduced = s[np.ix_(IN, IN)] - np.outer(s[IN, ZZ], s[ZZ, IN]) / s[ZZ, ZZ]
         rows[..., 3] /= 1.0 - share[0] - share[1]

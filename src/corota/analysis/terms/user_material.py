@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 #: Change of the strain, relative to the largest, below which the linear part is exact.
 SETTLED = 1e-9
-#: Strains that a rigid motion leaves by rounding.
+#: Rounding errors of strain under a rigid motion.
 ROUNDING = 1e-13
 #: Calls for one evaluation of elements with internal modes.
 MAX_CALLS = 30
 
 
-#: What failed where the function of a material returns what is not finite.
+#: Message where the function of a material returns NaN or infinity.
 NO_NUMBER = "the material function returned a stress or tangent that is not a number"
 
 
@@ -44,7 +44,7 @@ class _Block:
     point: Floats | None = None
     point_trial: Floats | None = None
     work: Floats | float = 0.0
-    given: Floats = field(init=False)  # what the core has, and the same with own tangents
+    given: Floats = field(init=False)  # values of the core, and the same with their own tangents
     own: Floats = field(init=False)
     stores: bool = False  # whether the function gives the recoverable energy
     # Equivalent plastic strain, where the function gives one.
@@ -66,7 +66,7 @@ class UserBlocks:
 
     def __init__(self, core: Any, blocks: Sequence[Any]) -> None:
         self.core = core
-        # Largest strain so far: a body may come back to its shape.
+        # Largest strain so far: a body may return to its shape.
         self.largest = 0.0
         self.blocks = []
         for index, block in enumerate(blocks):
@@ -90,14 +90,14 @@ class UserBlocks:
     ) -> None:
         """Assemble with the functions' answers at the strains of `u`.
 
-        Elements with internal modes find them with the linear part of the answer; that is
-        repeated until the strains stay. With `between` the elements also ask for the stress of
+        Elements with internal modes solve for them with the linear part of the result; that is
+        repeated until the strains converge. With `between` the elements also need the stress of
         the committed state, which the linear part then gives too.
 
         Raises
         ------
         ElementFailure
-            If the internal modes do not settle.
+            If the internal modes do not converge.
         """
         if not self.blocks:
             assemble()
@@ -134,7 +134,7 @@ class UserBlocks:
         )
         right = np.isfinite(stress).all(axis=(1, 2)) & np.isfinite(tangent).all(axis=(1, 2, 3))
         if not right.all():
-            # As the core names elements that failed: they may not at a shorter increment.
+            # In the format of the core for failed elements: a shorter increment may converge.
             wrong = [(block.index, int(e)) for e in np.flatnonzero(~right)]
             raise RuntimeError(NO_NUMBER, wrong)
         values = np.zeros((*block.shape, 16))
@@ -184,7 +184,7 @@ class UserBlocks:
                 block.point = new
 
     def energies(self, index: int, stored: Floats, volume: Floats) -> tuple[float, float]:
-        """What a block stores beside what its function gave, and its dissipation.
+        """Energy of a block in addition to that of its function, and its dissipation.
 
         A function without energies stores all the work that is done on it.
 

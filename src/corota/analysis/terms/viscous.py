@@ -44,9 +44,9 @@ class _Block:
     matrix : ndarray, shape (n, N * M, N * M)
         Local stiffness times the damping per stiffness.
     chosen, places : ndarray
-        Entries of the matrices that lie in the upper triangle, and where there.
+        Entries of the matrices in the upper triangle, and their positions.
     turns : bool
-        Whether the element has a frame that turns.
+        Whether the element has a rotating frame.
     """
 
     dofs: Ints
@@ -81,7 +81,7 @@ class ViscousElements:
         system = self.system
         n, nodes = block.nodes.shape
         points = system.model.mesh.points[block.nodes]
-        # Elements apart from each other: the assembled matrix holds those of the elements.
+        # Separate elements: the assembled matrix contains the element matrices.
         alone = core_input(block)
         alone["nodes"] = np.arange(n * nodes, dtype=np.uint32)
         core = _core.Problem(
@@ -185,7 +185,7 @@ def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> 
 
 
 def _skew(v: Floats) -> Any:
-    """Vectors turned by a right angle, shape (..., 2)."""
+    """Vectors rotated by a right angle, shape (..., 2)."""
     return np.stack([-v[..., 1], v[..., 0]], axis=-1)
 
 

@@ -200,7 +200,7 @@ class PathStepper:
 
     @property
     def where(self) -> str:
-        """How far the path has come, in words."""
+        """Progress of the path in words."""
         return f"load factor {self.factor:.6g}"
 
     def advance(self) -> Accepted:

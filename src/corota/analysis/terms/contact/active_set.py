@@ -1,8 +1,8 @@
 """Unilateral constraints with Coulomb friction on bodies whose mass is diagonal.
 
 The forces ``z = (p, q)`` of some constraints change their gaps and slips by ``A z``, where
-``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. The set of what is closed and of
-what slips is found by Newton's method; where that goes round in a circle, by sweeps.
+``A = dt^2 G M^-1 G^T`` is symmetric and at least semidefinite. The set of closed and
+slipping constraints is found by Newton's method; where that cycles, by sweeps.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     States = NDArray[np.int8]
     Law = Callable[[Ints, Floats], tuple[Floats, Floats]]
 
-#: Share of its diagonal that makes a semidefinite matrix definite: dependent constraints share.
+#: Fraction of its diagonal that makes a semidefinite matrix definite: redundant constraints share
+#: the force.
 RIDGE = 1e-10
 #: Changes of the set before sweeps, and most sweeps.
 CHANGES, SWEEPS = 30, 5000
@@ -42,7 +43,7 @@ class UnilateralConstraints:
     Parameters
     ----------
     matrix : ndarray, shape (m + t, m + t)
-        What forces p and q change gaps and slips by.
+        Change of gaps and slips by forces p and q.
     gap, slip : ndarray, shapes (m,) and (t,)
         Without these forces.
     of : ndarray of int, shape (t,)
@@ -55,9 +56,9 @@ class UnilateralConstraints:
     soft : ndarray, shape (m,)
         Gap that a law takes, without these forces.
     share : ndarray, shape (m,)
-        What of the change of a gap a law takes.
+        Fraction of the change of a gap that a law sees.
     laws : list of tuple
-        Constraints, and what gives pressures and their derivatives by the gap, for some of them.
+        Constraints with functions for pressures and their derivatives by the gap, for some of them.
     """
 
     matrix: Floats
@@ -100,7 +101,7 @@ class UnilateralConstraints:
         if z is None:
             return None
         state, sense = self._read(z)
-        # Sweeps stop short of the solution that their set has.
+        # Sweeps stop before the exact solution of their set.
         return self._newton(state, sense) or (z, state, sense)
 
     # -- Newton's method on the set ----------------------------------------------------
@@ -220,7 +221,7 @@ class UnilateralConstraints:
         return None
 
     def _read(self, z: Floats) -> tuple[States, Floats]:
-        """States and senses that forces show."""
+        """States and slip directions from forces."""
         p, q = z[: self.m], z[self.m :]
         state = np.where((p > 0.0) | self.tied, CLOSED, OPEN).astype(np.int8)
         bound = self.friction * p[self.of]
@@ -230,7 +231,7 @@ class UnilateralConstraints:
 
 
 def _balance(law: Law, row: int, start: float, rise: float) -> float:
-    """Pressure that a law has at the gap which it makes, ``start + rise p``."""
+    """Pressure of a law at the gap that it causes, ``start + rise p``."""
 
     def pressure(p: float) -> float:
         return float(law(np.array([row]), np.array([start + rise * p]))[0][0])

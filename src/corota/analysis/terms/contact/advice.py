@@ -1,4 +1,4 @@
-"""What can be said of meshes in contact before the run."""
+"""Notes on meshes in contact before the run."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -29,12 +29,12 @@ def fillet_note(pair: Pair) -> str:
     if not isinstance(curve, RigidCurve) or getattr(pair.item, "method", "") != "mortar":
         return ""
     rows = curve.segments
-    # Clockwise arcs have the rigid body inside: the corners that slave edges go round.
+    # Clockwise arcs have the rigid body inside: the corners that slave edges pass around.
     corners = rows[rows[:, 6] < -TURN]
     if not len(corners):
         return ""
     radius = float(np.hypot(*(corners[:, :2] - corners[:, 4:6]).T).min())
-    # The mean by length: short edges at a nose say nothing of the face that slides.
+    # The mean by length: short edges at a nose do not represent the sliding face.
     edge = float((pair.slave.length**2).sum() / pair.slave.length.sum())
     if radius >= EDGES * edge:
         return ""

@@ -1,4 +1,4 @@
-"""Columns of the bordered system from terms of contact."""
+"""Columns of the saddle-point system from terms of contact."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Pivots by unknown before the search is given up, and relative size of a pivot that is none.
+#: Pivots by unknown before the search is given up, and relative size of a pivot that is zero.
 PIVOTS, SMALL = 12, 1e-11
 #: Relative difference of ratios that tie.
 TIE = 1e-10

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Procedures that know contact and ties between surfaces.
+#: Procedures that support contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
-#: Damping of stabilised surfaces per stiffness of their nodes and period.
+#: Damping of stabilized surfaces per stiffness of their nodes and period.
 STABILISE = 1e-3
 
 
@@ -52,7 +52,7 @@ class ContactState:
         Sum of sizes of its parts.
     multipliers : ndarray, shape (n_multipliers,)
     damping : ndarray, shape (n_dofs,), or None
-        Stabilising stiffness of this increment.
+        Stabilizing stiffness of this increment.
     of_end : ndarray, shape (n_dofs,), or None
         Force at the end, where a scheme weighs that of pressure laws between both ends.
     states : list of ndarray
@@ -80,7 +80,7 @@ class ContactState:
 
 
 class ContactTerm(Term):
-    """All contact pairs and ties of a model; where there are none, nothing is done or added.
+    """All contact pairs and ties of a model; empty in models without them.
 
     Parameters
     ----------
@@ -116,12 +116,12 @@ class ContactTerm(Term):
         self.u = np.zeros(system.n_dofs)
         self.at: ContactState | None = None
         self.period, self.number = 1.0, 0
-        #: Time of a static step over which overlaps of the start are pushed out at once.
+        #: Time of a static step over which initial overlaps are removed at once.
         self.first = 0.0
         self.time = 0.0
         self.notes: list[str] = []
         self.damped = self.nodal = np.zeros(0)
-        #: Whether stabilising damping acts; it does not on paths, whose time is none.
+        #: Whether stabilizing damping acts; not on paths, which have no time.
         self.damps, self.persistent = True, False
         #: Weight of the end of an increment in the forces of pressure laws, and their force at its
         #: start.
@@ -176,7 +176,7 @@ class ContactTerm(Term):
         Raises
         ------
         UnsupportedError
-            If its procedure is none that solves with multipliers.
+            If its procedure does not support multipliers.
         """
         if self.pairs and step.procedure not in WITH_CONTACT:
             raise UnsupportedError(
@@ -206,7 +206,7 @@ class ContactTerm(Term):
         self._keep_law_force()
 
     def _start(self, explicit: bool) -> None:
-        """Look at the gaps of the start; report, adjust or note what to ramp."""
+        """Check the initial gaps: report, adjust or ramp them."""
         x = self.positions(self.u)
         for pair in self.pairs:
             item = pair.item
@@ -370,10 +370,10 @@ class ContactTerm(Term):
                 self.law_force = self._forces_of_laws(self.at.terms, self.committed)
 
     def offset_at(self, pair: Pair, step_time: float) -> Floats:
-        """Gaps of a pair that count as none at a time of the step, shape (n,)."""
+        """Offsets of the gaps of a pair at a time of the step, shape (n,)."""
         item = pair.item
         if isinstance(item, ContactPair) and self.number <= 1:
-            # A first increment that is cut pushes out its share.
+            # A first increment that is cut removes its part.
             period = {"ramp": self.period, "keep": self.first}.get(item.start, 0.0)
             if period > 0.0:
                 left = max(1.0 - step_time / period, 0.0)
@@ -395,7 +395,7 @@ class ContactTerm(Term):
         self._stiff = True
 
     def _damp(self) -> None:
-        """Damp the surfaces that this step stabilises."""
+        """Damp the surfaces that this step stabilizes."""
         system, diagonal = self.system, self.nodal
         self.damped = np.zeros(system.n_dofs)
         for pair in self.pairs:
@@ -449,7 +449,7 @@ class ContactTerm(Term):
                 self.pairs, contact_state.terms, self.parts(self.committed), strict=True
             )
         ]
-        # Rounding leaves crumbs on what is open.
+        # Rounding leaves small tractions on open constraints.
         for pair, state, tractions in zip(
             self.pairs, contact_state.states, self.parts(self.committed), strict=True
         ):
@@ -470,11 +470,11 @@ class ContactTerm(Term):
             pair.frozen = False
 
     def work_sums(self, work: float) -> dict[str, float]:
-        """The work of contact in a motion as a frame shows it; nothing without pairs."""
+        """The work of contact for a dynamic frame; empty without pairs."""
         return {"contact work": work} if self.pairs else {}
 
     def energies(self) -> dict[str, float]:
-        """What contact has dissipated so far and what its laws store [force*length]."""
+        """Energy that contact has dissipated and that its laws store [force*length]."""
         terms = [] if self.at is None else self.at.terms
         return {
             "ALLFD": float(sum(pair.friction_work for pair in self.pairs)),

@@ -54,11 +54,11 @@ def discrete_gradient(
         Positions and rotations at the start and at the end.
     master : RigidCurve or other
     rounding : float
-        Length of deformations that are none [length].
+        Length below which deformations are rounding [length].
     """
     old, x = positions
     n = len(full)
-    # What only the end sees acts along the gradient there.
+    # Terms that exist only at the end act along the gradient there.
     known = middle.area > COVERED * full
     parts = [(middle, known[middle.constraint]), (end, ~known[end.constraint])]
 
@@ -83,7 +83,7 @@ def discrete_gradient(
 
 
 def _without_symmetry(curve: Any, variables: Ints, x: Floats, move: Floats) -> Floats:
-    """Displacements by variable less the motions that leave the gap as it is; none of rotations."""
+    """Displacements by variable less the motions that do not change the gap; no rotations."""
     node, part = np.maximum(variables, 0) // 3, variables % 3
     used = variables >= 0
     first, second = used & (part == 0), used & (part == 1)

@@ -1,9 +1,9 @@
-"""A system with contact as Newton's method sees it: displacements and multipliers together.
+"""A system with contact for Newton's method: displacements and multipliers together.
 
 The choice of the active set and Newton's method are one loop: every correction is made with the
-states that gaps, slips and tractions ask for at the moment (a semismooth Newton method). The
-increment is converged when forces balance and gaps, slips and tractions fulfil the conditions
-of contact; that implies a settled set.
+current states of gaps, slips and tractions (a semismooth Newton method). The
+increment is converged when forces balance and gaps, slips and tractions satisfy the conditions
+of contact; the set is then constant.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -43,34 +43,35 @@ if TYPE_CHECKING:
     States = list[NDArray[np.int8]]
 
 EPS = float(np.finfo(float).eps)
-#: Iterations that contact may take beyond those of the step.
+#: Additional iterations allowed for contact.
 MAX_EXTRA_CONTACT_ITERATIONS = 24
-#: Iterations without progress after which an increment is cut: few that take more converge.
+#: Iterations without progress before an increment is cut: few that take more converge.
 PATIENCE = 8
-#: And after which states come from the whole linearised problem.
+#: The same before states come from the whole linearized problem.
 ITERATIONS_BEFORE_PIVOTING = 3
-#: How often a set of states may come back before single changes are made.
+#: Repetitions of a set of states before single changes are made.
 MAX_STATE_REPEATS = 2
-#: And how often before the increment is given up.
+#: Repetitions before the increment is given up.
 MAX_REPEATS_BEFORE_CUTBACK = 7
 #: Kinks of the contact surfaces that an attempt tries, and corrections in which one may carry
-#: more than its jump.
+#: a force above its jump.
 MAX_KINKS, MAX_BEYOND = 3, 3
-#: Shares of the jump between which one is searched for: beyond, the bodies do not rest there.
+#: Fractions of the jump between which an equilibrium is searched: beyond, the bodies do not rest
+#: there.
 FEWEST_SHARES, MOST_SHARES = -2.0, 3.0
-#: What two corrections that cancel each other may leave, in the last of them.
+#: Remainder of two corrections that cancel each other, relative to the last one.
 TO_AND_FRO = 0.2
-#: Corrections after which partly covered nodes keep to whom they belong.
+#: Corrections after which partly covered nodes keep their owners.
 CORRECTIONS_BEFORE_FREEZE = 4
-#: Relative difference of contact residuals that is none.
+#: Relative difference of contact residuals that counts as zero.
 RELATIVE_DIFFERENCE = 1e-6
-#: Share of the friction bound from which a correction is made anew with slip, and how often.
+#: Fraction of the friction bound from which a correction is repeated with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
-#: Times the first correction that an increment may move before it counts as a jump, driven by
+#: Displacement of an increment, relative to its first correction, that counts as a jump, driven by
 #: supports and by forces.
 JUMP, JUMP_OF_FORCE = 10.0, 4.0
 
-#: In place of a constraint, among the remarks that were made: a body floats.
+#: Marks the remark on an unconstrained body, in place of a constraint.
 FLOATS = -1
 
 
@@ -80,7 +81,7 @@ class ContactEquations:
     Parameters
     ----------
     inner : System, or a motion around it
-        What gives residual and tangent without contact.
+        Residual and tangent without contact.
     system : System
     """
 
@@ -92,7 +93,7 @@ class ContactEquations:
 
     def forget(self) -> None:
         """Begin an attempt at the increment."""
-        # What was closed stays so while its pressure does.
+        # Closed constraints stay closed while their pressure does.
         self.last: States | None = None
         if self.contact_term.at is not None and self.contact_term.at.states:
             self.last = [s.copy() for s in self.contact_term.at.states]
@@ -104,18 +105,18 @@ class ContactEquations:
         self.least, self.waited = np.inf, 0
         self.stage = ""  # how the last correction was found
         self.relaxing = False  # whether the bodies may move to another equilibrium
-        #: Place before in relaxation, from which nothing may have passed through anything.
+        #: Previous position in relaxation, for the tunneling check.
         self.since: Floats | None = None
-        #: Stiffness at each dof that holds it at a place, in relaxation.
+        #: Stiffness of the spring at each dof, in relaxation.
         self.brake: tuple[Floats, Floats] | None = None
-        #: Kink of the contact surfaces at which the bodies are thought to rest, and how often one
+        #: Kink of the contact surfaces at which the bodies may rest, and how often one
         #: was tried.
         self.kink: Kink | None = None
         self.kinks = self.beyond = 0
         self.places: list[Floats] = []  # displacements of the last three evaluations
         self.time = 0.0
         self.first_move = 0.0  # of the first correction [length]
-        self.loose = ""  # what nothing held until contact was closed for it
+        self.loose = ""  # bodies that were unconstrained until contact was closed
         self.slip_directions: dict[
             int, Floats
         ] = {}  # of slipping tractions, by the pair's first multiplier
@@ -156,13 +157,13 @@ class ContactEquations:
         if norms.force > before:
             node = self.contact_term.pairs[pair].nodes[constraint]
             norms.worst = int(self.system.start[node])
-        if self.corrections:  # before the first, supports may still have to move
+        if self.corrections:  # before the first one, supports may not have moved
             self.waited = 0 if norms.size < PROGRESS * self.least else self.waited + 1
             self.least = min(self.least, norms.size)
         return norms
 
     def return_tangent(self, at: ContactEvaluation) -> None:
-        """Keep the tangent: states of contact are looked back at."""
+        """Keep the tangent: states of contact are used later."""
 
     def complementarity(self, at: ContactEvaluation) -> tuple[float, int, int]:
         """Largest contact residual as a force; its pair and constraint."""
@@ -324,9 +325,9 @@ class ContactEquations:
     def _held(
         self, at: ContactEvaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int, States]:
-        """Correction for states that hold the bodies, changed as little as that takes.
+        """Correction for states that constrain the bodies, with the fewest changes.
 
-        Where all nodes that held a body slip at once, nothing holds it: some must still stick.
+        Where all nodes in contact with a body slip at once, it is unconstrained: some must stick.
         """
         stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
         slipping = any((s == SLIPPING).any() for s in states)
@@ -369,9 +370,9 @@ class ContactEquations:
         right_sides: RightHandSides,
         found: tuple[Floats, Floats, int],
     ) -> tuple[Floats, Floats, int, States]:
-        """Let slip at once what a correction would load far beyond friction.
+        """Let constraints slip at once that a correction would load far beyond friction.
 
-        Otherwise a long motion of supports drags the mesh along before anything slips.
+        Otherwise a large displacement of supports distorts the mesh before anything slips.
         """
         for _ in range(MAX_SLIP_CORRECTIONS if self.corrections <= 2 else 0):
             new = [s.copy() for s in states]
@@ -404,7 +405,7 @@ class ContactEquations:
         return *found, states
 
     def _far(self, du: Floats, right_sides: RightHandSides) -> bool:
-        """Whether a correction moves the surfaces farther than contact looks."""
+        """Whether a correction moves the surfaces beyond the contact search distance."""
         moved = self.system.by_node(du[:, 0])[:, :2]
         constrained = 2.0 * float(
             np.abs(self.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
@@ -424,7 +425,7 @@ class ContactEquations:
         right_sides: RightHandSides,
         error: SingularError,
     ) -> tuple[Floats, Floats, int, States]:
-        """Bring bodies that nothing holds into contact: close the nearest nodes, ever more."""
+        """Bring unconstrained bodies into contact: close the nearest nodes, increasingly many."""
         gaps = [
             np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
             for s, (pair, terms, (p, _)) in zip(states, self._pairs(at.contact_state), strict=True)
@@ -508,7 +509,7 @@ class ContactEquations:
     def _one_change(
         self, contact_state: ContactState, wanted: States, changed: list[NDArray[np.bool_]]
     ) -> States:
-        """Only the change of largest contact residual, and all that lie next to nothing."""
+        """Only the change with the largest contact residual, and all with negligible ones."""
         assert self.last is not None
         self.single += 1
         best, where = -1.0, (0, 0)
@@ -524,7 +525,7 @@ class ContactEquations:
                 best, where = float(complementarity[first]), (k, first)
         out = [s.copy() for s in self.last]
         out[where[0]][where[1]] = wanted[where[0]][where[1]]
-        # What sees nothing of the other side cannot be closed.
+        # Constraints without an opposite surface cannot be closed.
         for state, pair, terms in zip(
             out, self.contact_term.pairs, contact_state.terms, strict=True
         ):
@@ -640,7 +641,7 @@ class ContactEquations:
     # -- the end of an increment -------------------------------------------------------
 
     def settle(self, outcome: Outcome[ContactEvaluation]) -> Outcome[Evaluation]:
-        """What became of an increment in terms of the system; explains failures."""
+        """Result of an increment in terms of the system; explains failures."""
         u = outcome.u[: self.n].copy()
         at = None if outcome.at is None else outcome.at.at
         if outcome.converged and outcome.at is not None:
@@ -667,9 +668,9 @@ class ContactEquations:
         return settled
 
     def refuse(self, at: ContactEvaluation, z: Floats) -> str:
-        """Why an equilibrium is not taken, or nothing.
+        """Why an equilibrium is refused; empty if it is not.
 
-        Nodes went through the other surface, or a body that nothing holds is far away.
+        Nodes passed through the opposite surface, or an unconstrained body is far away.
         """
         if self.inner is self.system:
             far: str = self.system.scales.senseless(z)
@@ -749,7 +750,7 @@ class ContactEquations:
         return notes
 
     def explain(self, at: ContactEvaluation | None) -> str:
-        """Which pair and nodes a failed increment hung on, and what was tried."""
+        """Pair and nodes that caused a failed increment, and what was tried."""
         return explained(self, at)
 
 

@@ -1,8 +1,8 @@
 """Where contact changes its states along a path, to first order: the predictor passes kinks.
 
 From an equilibrium the direction of the path holds until the first gap closes, the first pressure
-vanishes or the first traction reaches the bound of friction. From there the direction is that of
-the new states, in the sense in which what changed goes on to do so.
+vanishes or the first traction reaches the friction bound. From there the direction is that of
+the new states, oriented so that the change continues.
 
 Source: the pivoting of parametric linear complementarity, R. W. Cottle, J.-S. Pang and R. E. Stone,
 *The Linear Complementarity Problem* (2009), ch. 4.5.
@@ -35,7 +35,7 @@ MOST, AT_ONCE = 12, 1e-9
 
 
 class EventSystem(Protocol):
-    """What the predictor asks of a system with contact on a path."""
+    """Interface of a system with contact on a path for the predictor."""
 
     n: int
     contact_term: ContactTerm
@@ -49,7 +49,7 @@ class EventSystem(Protocol):
         ...
 
     def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
-        """Change of forces and of held dofs per unit of load factor."""
+        """Change of forces and of prescribed dofs per unit of load factor."""
         ...
 
     def gap_rates(self, at: Any, rate: Floats) -> list[tuple[Floats, Floats]]:
@@ -85,7 +85,7 @@ def predict_through_events(
     tangent : Tangent
         Direction there.
     size : float
-        Way to go, by the metric.
+        Distance to go, by the metric.
 
     Returns
     -------
@@ -153,7 +153,7 @@ class EventPath:
         pair = path.contact_term.pairs[k]
         slides = path.gap_rates(self.at, self.tangent.u)[k][1][i]
         if pair.friction and self.states[k][i] == OPEN and slides != 0.0:
-            # What closes while it slides goes on sliding, if it can.
+            # A constraint that closes while sliding continues to slip, if possible.
             state, self.slip_directions[k, i] = SLIPPING, -float(np.sign(slides))
         elif state == SLIPPING:
             q = path.contact_term.parts(self.z[path.n :])[k][1][i]
@@ -184,7 +184,7 @@ class EventPath:
         going = self._going(where, before, state)
         if going < 0.0:
             self.tangent = self.tangent.reversed()
-        # Friction lets the path bend; that it turned back would be the other way of loading.
+        # Friction lets the path change direction; a reversal would be the opposite loading.
         new, gaps = self.tangent, OPEN in (before, state)
         return going != 0.0 and (gaps or metric.dot(new.u, new.factor, old.u, old.factor) > 0.0)
 
@@ -201,7 +201,7 @@ class EventPath:
         slip_direction = self.slip_directions.get((k, i), 1.0 if q > 0.0 else -1.0)
         if state == SLIPPING:
             return float(-slip_direction * dslip[i])
-        # What sticks again loads off.
+        # A constraint that sticks again unloads.
         return float(path.contact_term.pairs[k].friction * dp[i] - slip_direction * dq[i])
 
     def first(self, latest: tuple[int, int] | None) -> Event | None:
@@ -242,7 +242,7 @@ class EventPath:
 
 
 def _reach(margin: Floats, rate: Floats, which: NDArray[np.bool_]) -> Floats:
-    """Ways after which something that shrinks at a rate has used up its margin."""
+    """Distances after which quantities that decrease at a rate reach zero."""
     shrinks = which & (rate > 0.0)
     return np.where(shrinks, np.maximum(margin, 0.0) / np.where(shrinks, rate, 1.0), np.inf)
 

@@ -5,9 +5,9 @@ Taylor and Katona 1991): with the displacement that the motion would have withou
 
     gap + dt G v + dt^2 G M^-1 G^T p >= 0,    p >= 0,
 
-and the same with the slip and Coulomb's bound. Gaps and gradients are those of the beginning,
-so that forces keep linear and angular momentum to rounding; what is of second order in the
-increment is made good in the next one.
+and the same for the slip and Coulomb's bound. Gaps and gradients are those of the beginning,
+so that forces conserve linear and angular momentum to rounding; errors of second order in the
+increment are corrected in the next one.
 
 A pressure law takes the mean ``(g0 + 2 g1 + g2) / 4`` of three gaps, which keeps energy; where it
 is too stiff for the increment, the gap at its end, as if there were none. Both are stable.
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
 ROUNDS = 20
 #: Square of the frequency of a mass on a law, times dt^2, beyond which the law is not resolved.
 RESOLVED = 1.0
-#: Entries of a matrix from which it is taken for sparse.
+#: Size of a matrix from which it is treated as sparse.
 DENSE = 100_000
-#: Depth, in edges, that a surface nothing can move may be pressed into another.
+#: Depth, in edges, that a fixed surface may be pressed into another fixed one.
 DEPTH = 1e-6
 
 
@@ -72,7 +72,7 @@ class NoForwardContact:
         return np.zeros(self.n_dofs)
 
     def sums(self) -> dict[str, float]:
-        """Nothing to show."""
+        """No output."""
         return {}
 
 
@@ -89,8 +89,8 @@ class ForwardContact:
     Attributes
     ----------
     depth : list of ndarray
-        Of each pair, what surfaces overlap by that is not pushed out [length]: what was there
-        when contact began. It stays until the gap opens.
+        Of each pair, overlap that is not removed [length]: the overlap
+        at the beginning of contact. It remains until the gap opens.
     """
 
     def __init__(self, contact: ContactTerm, account: Energies, dt: float) -> None:
@@ -139,7 +139,7 @@ class ForwardContact:
         Raises
         ------
         ConvergenceError
-            If surfaces that nothing can move are pressed into each other, or no forces are found.
+            If two fixed surfaces are pressed into each other, or no forces are found.
         """
         contact, system = self.contact, self.contact.system
         with system.timed("contact"):
@@ -153,7 +153,7 @@ class ForwardContact:
         return force
 
     def sums(self) -> dict[str, float]:
-        """What a frame shows of contact."""
+        """Contact output of a frame."""
         return self.contact.work_sums(self.account.contact)
 
     def _look(self, pair: Pair, x: Floats, time: float) -> Terms:
@@ -288,12 +288,12 @@ class _Increment:
         return np.concatenate(gaps), np.concatenate(slips)
 
     def _ramp(self, pair: Pair, time: float) -> Floats:
-        """What gaps change by as overlaps of the start are pushed out over the step [length]."""
+        """Change of gaps while initial overlaps are removed over the step [length]."""
         later = self.contact.offset_at(pair, time + self.own.dt)
         return np.asarray(self.contact.offset_at(pair, time) - later)
 
     def _depth(self, gap: Floats) -> Floats:
-        """Overlap that is not pushed out: that at which contact began, or what is left of it."""
+        """Overlap that is not removed: that at the beginning of contact, or its remainder."""
         overlap = np.where(self.seen, np.maximum(-gap, 0.0) / np.maximum(self.area, 1e-300), 0.0)
         old = np.concatenate(self.own.depth)
         depth = np.where(self.state != OPEN, np.minimum(old, overlap), overlap)
@@ -331,7 +331,7 @@ class _Increment:
         return multipliers
 
     def _start_of_laws(self) -> Floats:
-        """Gaps below which pressure laws act, shape (n,), twice as far for what others do."""
+        """Gaps below which pressure laws act, shape (n,), doubled for other constraints."""
         starts = [
             np.full(pair.n, 0.0 if pair.law is None else max(-pair.law.start, 0.0))
             for pair in self.contact.pairs
@@ -341,7 +341,7 @@ class _Increment:
     def _forces(
         self, chosen: NDArray[np.bool_]
     ) -> tuple[NDArray[np.bool_], Floats, Floats, Floats]:
-        """Forces of some constraints: which can act, p and q, and what they move."""
+        """Forces of some constraints: which can act, p and q, and the resulting motion."""
         rows, columns, values = self._gradients(chosen)
         dofs, columns = np.unique(columns, return_inverse=True)
         mass = self.share * self.inverse[dofs]
@@ -426,7 +426,7 @@ class _Increment:
         return out
 
     def _check(self, held: NDArray[np.bool_]) -> None:
-        """Refuse surfaces that nothing can move and that are pressed into each other."""
+        """Refuse two fixed surfaces that are pressed into each other."""
         for (pair, _), first in zip(self._each(), self.first, strict=False):
             if pair.tied or pair.law is not None:
                 continue
@@ -462,7 +462,7 @@ def travel(contact: ContactTerm, terms: Terms, gradient: Floats, moved: Floats, 
 def forward_contact(
     system: System, account: Energies, dt: float
 ) -> ForwardContact | NoForwardContact:
-    """Contact of an explicit step, whatever there is."""
+    """Contact of an explicit step, with or without pairs."""
     contact = system.contact_term
     if not contact.pairs:
         return NoForwardContact(system.n_dofs)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Share of its full area below which a node sees nothing of the other side.
+#: Fraction of its full area below which a node counts as uncovered.
 COVERED = 1e-9
 
 
@@ -34,7 +34,7 @@ class Terms:
     parts : tuple of ndarray, shape (k,)
         Gap and area of each node before neighbours share constraints.
     bare : Terms or None
-        Gaps and areas as they are, where a condition on rates has changed them.
+        Unmodified gaps and areas, where a condition on rates has changed them.
     between : Terms or None
         Gradients along which tractions act that are those of an increment, not of its end.
     """

@@ -1,4 +1,4 @@
-"""How much an increment of a motion misses of the moment of impact."""
+"""Error of a dynamic increment in the instant of impact."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -29,9 +29,9 @@ def impact_error(
     tolerance: float,
     meets: bool = False,
 ) -> float:
-    """What an increment misses of the moment of impact, over the allowed share.
+    """Error of an increment in the instant of impact, relative to the allowed one.
 
-    Gaps that close within the increment: the work contact does on the way, against a thousandth
+    Gaps that close within the increment: the work of contact within it, against a thousandth
     of the energy for a tolerance of one percent; where a rate condition keeps that at zero, the
     depth they are left with, against a tenth of an edge. Surfaces that meet for the first time:
     a hundredth of an edge, which is the depth, or the gap that the increment began with where it

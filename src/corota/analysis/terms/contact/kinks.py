@@ -1,9 +1,9 @@
 """Equilibria at a kink of the contact surfaces.
 
 Gaps depend on the positions continuously, but not smoothly: as a corner of one surface passes a
-node of the other, their gradients jump, and contact forces with them. Where the bodies rest just
-there, the force is between those of both sides, and Newton's method, which knows one side at a
-time, goes to and fro. Here the place of the jump becomes an equation, and the force that is
+node of the other, their gradients jump, and contact forces with them. Where the bodies rest exactly
+there, the force is between those of both sides, and Newton's method, which uses one side at a
+time, cycles. Here the position of the jump becomes an equation, and the force that is
 carried across it an unknown: the generalized gradient in the sense of Clarke.
 
 Source: F. H. Clarke, *Optimization and Nonsmooth Analysis* (1983), ch. 2.
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Halvings of the interval in which a jump is looked for.
+#: Halvings of the interval in which a jump is searched.
 HALVINGS = 44
 #: Share of a difference of contact forces that must be a jump.
 JUMP = 0.25

@@ -15,7 +15,7 @@ OFTEN = 2
 
 
 def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
-    """Which pair and nodes a failed increment hung on, and what was tried."""
+    """Pair and nodes that caused a failed increment, and what was tried."""
     if at is None:
         return ""
     said = ""

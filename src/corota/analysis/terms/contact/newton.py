@@ -1,4 +1,4 @@
-"""Newton's method for one increment with whatever contact there is."""
+"""Newton's method for one increment, with or without contact."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class ContactIncrement(Protocol):
-    """What a procedure asks of contact about an increment that was solved."""
+    """Contact results of a solved increment for a procedure."""
 
     @property
     def force(self) -> Floats:
@@ -40,7 +40,7 @@ class ContactIncrement(Protocol):
         ...
 
     def impact_error(self, moved: Floats, energy: float, tolerance: float, meets: bool) -> float:
-        """What an increment misses of the moment of impact."""
+        """Error of an increment in the instant of impact."""
         ...
 
 
@@ -84,14 +84,14 @@ def solve_increment(
     Parameters
     ----------
     inner : System, or a motion around it
-        What gives residual and tangent without contact.
+        Residual and tangent without contact.
     system : System
     u, prescribed, step_time, settings, report
         As for :func:`corota.analysis.newton.newton`.
     known : Evaluation, optional
         Of `inner` at `u` and an earlier time: its tangent is the first one.
     last_chance : bool
-        Whether no shorter increment may follow: nothing is given up early then.
+        Whether no shorter increment may follow: the attempt is then not given up early.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def solve_increment(
         with contextlib.suppress(ElementFailure):  # which Newton's method reports
             start = problem.evaluate(z, step_time)
             start.at.values[:] = known.values
-            # Of stabilising damping that of this increment.
+            # Stabilizing damping of this increment.
             for added, sign in ((known.added, -1.0), (start.at.added, 1.0)):
                 if added is not None:
                     start.at.values[system.pattern.diagonal] += sign * added

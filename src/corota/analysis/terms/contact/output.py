@@ -1,4 +1,4 @@
-"""What contact shows: values at slave nodes, resultants of pairs, energies."""
+"""Output of contact: values at slave nodes, resultants of pairs, energies."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _spread(values: Floats, pair: Pair, rows: Floats) -> None:
     n = len(values)
     own = np.zeros((n, 5))
     own[pair.nodes[: pair.of_nodes]] = rows[: pair.of_nodes]
-    # Facets that meet rounds show at their first nodes.
+    # Facets in contact with rounded corners are shown at their first nodes.
     facets, more = pair.nodes[pair.of_nodes :], rows[pair.of_nodes :]
     for column in (0, 1, 3):
         own[facets, column] += more[:, column]

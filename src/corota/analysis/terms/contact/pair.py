@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 #: States of a constraint.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
-#: Deformations of this share of the model's size are rounding.
+#: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
-#: Share of its area below which a node leaves its part to a neighbour.
+#: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
 EPS = float(np.finfo(float).eps)
 
@@ -46,7 +46,7 @@ class Pair:
     n : int
         Constraints.
     nodes : ndarray of int, shape (n,)
-        Their slave nodes; of a facet that may meet a round, its first node.
+        Their slave nodes; of a facet that may meet a rounded corner, its first node.
     of_nodes : int
         Constraints of nodes; those of facets come behind.
     width : int
@@ -75,10 +75,10 @@ class Pair:
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
         #: Gaps and areas of the committed state where gaps must not fall below those.
         self.start: tuple[Floats, Floats] | None = None
-        self.overlap = self.base = np.zeros(self.n)  # of the start, and gap that counts as none
+        self.overlap = self.base = np.zeros(self.n)  # of the start, and offset of the gap
         self.first_gap = np.zeros(self.n)  # before the first increment
-        self.owner = np.arange(self.n)  # whose constraint a node's part belongs to
-        self.frozen = False  # whether that is settled for the increment
+        self.owner = np.arange(self.n)  # constraint that owns a node's part
+        self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         if isinstance(item, ContactPair) and item.method == "mortar":
             place = np.full(len(system.per_node) + 1, -1, np.int64)
@@ -89,7 +89,7 @@ class Pair:
             self.beside = (left, right)
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
-        self.seen = False  # whether the surfaces were ever near each other
+        self.seen = False  # whether the surfaces have been near each other
         self.surface = _surfaces(self.slave.nodes, self.nodes)  # whose node it is
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
@@ -143,7 +143,7 @@ class Pair:
         return out
 
     def let_go(self) -> None:
-        """Forget which masters the nodes had, to which they would keep for a while."""
+        """Reset the masters of the nodes, which they would otherwise keep for some time."""
         if getattr(self.item, "method", "") != "node_to_segment":
             return
         places, masters, offset = self.core.state()
@@ -151,10 +151,11 @@ class Pair:
         self.core.restore_state(places, masters, offset)
 
     def _since(self, terms: Terms) -> Terms:
-        """Gaps as the persistency condition sees them (Laursen & Chawla 1997).
+        """Gaps of the persistency condition (Laursen & Chawla 1997).
 
-        There is no contact before an increment begins in it, and from then on none deeper. What
-        has a pressure law may get deeper.
+        Contact acts only if the gap is closed at the start of the increment, and may not get
+        deeper. A pair
+        with a pressure law may get deeper.
         """
         if self.start is None or self.law is not None:
             return terms
@@ -175,7 +176,7 @@ class Pair:
     def gap_of_start(self) -> Floats:
         """Weighted gaps that the increment began with, shape (n,).
 
-        Where a pressure law saw nothing of the other side, it begins with its first pressure.
+        Where a pressure law had no opposite surface, it begins with its first pressure.
         """
         assert self.start is not None
         gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
@@ -212,8 +213,9 @@ class Pair:
     def _owners(self, area: Floats) -> Ints:
         """Constraint that each node's part belongs to: its own, or a neighbour's.
 
-        At the end of the other side a slave edge is covered in part. The node beyond would have
-        a constraint on next to nothing, with any pressure; its neighbour's pressure acts there.
+        At the end of the opposite surface a slave edge is partly covered. The node beyond would
+        have
+        a constraint on a negligible area, with any pressure; its neighbor's pressure acts there.
         """
         own = np.arange(self.n)
         assert self.beside is not None
@@ -288,11 +290,11 @@ class Pair:
     def states(
         self, terms: Terms, p: Floats, q: Floats, last: NDArray[np.int8] | None = None
     ) -> NDArray[np.int8]:
-        """State of each constraint that its gap, slip and tractions ask for, shape (n,).
+        """State of each constraint by its gap, slip and tractions, shape (n,).
 
-        What was closed in the last correction has no linearised gap left: its pressure alone
-        decides. The gap that is there is a rest of the nonlinearity, which in a slender body
-        is worth many times the pressure.
+        Closed constraints have no linearized gap after a correction: their pressure alone
+        decides. The remaining gap is a nonlinear remainder, which in a slender body
+        corresponds to many times the pressure.
         """
         if self.tied:
             return np.where(terms.area > COVERED * self.full, CLOSED, OPEN).astype(np.int8)
@@ -308,11 +310,12 @@ class Pair:
         if self.friction:
             bound = self.friction * (p if self.law is not None else push)
             if last is not None:
-                # What slips goes on, unless it turned round: at the bound rounding would decide.
+                # Slipping constraints continue to slip unless they reverse: at the bound rounding
+                # would decide.
                 bound = np.where(last == SLIPPING, (1.0 - 1e-6) * bound, bound)
             slips = (state == CLOSED) & (np.abs(shear) > bound)
             if last is not None:
-                # And what turns round sticks first.
+                # Constraints that reverse stick first.
                 slips &= (last != SLIPPING) | (shear * q >= 0.0)
             state[slips] = SLIPPING
         return state
@@ -351,7 +354,7 @@ class Pair:
         return area * complementarity
 
     def pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
-        """The law at gaps: pressure, slope, energy per area; none where it has not begun."""
+        """The law at gaps: pressure, slope, energy per area; zero where it does not act."""
         assert self.law is not None
         begun = -gap > self.law.start
         p, slope, energy = self.law(np.where(begun, -gap, self.law.start))
@@ -374,7 +377,7 @@ class Pair:
     def rows(
         self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats
     ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """The constraints linearised: diagonals and right-hand sides of p and q, and the slope.
+        """The linearized constraints: diagonals and right-hand sides of p and q, and the slope.
 
         A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone. `sense` is
         the sign of slipping tractions.
@@ -415,7 +418,7 @@ class Pair:
         q, before : ndarray, shape (n,)
             Shear tractions, and those of the committed state.
         stuck : ndarray of bool, shape (n,)
-            What stuck there.
+            Sticking constraints.
         """
         self.core.commit()
         self.frozen = False
@@ -424,11 +427,11 @@ class Pair:
         if self.friction:
             slip = np.where(seen, terms.slip / np.where(seen, terms.area, 1.0), 0.0)
             self.slid += np.where(q != 0.0, slip, 0.0)
-            # What stuck, or turned round, slid after its traction had grown. In the scheme of
-            # rate conditions the traction of the end acts all the way.
+            # Constraints that stuck or reversed slid after their traction had grown. With
+            # rate conditions the traction of the end acts over the whole slip.
             whole = stuck | (before * q < 0.0) | (self.start is not None)
             mean = np.where(whole, q, 0.5 * (before + q))
-            # What parted may have slid back without traction.
+            # Constraints that opened may have slid back without traction.
             self.friction_work += float(np.maximum(-mean * terms.slip, 0.0).sum())
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
 
-#: What cannot be judged where friction slips.
+#: Message for slipping friction, where stability is unknown.
 SLIPS = (
     "friction slips, and has no potential: the tangent is not symmetric, its pivots do not show "
     "stability there (use dynamics)"
@@ -45,7 +45,7 @@ class Along(ContactEvaluation):
     two : tuple of bool
         Whether a pair has multipliers of its slips too.
     states : list of ndarray or None
-        Of the constraints at the point, once they were asked for.
+        Of the constraints at the point, once they are computed.
     """
 
     two: tuple[bool, ...] = ()
@@ -53,7 +53,7 @@ class Along(ContactEvaluation):
 
     @property
     def internal(self) -> Floats:
-        """Forces at dofs, then gaps and slips as the multipliers see them."""
+        """Forces at dofs, then gaps and slips in the rows of the multipliers."""
         parts = [self.at.internal]
         for terms, two in zip(self.contact_state.terms, self.two, strict=True):
             parts += [-terms.gap, -terms.slip] if two else [-terms.gap]
@@ -102,7 +102,7 @@ class ContactPathEquations(ContactEquations):
 
     @property
     def not_conservative(self) -> str:
-        """Why pivots do not tell stability."""
+        """Why pivots do not show stability."""
         return SLIPS if any(p.friction for p in self.contact_term.pairs) else NOT_CONSERVATIVE
 
     def plain(self, at: Along) -> Evaluation:
@@ -126,7 +126,7 @@ class ContactPathEquations(ContactEquations):
         return at
 
     def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
-        """Change of forces and of held dofs per unit of load factor, 0 for multipliers."""
+        """Change of forces and of prescribed dofs per unit of load factor, 0 for multipliers."""
         none = np.zeros(self.contact_term.n)
         force, move = self.system.load_rate(z[: self.n])
         return np.concatenate([force, none]), np.concatenate([move, none])
@@ -169,7 +169,7 @@ class ContactPathEquations(ContactEquations):
     def around(
         self, base: Point, tangent: Tangent, metric: Metric, size: float, period: float
     ) -> tuple[Point, Tangent] | None:
-        """A point round the kinks that lie on the way, and the direction behind them."""
+        """A point behind the next kinks, and the direction there."""
         if self.contact_term.at is not None:
             self._base = None
         found = predict_through_events(self, base, tangent, metric, size, period)
@@ -183,7 +183,7 @@ class ContactPathEquations(ContactEquations):
         return np.concatenate(self.border.correct_with_last_factor(rhs))
 
     def ahead(self, at: Along, rate: Floats) -> float:
-        """Whether what changed its state since the commit goes on to do so along a direction.
+        """Whether state changes since the commit continue along a direction.
 
         Where a constraint closed its pressure grows from zero; where one opened its gap does;
         so does the slip of what began to slip.
@@ -248,9 +248,9 @@ class ContactPathEquations(ContactEquations):
     def _held(
         self, at: ContactEvaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int, States]:
-        """Correction for states as they are: on a path, what has no stiffness is critical.
+        """Correction with unchanged states: on a path, a singular stiffness is a critical point.
 
-        Only where a path begins are bodies that nothing holds brought into contact.
+        Unconstrained bodies are brought into contact only at the start of a path.
         """
         if self._loose:
             return super()._held(at, states, right_sides)
@@ -266,7 +266,7 @@ class ContactPathEquations(ContactEquations):
 
 
 def path_system(system: System, notes: list[str]) -> Any:
-    """The system as a path sees it; `notes` takes remarks for the user."""
+    """The system for path following; `notes` collects remarks for the user."""
     return ContactPathEquations(system, notes) if system.contact_term.pairs else SmoothPath(system)
 
 

@@ -1,10 +1,11 @@
-"""Contact states from the whole linearised problem, where the choice one by one goes in circles.
+"""Contact states from the whole linearized problem, where individual choices cycle.
 
 A semismooth Newton method chooses the state of each constraint by itself. Where constraints
-depend on each other, as at the bound of friction of a body that nothing else holds, such choices
-may never settle. Here the linearised equations with all their conditions, a linear complementarity
-problem, are solved by pivoting (Lemke): every correction then fulfils all conditions to first
-order (the method of Josephy and Newton). Nothing is regularised.
+depend on each other, as at the friction bound of a body held only by friction, such choices
+may never converge. Here the linearized equations with all their conditions, a linear
+complementarity
+problem, are solved by pivoting (Lemke): every correction then satisfies all conditions to first
+order (the method of Josephy and Newton). Nothing is regularized.
 
 Sources: A. Klarbring, *A mathematical programming approach to three-dimensional contact problems
 with friction*, Comput. Methods Appl. Mech. Engrg. 58 (1986); N. H. Josephy, *Newton's method for
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 
 #: Most constraints that are chosen together, and open ones among them next to closing.
 MOST, OPEN_ONES = 160, 16
-#: Rounds in which what the solution would violate is taken in.
+#: Rounds that add violated constraints.
 ROUNDS = 4
 
 
@@ -65,7 +66,7 @@ class Chosen:
 
 
 class Pivoting:
-    """One correction whose states come from the whole linearised problem.
+    """One correction with states from the whole linearized problem.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ class Pivoting:
         Parameters
         ----------
         bases : list of list of ndarray
-            States to begin with, the best first: those that make the tangent singular are no use.
+            Initial states, the best first; states with a singular tangent are skipped.
         """
         for base in bases:
             chosen = self._first(base)
@@ -116,7 +117,7 @@ class Pivoting:
         return able
 
     def _first(self, base: States) -> list[Chosen]:
-        """What is closed, and the nearest of what is open."""
+        """Closed constraints, and the nearest open ones."""
         wanted = []
         for k, (pair, terms, _) in enumerate(self.pairs):
             able = self._able(k)
@@ -139,7 +140,7 @@ class Pivoting:
         return out
 
     def _violated(self, z: Floats, states: States, chosen: list[Chosen]) -> list[Chosen] | None:
-        """The choice with what a solution would violate; None if that is nothing."""
+        """The choice with the constraints that a solution would violate; None if there are none."""
         problem = self.problem
         n, more = problem.n, False
         wanted = []
@@ -176,7 +177,7 @@ class Pivoting:
         ]
         for k, (pair, terms, (_, q)) in enumerate(self.pairs):
             if pair.friction:
-                # What does not slip yet would slip against its trial traction.
+                # Sticking constraints would slip against their trial traction.
                 own = pair.slip_direction(terms, q)
                 slip_directions[k] = np.where(base[k] == SLIPPING, slip_directions[k], own)
                 zero = (q == 0.0) & (base[k] == SLIPPING)
@@ -334,7 +335,7 @@ class Pivoting:
         inputs: list[tuple[int, float]],
         traction: Floats,
     ) -> tuple[States, list[Floats]]:
-        """States of a solution; tractions of what slips or opens go into the correction."""
+        """States of a solution; tractions of slipping or opening constraints are corrected."""
         out = [s.copy() for s in base]
         slip_direction = [s.copy() for s in slip_directions]
         slack = {}
@@ -395,7 +396,7 @@ class Pivoting:
 def pivoted(
     problem: ContactProblem, at: ContactEvaluation, right_sides: RightHandSides
 ) -> Found | None:
-    """A correction with states from the whole linearised problem, None where there is none."""
+    """A correction with states from the whole linearized problem; None if there is none."""
     pairs = list(problem._pairs(at.contact_state))
     first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
     starts = [first] if problem.last is None else [problem.last, first]
@@ -409,7 +410,7 @@ def pivoted(
 
 
 def _small(problem: ContactProblem) -> float:
-    """Force that is none."""
+    """Force that counts as zero."""
     scales = problem.system.scales
     return 1e-9 * max(scales.force, scales.nothing)
 
@@ -423,7 +424,7 @@ def responses(
     force: Floats,
     rows: Floats,
 ) -> tuple[Floats, Floats]:
-    """Solutions for the first right-hand side asked for, and for forces and rows of inputs."""
+    """Solutions for the first right-hand side, and for forces and rows of inputs."""
     system = problem.system
     problem.slip_directions = {
         p.first: s for p, s in zip(problem.contact_term.pairs, slip_directions, strict=True)

@@ -1,4 +1,4 @@
-"""An increment with contact as its parts see it: evaluation, right-hand sides, the problem."""
+"""An increment with contact: evaluation, right-hand sides, interface of the problem."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -55,12 +55,12 @@ class ContactEvaluation:
 
 @dataclass
 class RightHandSides:
-    """Right-hand sides of one linearisation, a column each.
+    """Right-hand sides of one linearization, one per column.
 
     Parameters
     ----------
     force, constrained : ndarray, shape (n_dofs, k)
-        Of equilibrium, and prescribed changes at held dofs.
+        Of equilibrium, and prescribed changes at constrained dofs.
     own : ndarray, shape (k,)
         Share of the contact residual: 1 in a Newton correction, 0 in a rate.
     """
@@ -71,7 +71,7 @@ class RightHandSides:
 
 
 class ContactProblem(Protocol):
-    """What the choice of states and messages see of the equations of an increment.
+    """Interface of the equations of an increment for the choice of states and for messages.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class ContactProblem(Protocol):
     single, sliding, pivoted : int
         Single changes, bodies that slid, and corrections by pivoting so far.
     loose : str
-        What nothing held until contact was closed for it.
+        Bodies that were unconstrained until contact was closed.
     """
 
     n: int

@@ -1,11 +1,11 @@
-"""An increment with contact that Newton's method does not find, by relaxation to rest.
+"""Solve an increment with contact by relaxation, where Newton's method fails.
 
 The equilibrium that an increment starts from may end: a node passes a corner, a hook snaps. The
 bodies then move through states that are not in equilibrium until they rest again. Here they creep:
-springs hold every node where the creep has come to, all conditions of contact are met with them,
-the springs are released, and so on with ever softer ones (a proximal point method). The last
+springs hold every node at its last position, all contact conditions are satisfied with them,
+the springs are released, and so on with softer ones (a proximal point method). The last
 correction has none, so the state that is found is an equilibrium of the unregularized problem, with
-the exact cone of friction. Which of several it is, the creep has chosen.
+the exact cone of friction. If there are several, the creep selects one.
 
 Source: R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control
 Optim. 14 (1976).
@@ -39,13 +39,15 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Most corrections, most of them for one place, and residual at which a place is reached.
+#: Largest number of corrections, of those per position, and residual at which a position is
+#: reached.
 MOST, EACH, REACHED = 400, 14, 1e-6
 #: Stiffness of the springs per stiffness of their nodes: first, at most, at least.
 FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
-#: Factors on it after a place that was reached in few corrections, in more, and not at all; few.
+#: Factors on it after a position was reached in few corrections, in more, or not at all; limit of
+#: few.
 EASED, KEPT, TIGHTENED, FEW = 0.25, 0.5, 8.0, 6
-#: Farthest from place to place, in the shortest edge of a slave surface.
+#: Largest distance between positions, in shortest edges of a slave surface.
 FARTHEST = 0.5
 
 
@@ -58,7 +60,7 @@ def relax(
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     inner: Any = None,
 ) -> tuple[Outcome[Evaluation], ContactEquations]:
-    """Find an equilibrium by a creep; in motion (`inner`) one with the inertia of an increment.
+    """Find an equilibrium by creep; in dynamics (`inner`) with the inertia of an increment.
 
     The parameters and results are those of
     :func:`corota.analysis.terms.contact.newton.solve_increment`.
@@ -68,7 +70,7 @@ def relax(
 
 
 class _Creep:
-    """The places of one relaxation."""
+    """The positions of one relaxation."""
 
     def __init__(
         self,
@@ -83,7 +85,7 @@ class _Creep:
         self.system, self.step_time, self.report = system, step_time, report
         self.problem = ContactEquations(inner, system)
         self.z = self.problem.start(u)
-        self.left = prescribed - u  # that supports have still to move
+        self.left = prescribed - u  # that supports still have to move
         most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
         self.last = replace(settings, max_iterations=most, patience=PATIENCE, reuse=None)
         tolerance = max(REACHED, settings.tolerance)
@@ -123,7 +125,7 @@ class _Creep:
         return out
 
     def _place(self, share: float) -> Outcome[ContactEvaluation]:
-        """The next place, with springs of a share of the stiffness of the nodes."""
+        """The next position, with springs of a fraction of the nodal stiffness."""
         problem, n = self.problem, self.problem.n
         states = problem.last
         problem.forget()

@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Distance at which pairs are looked at, in edges, unless the user says otherwise.
+#: Default search distance of pairs, in edges.
 REACH = 4.0
-#: Most slave edges times boundary edges for which the thickness behind a surface is looked for, and
-#: relative lengths that are none.
+#: Limit of slave edges times boundary edges for the search of the thickness behind a surface, and
+#: relative lengths that count as zero.
 MOST_LOOKED_AT, SAME = 20_000_000, 1e-9
 
 
 def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -> Surface:
-    """Edges of a surface; refuses what is no boundary.
+    """Edges of a surface; refuses interior edges.
 
     Raises
     ------
@@ -119,12 +119,12 @@ def along_contour(found: Surface) -> Surface:
 def contact_core(
     system: NumberedModel, item: ContactPair
 ) -> tuple[Any, Surface, Surface | None, float]:
-    """The core's pair, its surfaces and how far it looks.
+    """The core's pair, its surfaces and its search distance.
 
     Raises
     ------
     ModelError
-        If the surfaces cannot touch as they are.
+        If the surfaces cannot come into contact.
     """
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
@@ -184,9 +184,9 @@ def contact_core(
 
 
 def _thickness(system: NumberedModel, slave: Surface) -> float:
-    """Largest thickness of the body behind a surface, straight inwards: deeper is no contact.
+    """Largest thickness of the body behind a surface, inwards: the limit of a penetration.
 
-    Infinite where nothing lies behind, and for surfaces too large to look.
+    Infinite where there is nothing behind, and for surfaces too large to search.
     """
     mesh = system.model.mesh
     boundary = mesh.boundary_edges()
@@ -211,7 +211,7 @@ def _thickness(system: NumberedModel, slave: Surface) -> float:
 
 
 def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, float]:
-    """The same for a tie; slave edges that are out of its tolerance stay free."""
+    """The same for a tie; slave edges out of its tolerance are not tied."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
     slave, master = surface(system, item.slave, item), surface(system, item.master, item)
@@ -261,7 +261,7 @@ def _check_pair(
             item.where,
         )
     out_s, out_m = _normals(mesh.points, slave), _normals(mesh.points, master)
-    # Nothing faces anything: bodies may turn, but not before they touch.
+    # No edges face each other: bodies may rotate, but not before contact.
     facing = -(out_s @ out_m.T).min() if len(out_s) * len(out_m) < 4_000_000 else 1.0
     towards = _towards(mesh.points, slave, master, out_s)
     if facing <= 0.0 or not towards:
@@ -279,7 +279,7 @@ def _normals(x: Floats, found: Surface) -> Floats:
 
 
 def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
-    """Whether any slave edge has the master before it, or overlaps it."""
+    """Whether any slave edge faces the master or overlaps it."""
     at = x[slave.nodes[:, :2]].mean(axis=1)
     centre = x[master.node_list]
     low, high = centre.min(axis=0), centre.max(axis=0)

@@ -1,4 +1,4 @@
-"""Slave surfaces that start behind a rigid curve, where nothing would ever touch."""
+"""Slave surfaces that start behind a rigid curve and would never be in contact."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Cosine between the normals of slave and curve from which the slave shows its back.
+#: Cosine between the normals of slave and curve from which the slave faces away.
 BACK = 0.2
 #: Distances that are equal, in slave edges.
 SAME = 1e-9
@@ -88,7 +88,7 @@ def _signed(
         size = np.hypot(*apart.T)
         height = (away * normals).sum(axis=1)
         near = np.flatnonzero(size <= size.min() + same)
-        # At a corner the piece that sees the point from farther off decides, as for a wedge.
+        # At a corner the piece with the larger distance decides, as for a wedge.
         k = int(near[np.argmax(np.abs(height[near]))])
         distance[i], normal[i] = np.copysign(size[k], height[k]), normals[k]
         inside[i] = not ((t[k] < 0.0 and first[k]) or (t[k] > 1.0 and last[k]))

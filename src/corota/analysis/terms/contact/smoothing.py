@@ -1,9 +1,9 @@
 """Master edges as a curve without kinks: a quadratic B-spline over the nodes.
 
-Round each node whose edges meet at a blunt angle the boundary is the parabola from the middle of
+Around each node whose edges meet at a blunt angle the boundary is the parabola from the middle of
 the edge before to the middle of the edge behind, tangent to both. Neighbors share these points
-and their tangents, so the normal turns steadily. Round a circle the curve keeps one distance to
-it, the one that the middles of the edges have. Sharp corners, ends and straight boundaries stay.
+and their tangents, so the normal is continuous. On a circle the curve has a constant distance to
+it, that of the middles of the edges. Sharp corners, ends and straight boundaries do not change.
 
 Source: C. de Boor, *A Practical Guide to Splines* (2001), ch. IX.
 """
@@ -43,7 +43,7 @@ def smoothed(points: Floats, master: Surface) -> tuple[Ints, Floats, Ints]:
     nodes : ndarray of int, shape (m, 3)
     bulge : ndarray, shape (m,)
     shapes : ndarray of int, shape (m,)
-        As the core takes them.
+        In the format of the core.
     """
     of_edge = [_sides(row) for row in master.nodes.tolist()]
     after = {a: b for own in of_edge for a, b in own}

@@ -1,4 +1,4 @@
-"""Edges of a contact surface as the core takes them."""
+"""Edges of a contact surface in the format of the core."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Nodes that went through the other surface within one increment.
+"""Nodes that passed through the opposite surface within one increment.
 
-The core looks no farther than its reach. What moved farther may have come out behind the other
-side, where nothing holds it; such an increment is refused.
+The core searches no farther than its reach. A node that moved farther may be behind the opposite
+surface without contact; such an increment is refused.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Share of the reach that a node may move unseen.
+#: Fraction of the reach that a node may move without this check.
 UNSEEN = 0.5
 #: Angle of the chords of arcs [rad].
 CHORD = math.radians(4.0)
