@@ -12,8 +12,8 @@ from typing import IO
 
 from corota.errors import FileError
 
-#: Age of a file from which each commit reaches the disk before its name does [s]; a run that is
-#: younger is run again.
+#: Age of a file from which each commit is flushed before it is renamed [s]; a run that is
+#: younger is cheap to repeat.
 YOUNG = 1.0
 
 
@@ -24,12 +24,12 @@ def full(error: OSError, path: Path) -> FileError:
 
 
 def sync(path: Path) -> None:
-    """Bring a file to the disk.
+    """Flush a file to the disk.
 
     Raises
     ------
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     try:
         with open(path, "rb") as file:
@@ -43,17 +43,17 @@ class AtomicFile:
 
     Writes are held in memory until :meth:`commit`. A commit brings the hidden copy up to date
     (the writes of this commit and of the one before) and exchanges the names by atomic renaming.
-    So whoever opens the visible name, or finds it after the process was killed at any moment,
-    sees the state of one commit. The price is that everything is written twice. A commit of a file
-    that is no longer young is flushed to the disk before the names change, so that a power cut
-    leaves the state of a commit, too.
+    Anyone who opens the visible name, even after the process was killed at any moment,
+    sees the state of one commit. The cost is that everything is written twice. A commit of a file
+    that is no longer young is flushed to the disk before the names change, so that a power failure
+    also leaves the state of a commit.
 
     Parameters
     ----------
     path : Path
         The visible name; not touched before the first commit.
     keep : bool
-        Go on with the file that is there.
+        Continue the existing file.
     """
 
     def __init__(self, path: Path, keep: bool = False) -> None:
@@ -77,7 +77,7 @@ class AtomicFile:
         except OSError as error:
             raise full(error, path) from None
 
-    # What HDF5 asks of a file-like object.
+    # File-like interface for HDF5.
     def seek(self, offset: int, whence: int = 0) -> int:
         self._at = offset + (0, self._at, self._size)[whence]
         return self._at
@@ -116,15 +116,15 @@ class AtomicFile:
         return self._size
 
     def flush(self) -> None:
-        """Nothing: only a commit reaches the disk."""
+        """Do nothing: only a commit is flushed to the disk."""
 
     def commit(self) -> None:
-        """Make the state so far the visible one.
+        """Make the current state the visible one.
 
         Raises
         ------
         FileError
-            If the disk refuses; the visible file keeps the state of the commit before.
+            If writing fails; the visible file keeps the state of the commit before.
         """
         if not self._pending and self._shown:
             return
@@ -168,26 +168,26 @@ class AtomicFile:
         os.replace(self._spare, self.hidden)
 
     def sync(self) -> None:
-        """Bring the last commit to the disk."""
+        """Flush the last commit to the disk."""
         sync(self.path)
 
     def close(self) -> None:
-        """Remove the hidden copy; what was not committed is lost."""
+        """Remove the hidden copy; uncommitted data are lost."""
         for name in (self.hidden, self._spare):
             with contextlib.suppress(OSError):
                 name.unlink(missing_ok=True)
 
 
 class TextFile:
-    """A text file that grows by whole pieces.
+    """A text file that is extended by whole pieces.
 
-    A piece that the disk refuses is cut off again, so the file never ends within one.
+    A piece that cannot be written is cut off again, so the file never ends within one.
 
     Parameters
     ----------
     path : Path
     keep : bool
-        Go on at the end of an existing file instead of emptying it.
+        Continue at the end of an existing file instead of emptying it.
     """
 
     def __init__(self, path: Path, keep: bool = False) -> None:
@@ -200,12 +200,12 @@ class TextFile:
             raise full(error, path) from None
 
     def append(self, text: str | bytes) -> None:
-        """Write a piece and hand it to the system at once.
+        """Write a piece and flush it at once.
 
         Raises
         ------
         FileError
-            If the disk refuses.
+            If writing fails.
         """
         data = memoryview(text.encode() if isinstance(text, str) else text)
         start = self._file.tell()
@@ -224,7 +224,7 @@ class TextFile:
         return self._file.tell()
 
     def cut(self, length: int) -> None:
-        """Drop everything behind a length.
+        """Truncate the file to a length.
 
         Raises
         ------
@@ -240,7 +240,7 @@ class TextFile:
             raise full(error, self.path) from None
 
     def sync(self) -> None:
-        """Bring everything to the disk."""
+        """Flush everything to the disk."""
         try:
             os.fsync(self._file.fileno())
         except OSError as error:
@@ -258,7 +258,7 @@ def replace_text(path: Path, text: str) -> None:
     Raises
     ------
     FileError
-        If the disk refuses; an earlier file of that name stays.
+        If writing fails; an earlier file of that name stays.
     """
     hidden = path.with_name(f".{path.name}.next")
     try:

@@ -1,7 +1,7 @@
-"""Checkpoints as files: one HDF5 file each, checked before it is used, two kept in turn.
+"""Checkpoints as files: one HDF5 file each, checked before use; the last two are kept.
 
 A file begins with a block of text that HDF5 readers skip: the name of the format, and length and
-SHA-256 of all that follows. Nothing of a file is interpreted before these agree. It is written
+SHA-256 of all that follows. No data are interpreted before these agree. It is written
 under another name, flushed to the disk and renamed, so that no name ever stands for half a file.
 """
 
@@ -39,14 +39,14 @@ ENDINGS = ("ckpt", "ckpt.1")
 
 @dataclass
 class Saved:
-    """What a checkpoint file holds.
+    """Contents of a checkpoint file.
 
     Parameters
     ----------
     path : Path
     state : Checkpoint
     files : dict
-        Where the files of the run ended, see :class:`corota.io.job.JobFiles`.
+        State of the files of the run, see :class:`corota.io.job.JobFiles`.
     job : str
         Stem of the file names.
     run : str
@@ -96,7 +96,7 @@ def store(
     Raises
     ------
     FileError
-        If the disk refuses; checkpoints that are there stay.
+        If writing fails; existing checkpoints remain.
     """
     import h5py
 
@@ -141,7 +141,7 @@ def store(
 
 
 def sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the system can."""
+    """Flush the names in a folder to the disk, where the system supports it."""
     with contextlib.suppress(OSError, AttributeError):
         number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
         try:
@@ -180,7 +180,7 @@ def _untree(group: Any) -> tuple[Any, list[Any]]:
         if kind not in whole:
             whole[kind] = group[f"numbers {kind.strip('<>|=')}"][()].view(np.dtype(kind))
         size = int(np.prod(shape, dtype=int))
-        # Each on its own: nothing that is changed in place may change another.
+        # Separate copies: a change in place must not affect another array.
         arrays.append(whole[kind][start : start + size].reshape(shape).copy())
     return tree, arrays
 
@@ -257,7 +257,7 @@ def _check_head(path: Path, head: bytes, raw: Any) -> None:
 
 
 def candidates(path: Path) -> list[Path]:
-    """The checkpoint files that a path may mean, the newest first.
+    """The checkpoint files for a path, the newest first.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def candidates(path: Path) -> list[Path]:
 
 
 def newest(path: Path) -> tuple[Saved, list[str]]:
-    """The newest checkpoint that is whole, and why others were refused.
+    """The newest intact checkpoint, and the reasons why others were refused.
 
     Raises
     ------

@@ -45,7 +45,7 @@ def store(group: Any, name: str, values: ArrayLike, level: int = 0) -> None:
     """Write an array that does not change, with a checksum; `level` packs it."""
     data = np.asarray(values)
     packed = {"compression": "gzip", "compression_opts": level, "shuffle": True} if level else {}
-    # HDF5 knows no chunk without elements.
+    # HDF5 has no empty chunks.
     checked = {"chunks": data.shape, "fletcher32": True, **packed} if data.size else {}
     group.create_dataset(name, data=data, **checked)
 

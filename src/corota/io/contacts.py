@@ -1,4 +1,4 @@
-"""Contact pairs in result files: as much as pictures need."""
+"""Contact pairs in result files: the data for pictures."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

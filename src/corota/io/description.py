@@ -1,4 +1,4 @@
-"""The description of the model in a result file: for reports, which see no deck."""
+"""The description of the model in a result file: for reports, which do not read the deck."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

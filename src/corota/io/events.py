@@ -39,7 +39,7 @@ def _plain(value: Any) -> Any:
 
 
 class Events(BaseObserver):
-    """Turns what happens into records.
+    """Converts events into records.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Events(BaseObserver):
         )
 
     def resume(self, model: Model, cuts: dict[tuple[int, int], int]) -> None:
-        """Go on where an earlier run stopped."""
+        """Continue where an earlier run stopped."""
         self._labels, self._cuts = model.mesh.node_labels, dict(cuts)
 
     def step(self, number: int, step: Step) -> None:

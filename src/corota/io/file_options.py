@@ -1,4 +1,4 @@
-"""What of an analysis goes into its result file, and in which form."""
+"""Contents and format of the result file of an analysis."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -32,7 +32,7 @@ ALIASES = {
     "ELSE": "ENER", "PEEQ": "PEEQ", "LE": "E", "CSTRESS": "CSTR", "CDISP": "CDIS", "UR": "U",
     "SF": "N", "ENERGY": "ENER", "RFM": "RF", "CF": "F",
 }  # fmt: skip
-#: Always there: without it no shape can be drawn.
+#: Always written: it is needed to draw the shape.
 ALWAYS = frozenset(FIELDS["U"])
 #: A level of gzip that takes little time; higher ones gain little on floating-point numbers.
 LEVEL = 1
@@ -50,7 +50,7 @@ class FileOptions:
         Fields as numbers of 4 bytes, with about seven digits.
     fields : {"all", "requested"} or sequence of str
         ``U RF F V A S E ENER PEEQ CSTR CDIS ...`` or names of arrays; ``"requested"`` follows
-        ``*NODE FILE``, ``*EL FILE`` and ``*CONTACT FILE``. Displacements are always there.
+        ``*NODE FILE``, ``*EL FILE`` and ``*CONTACT FILE``. Displacements are always written.
     compression : int
         Level of gzip from 1 to 9, after sorting bytes by their place; 0 for none.
     """
@@ -76,7 +76,7 @@ class FileOptions:
                 raise InputError(f"unknown field {name!r}; use {', '.join(FIELDS)}, PEEQ, ENER ...")
 
     def chosen(self, steps: Sequence[Step]) -> frozenset[str] | None:
-        """Names of arrays that are wanted; None for all."""
+        """Names of requested arrays; None for all."""
         if self.fields == "all":
             return None
         if self.fields == "requested":
@@ -94,7 +94,7 @@ class FileOptions:
 
 
 def wanted(name: str, chosen: frozenset[str] | None) -> bool:
-    """Whether an array of a file belongs to what was chosen; pairs and cells like the whole."""
+    """Whether an array of a file was requested; arrays of pairs and cells like the field."""
     stem = name.partition(": ")[0].removeprefix("cell ")
     return chosen is None or name in chosen or stem in chosen
 

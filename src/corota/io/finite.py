@@ -1,4 +1,4 @@
-"""The last gate before a file: nothing that is not a number passes."""
+"""The last check before a file: NaN and infinity are refused."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

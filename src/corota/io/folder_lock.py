@@ -1,4 +1,4 @@
-"""One run at a time for the files of a job: a lock that ends with the process that holds it."""
+"""One run at a time for the files of a job: a lock that ends with its process."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 try:
     import fcntl
-except ImportError:  # a system without it: two runs are not told apart
+except ImportError:  # a system without locks: two runs cannot be detected
     fcntl = None  # type: ignore[assignment]
 
 
@@ -30,7 +30,7 @@ class FolderLock:
     Raises
     ------
     FileError
-        If another run holds it, or the folder takes no files.
+        If another run holds it, or the folder is not writable.
     """
 
     def __init__(self, path: Path) -> None:
@@ -67,7 +67,7 @@ class FolderLock:
         return None
 
     def release(self) -> None:
-        """Let others write."""
+        """Release the lock."""
         if self._file is None:
             return
         with contextlib.suppress(OSError):

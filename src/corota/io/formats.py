@@ -31,7 +31,7 @@ MODEL_READERS: dict[str, Callable[..., Model]] = {".inp": read_deck}
 MODEL_WRITERS: dict[str, Callable[..., Path]] = {
     ".inp": lazy("corota.io.deck.write.model:write_deck")
 }
-#: Readers of meshes; for other names meshio is asked.
+#: Readers of meshes; other names are passed to meshio.
 MESH_READERS: dict[str, Callable[..., Mesh]] = {
     ".msh": lazy("corota.io.gmsh.reader:read_gmsh"),
     ".inp": _deck_mesh,
@@ -97,7 +97,7 @@ def read(
 def write(
     model: Model, path: str | os.PathLike[str], steps: Step | Sequence[Step] | None = None
 ) -> Path:
-    """Write a model in the format that the ending names; return the path.
+    """Write a model in the format of the file extension; return the path.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def write(
     Raises
     ------
     UnsupportedError
-        If no writer fits the name, or the format cannot hold the model.
+        If no writer fits the name, or the format cannot represent the model.
     FileError
         If the file cannot be written.
     """

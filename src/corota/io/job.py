@@ -1,4 +1,4 @@
-"""The files of a job, written beside the analysis in a thread of their own."""
+"""The files of a job, written in a separate thread during the analysis."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -60,12 +60,13 @@ class JobFiles(BaseObserver):
     """Observer that writes ``<job>.vtkhdf .dat .sta .cvg .csv .jsonl`` into a folder.
 
     Every accepted increment is on disk within a quarter of a second, in files that are readable
-    at every moment: text grows by whole pieces, the result file by exchange of complete copies.
+    at every moment: text files are extended by whole pieces, the result file by exchange of
+    complete copies.
 
     Parameters
     ----------
     folder : path-like
-        Made if it does not exist; files of an earlier run of the same job are replaced.
+        Created if it does not exist; files of an earlier run of the same job are replaced.
     name : str
         Stem of the file names; the model's name by default.
     formats : sequence of {"vtkhdf", "pvd", "frd", "frd-binary"}
@@ -87,9 +88,9 @@ class JobFiles(BaseObserver):
         Least time between checkpoints [s]; 0 for none by time. Where one checkpoint costs more than
         a hundredth of it, a hundred times that cost, so that large models do not wait for them.
     source : dict of str to str, optional
-        What the model was read from, for checkpoints: ``deck`` and its ``sha256``.
+        Source of the model, for checkpoints: ``deck`` and its ``sha256``.
     resume : Saved, optional
-        Go on with the files of a run from one of its checkpoints.
+        Continue the files of a run from one of its checkpoints.
 
     Attributes
     ----------
@@ -148,11 +149,11 @@ class JobFiles(BaseObserver):
         self._every, self._seconds = checkpoint_every, checkpoint_seconds
         self._resumed = resume
         self._source = source or {}
-        #: Set to ask for a checkpoint after the next increment, from a signal for instance.
+        #: Set to request a checkpoint after the next increment, for instance by a signal.
         self.checkpoint_requested = False
         #: The newest checkpoint of this run.
         self.checkpointed: Checkpoint | None = None
-        #: What the last checkpoint cost: copying the state, writing it [s].
+        #: Cost of the last checkpoint: copying the state, writing it [s].
         self._cost, self._due = [0.0, 0.0], 0.0
         self._known_cuts: dict[tuple[int, int], int] = {}
         self._held: FolderLock | None = None
@@ -227,7 +228,7 @@ class JobFiles(BaseObserver):
         return name
 
     def _start(self, model: Model, steps: list[Step], name: str) -> None:
-        """Open the files, anew or where a checkpoint left them."""
+        """Open the files, as new files or at the state of a checkpoint."""
         resumed = self._resumed
         self._last_checkpoint = time.monotonic()
         self._increments, self._step, self._increment = 0, 1, 0
@@ -258,9 +259,9 @@ class JobFiles(BaseObserver):
             self._events.resume(model, self._known_cuts)
 
     def _set_aside(self, name: str) -> None:
-        """Keep the files of an earlier run from standing beside those of this one.
+        """Set the files of an earlier run aside.
 
-        Its results bear another name until this run is done; checkpoints go.
+        Its results have another name until this run is done; its checkpoints are removed.
         """
         endings = (*CHECKPOINTS, "last_iterate.vtkhdf", "modes.vtkhdf")
         gone = [f"{name}.{ending}" for ending in endings]
@@ -279,7 +280,7 @@ class JobFiles(BaseObserver):
         return self.folder / f"{name}.previous.{ending}"
 
     def _take_up(self, saved: Saved) -> None:
-        """Cut the files to what the checkpoint expects, and go on from there."""
+        """Truncate the files to the state of the checkpoint, and continue from there."""
         found = saved.files
         for ending, text in self._text.items():
             text.cut(found["text"][ending])
@@ -297,7 +298,7 @@ class JobFiles(BaseObserver):
             self._last_tried = tuple(found["tried"])
 
     def _open(self, big: list[tuple[str, Path]]) -> None:
-        """Make the writers of the result files."""
+        """Create the writers of the result files."""
         for name, path in big:
             job = Job(self.model, self.steps, self._form, self.run, self._state_of(name))
             self._big.append(STREAMS[name](path, job))
@@ -328,7 +329,7 @@ class JobFiles(BaseObserver):
     # Checkpoints.
     @property
     def checkpoint_due(self) -> bool:
-        """Whether one is to be taken after this increment."""
+        """Whether a checkpoint is due after this increment."""
         step = self.steps[self._step - 1]
         every = step.restart or self._every
         by_count = every > 0 and self._increment % every == 0
@@ -340,7 +341,7 @@ class JobFiles(BaseObserver):
         return due
 
     def checkpoint(self, checkpoint: Checkpoint, keep: str = "") -> None:
-        """Take the state of the analysis; it is written behind all that came before.
+        """Take the state of the analysis; it is written after all earlier data.
 
         Parameters
         ----------
@@ -360,7 +361,7 @@ class JobFiles(BaseObserver):
         self._queue.put(lambda: self._checkpoint(checkpoint, known, keep), size)
 
     def _checkpoint(self, checkpoint: Checkpoint, known: dict[str, Any], keep: str) -> None:
-        """Bring the files to the disk, then the checkpoint that refers to them."""
+        """Flush the files to the disk, then write the checkpoint that refers to them."""
         begin = time.perf_counter()
         for big in self._big:
             big.commit()
@@ -444,7 +445,7 @@ class JobFiles(BaseObserver):
         self._events.cut_back(step, increment, attempt, reason, dt)
 
     def end(self, results: Results, error: Exception | None) -> None:
-        """Write what waits and close; raise what went wrong unless the analysis failed first."""
+        """Write pending data and close; raise a write error unless the analysis failed first."""
         if self._closed:
             return
         self._queue.drain()
@@ -470,7 +471,7 @@ class JobFiles(BaseObserver):
             raise self._queue.error
 
     def _iterate(self, results: Results) -> None:
-        """Write where the last attempt ended; after a run that converged there is no such file."""
+        """Write the last iterate; a converged run has no such file."""
         from corota.io.modes import write_iterate
 
         name = f"{self.name or self.model.name}.last_iterate.vtkhdf"
@@ -482,10 +483,11 @@ class JobFiles(BaseObserver):
         self._queue.attempt(lambda: write_iterate(results, path))
 
     def close(self, info: dict[str, Any] | None = None, done: bool = False) -> None:
-        """Write what waits and close the files; errors stay in :attr:`error`.
+        """Write pending data and close the files; errors are kept in :attr:`error`.
 
-        After a run that is `done` the results of the one before go, and checkpoints that nobody
-        asked for.
+        After a run that is `done` the results of the one before are removed, and checkpoints that
+        were not
+        requested.
         """
         if self._closed:
             return
@@ -527,7 +529,7 @@ class JobFiles(BaseObserver):
         self._queue.put(lambda: self._text["jsonl"].append(json_line(record)))
 
     def _commit(self) -> None:
-        """Bring the result files up to date."""
+        """Update the result files."""
         for big in self._big:
             big.commit()
 

@@ -1,4 +1,4 @@
-"""Meshes of other formats, by way of meshio."""
+"""Meshes of other formats, through meshio."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -18,7 +18,7 @@ from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
 if TYPE_CHECKING:
     import os
 
-#: Kinds by meshio's names; other cells are left out.
+#: Kinds by meshio's names; other cells are ignored.
 KINDS = {
     "triangle": "tri3",
     "triangle6": "tri6",
@@ -29,7 +29,7 @@ KINDS = {
 #: Line elements and points by meshio's names; they are written, not read.
 LINES = {"line2": "line", "line3": "line3", "point1": "vertex"}
 
-#: Numbers that formats give to cells, and how the sets of them are called.
+#: Cell numbers of formats, and the names of their sets.
 TAGS = {"nastran:ref": "PID", "medit:ref": "REF", "su2:tag": "TAG", "gmsh:physical": "Physical"}
 
 

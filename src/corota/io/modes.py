@@ -1,4 +1,4 @@
-"""Modes as results: a frame a mode, for files and pictures."""
+"""Modes as results: one frame per mode, for files and pictures."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def as_results(results: Results) -> Results:
-    """Buckling and vibration modes as frames of results of their own.
+    """Buckling and vibration modes as frames of a separate results object.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def as_results(results: Results) -> Results:
 
 
 def _scalars(named: str, value: float, growth: float, number: int) -> dict[str, float]:
-    """What files tell of a mode."""
+    """Scalars of a mode for files."""
     scalars = {named: value, "mode": float(number)}
     if growth:
         scalars["growth rate"] = growth
@@ -81,7 +81,7 @@ def write_modes(results: Results, path: Path) -> None:
 
 
 def write_iterate(results: Results, path: Path) -> None:
-    """Write the last converged state and where the last attempt ended, two time steps."""
+    """Write the last converged state and the last iterate, as two time steps."""
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
     assert results.last_iterate is not None

@@ -26,7 +26,7 @@ def write_npz(results: Results, path: Path) -> None:
     Raises
     ------
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     frames, mesh = results.frames, results.mesh
     for frame in frames:

@@ -1,4 +1,4 @@
-"""What results were made by and from: program, libraries, deck, by version and digest."""
+"""Provenance of results: program, libraries, deck, by version and digest."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -15,7 +15,7 @@ from corota.io.atomic_file import replace_text
 if TYPE_CHECKING:
     from os import PathLike
 
-#: Libraries that take part in the numbers and the files.
+#: Libraries that affect the numbers and the files.
 LIBRARIES = ("numpy", "scipy", "h5py")
 
 
@@ -43,7 +43,7 @@ def source_of(deck: str | PathLike[str]) -> dict[str, str]:
 
 
 def place_of(deck: str | PathLike[str]) -> dict[str, str]:
-    """Name, digest and place of a deck, by which a later job finds it."""
+    """Name, digest and path of a deck, for later jobs."""
     return source_of(deck) | {"path": str(Path(deck).resolve())}
 
 
@@ -53,7 +53,7 @@ def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path
     Raises
     ------
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     import platform
     from importlib.metadata import PackageNotFoundError, version

@@ -1,4 +1,4 @@
-"""Which output requests hold in a step, and which are due at an increment."""
+"""Active output requests of a step, and those due at an increment."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -19,7 +19,7 @@ SAME_TIME = 1e-9
 
 
 def in_force(steps: Sequence[Step], number: int) -> list[Output]:
-    """Requests that hold in a step (from 1), earlier ones first.
+    """Active requests of a step (from 1), earlier ones first.
 
     As in CalculiX: a card kind that the step does not use keeps the requests of the step before;
     one that it uses replaces them.
@@ -32,9 +32,9 @@ def in_force(steps: Sequence[Step], number: int) -> list[Output]:
 
 
 def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
-    """Whether a request is answered at a frame, be it the last of its step or not.
+    """Whether a request is due at a frame, except for the last of its step.
 
-    The last one always answers (:func:`left_over`); increment 0, the state before the first
+    The last one is always due (:func:`left_over`); increment 0, the state before the first
     step, never does.
     """
     if frame.increment == 0:
@@ -47,7 +47,7 @@ def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
 
 
 def due_now(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
-    """Requests that a frame answers as soon as it is there."""
+    """Requests that are due at a frame immediately."""
     if not 1 <= frame.step <= len(steps):
         return []
     step = steps[frame.step - 1]
@@ -55,7 +55,7 @@ def due_now(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
 
 
 def left_over(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
-    """Requests that a frame answers only because it turned out to be the last of its step."""
+    """Requests that are due at a frame only because it is the last of its step."""
     if frame.increment == 0:
         return []
     done = due_now(model, steps, frame)

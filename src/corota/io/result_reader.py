@@ -1,4 +1,4 @@
-"""Results read back from a file, frame by frame when asked for."""
+"""Results read back from a file, frame by frame when requested."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -112,7 +112,7 @@ RESULT_READERS: dict[str, Callable[[Path], Results]] = {
 
 @contextmanager
 def _damage(name: str | Path) -> Iterator[None]:
-    """Say of whatever HDF5 and the shapes of arrays object to that the file is damaged."""
+    """Report errors of HDF5 and wrong array shapes as a damaged file."""
     try:
         yield
     except (FileError, MemoryError):
@@ -127,13 +127,13 @@ def _whole(good: bool, what: str) -> None:
 
 
 def _finite(name: str, values: NDArray[Any]) -> Floats:
-    """Numbers of a field; no run writes others."""
+    """Values of a field; runs write only finite numbers."""
     _whole(bool(np.isfinite(values).all()), f"{name} has values that are not finite")
     return np.asarray(values, np.float64)
 
 
 class Arrays(Mapping[str, "Floats"]):
-    """Arrays of a file by name; each is read when it is asked for."""
+    """Arrays of a file by name; each is read when it is requested."""
 
     def __init__(self, names: list[str], read: Callable[[str], Floats]) -> None:
         self._names, self._read = names, read
@@ -175,7 +175,7 @@ def _cells_with(blocks: list[Any], n_cells: int) -> dict[str, NDArray[np.bool_]]
 
 
 class FileFrames(Sequence[Frame]):
-    """Frames of a file; each is read when it is asked for, the last one is remembered."""
+    """Frames of a file, read on demand; the last one is cached."""
 
     def __init__(self, file: Any) -> None:
         self._file = file
@@ -201,7 +201,7 @@ class FileFrames(Sequence[Frame]):
         return self._count
 
     def clear(self) -> None:
-        """Forget the frame that is remembered."""
+        """Clear the cached frame."""
         self._last = None
 
     @overload
@@ -314,7 +314,7 @@ class FileFrames(Sequence[Frame]):
         }
 
     def _averages(self, number: int) -> dict[str, Any]:
-        """What the file holds of values whose points it does not hold; read when asked for."""
+        """What the file holds of values whose points it does not hold; read when requested."""
         of_pairs = tuple(f"{column}: " for column in vf.CONTACT)
         at_nodes = [
             name

@@ -1,4 +1,4 @@
-"""Going on from a checkpoint."""
+"""Resuming from a checkpoint."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -35,10 +35,10 @@ def resume(
     keep: Literal["all", "last"] = "all",
     fields: bool = True,
 ) -> Results:
-    """Go on with a run that stopped, from its newest whole checkpoint.
+    """Resume a stopped run from its newest intact checkpoint.
 
-    What follows is the same to the bit as if the run had never stopped, and so are its files,
-    which grow from where the checkpoint found them.
+    The results are bitwise identical to those of an uninterrupted run, and so are its files,
+    which continue from the state of the checkpoint.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def model_of(saved: Saved, model: Model | None = None) -> tuple[Model, list[Step
 
 
 def files_of(saved: Saved, folder: str | PathLike[str] | None = None) -> JobFiles:
-    """The files of a run, to go on with."""
+    """The files of a run, to be continued."""
     options = saved.options
     return JobFiles(
         saved.path.parent if folder is None else folder,

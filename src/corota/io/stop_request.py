@@ -1,7 +1,7 @@
-"""A request to end a run from outside: a hidden file beside its files.
+"""A request to end a run from outside: a hidden file in its folder.
 
-It reaches a run on whatever machine and system, unlike a signal; what follows is the same: the run
-ends after the increment at work, with a checkpoint.
+Unlike a signal it works on any machine and system; the effect is the same: the run
+ends after the current increment, with a checkpoint.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -13,22 +13,22 @@ from pathlib import Path
 
 from corota.io.atomic_file import full
 
-#: Seconds between two looks at the folder.
+#: Seconds between two checks of the folder.
 BEAT = 0.25
 
 
 def stop_file(folder: Path, name: str) -> Path:
-    """The file that asks the run of a job to end."""
+    """The file that requests the end of a run."""
     return folder / f".{name}.stop"
 
 
 def request_stop(folder: Path, name: str) -> None:
-    """Ask the run of a job to end after the increment at work.
+    """Request the end of the run of a job after the current increment.
 
     Raises
     ------
     FileError
-        If the folder takes no files.
+        If the folder is not writable.
     """
     path = stop_file(folder, name)
     try:
@@ -38,7 +38,7 @@ def request_stop(folder: Path, name: str) -> None:
 
 
 class StopRequest:
-    """Looks for the request, no more often than every :data:`BEAT`.
+    """Checks for the request, at most once every :data:`BEAT`.
 
     Parameters
     ----------

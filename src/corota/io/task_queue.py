@@ -1,4 +1,4 @@
-"""A queue of tasks that a thread of its own does: its length is bounded by bytes."""
+"""A queue of tasks for a separate thread, limited in bytes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Time between two looks at the queue [s].
+#: Time between two checks of the queue [s].
 BEAT = 0.25
-#: Bytes that may wait.
+#: Largest number of pending bytes.
 MOST_WAITING = 64 << 20
 
 
 class TaskQueue:
-    """Tasks in their order. Before it is started each one is done at once.
+    """Tasks in their order. Before the start each one is executed at once.
 
     Parameters
     ----------
@@ -45,13 +45,13 @@ class TaskQueue:
         self._busy_until = 0.0
 
     def start(self) -> None:
-        """Let a thread do what comes."""
+        """Start the thread."""
         self._stop = False
         self._thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
         self._thread.start()
 
     def put(self, task: Callable[[], None], size: int = 200) -> None:
-        """Add a task that holds so many bytes.
+        """Add a task with the size of its data in bytes.
 
         Raises
         ------
@@ -73,14 +73,14 @@ class TaskQueue:
             self._wake.set()
 
     def attempt(self, task: Callable[[], None]) -> None:
-        """Do a task at once, and keep its error."""
+        """Execute a task at once, and keep its error."""
         try:
             task()
         except Exception as error:  # the first error is the one to report
             self.error = self.error or error
 
     def drain(self) -> None:
-        """Do everything that waits, and end the thread."""
+        """Execute all pending tasks, and end the thread."""
         if self._thread is None:
             return
         self._stop = True
@@ -107,7 +107,7 @@ class TaskQueue:
                 self.attempt(task)
             done += size
             large = large or size > 200
-            # An analysis that goes on faster than this must not keep the files from the disk.
+            # Frequent increments must not delay the files.
             if done > MOST_WAITING // 4 or time.perf_counter() > late:
                 break
         if large and self.error is None:

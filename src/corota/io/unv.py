@@ -51,7 +51,7 @@ def read_unv(path: str | os.PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        With file and line of what is not understood, or if there are no planar elements.
+        With file and line of the error, or if there are no planar elements.
     FileError
         If the file cannot be read.
     """
@@ -115,7 +115,7 @@ def _elements(lines: list[str], at: int, stop: int, found: _Found) -> int:
     if kind is not None:
         if count != _SIZES[kind]:
             raise ValueError(f"element {label} of type {number} has {count} nodes")
-        # Nodes go round: each mid-side node stands behind its corner.
+        # Nodes are in cyclic order: each mid-side node follows its corner.
         if kind in ("triangle6", "quad8", "line3"):
             nodes = nodes[::2] + nodes[1::2]
         found.cells.setdefault(kind, []).append((label, nodes))
@@ -139,7 +139,7 @@ def _group(lines: list[str], at: int, stop: int, found: _Found) -> int:
 
 
 def _as_meshio(found: _Found, path: str) -> Any:
-    """The file as meshio would give it."""
+    """The file as a meshio object."""
     row = {label: i for i, label in enumerate(found.points)}
     blocks, labels, place = [], [], {}
     for number, (kind, rows) in enumerate(found.cells.items()):

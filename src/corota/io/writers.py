@@ -114,7 +114,7 @@ WRITERS: dict[str, Callable[..., None]] = {
 
 
 class Stream(Protocol):
-    """Writes a result file increment by increment, beside the analysis."""
+    """Writes a result file increment by increment during the analysis."""
 
     @property
     def state(self) -> dict[str, Any]: ...
@@ -127,7 +127,7 @@ class Stream(Protocol):
 
 @dataclass(frozen=True)
 class Job:
-    """What a stream is made for: model, steps, what goes into the file, where it was left."""
+    """Data of a stream: model, steps, file options, state at a checkpoint."""
 
     model: Model
     steps: Sequence[Step]
@@ -160,7 +160,7 @@ def _stream_frd_binary(path: Path, job: Job) -> Stream:
     return FrdWriter(path, job.model, job.steps, job.options, binary=True, resume=job.resume)
 
 
-#: Format of a run to what writes it; a name is the ending of the file and, behind a dash, a kind.
+#: Writer by format; a name is the file extension and, after a dash, a kind.
 STREAMS: dict[str, Callable[[Path, Job], Stream]] = {
     "vtkhdf": _stream_vtkhdf,
     "pvd": _stream_pvd,
@@ -180,7 +180,7 @@ MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {".inp": _deck}
 
 
 def write_mesh(mesh: Mesh, path: str | PathLike[str]) -> Path:
-    """Write a mesh with its sets in the format that the ending names; return the path.
+    """Write a mesh with its sets in the format of the file extension; return the path.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def write_mesh(mesh: Mesh, path: str | PathLike[str]) -> Path:
 
 
 def write(results: Results, path: str | PathLike[str], **options: Any) -> Path:
-    """Write results in the format that the ending names; return the path.
+    """Write results in the format of the file extension; return the path.
 
     Parameters
     ----------

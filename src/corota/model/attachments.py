@@ -1,4 +1,4 @@
-"""What is attached to nodes: point masses and dashpots."""
+"""Attachments of nodes: point masses and dashpots."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

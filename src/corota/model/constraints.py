@@ -1,4 +1,4 @@
-"""Constraints of a model: dependent degrees of freedom, eliminated by the drivers."""
+"""Constraints of a model: dependent degrees of freedom, eliminated by the analysis."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Equation(Brief):
         Node index, dof (0 and 1 displacement, 2 rotation) and coefficient. Dofs of nodes with
         local axes are those along the axes.
     rhs : float
-        Right-hand side [length or rad], in force from the start of the analysis.
+        Right-hand side [length or rad], active from the start of the analysis.
     """
 
     terms: list[tuple[int, int, float]]
@@ -61,9 +61,9 @@ class Coupling(Brief):
     kind : {"kinematic", "distributing"}
         ``kinematic``: the chosen dofs of `nodes` follow the rigid motion of the reference
         node, in any rotation. ``distributing``: the chosen dofs of the reference node follow
-        the weighted mean motion of `nodes`; a load there spreads over them.
+        the weighted mean motion of `nodes`; a load there is distributed over them.
     dofs : tuple of int
-        Which dofs: 0 and 1 displacement, 2 rotation.
+        Coupled dofs: 0 and 1 displacement, 2 rotation.
     weights : ndarray, shape (n,), or None
         Weights of a distributing coupling [1], > 0; equal by default.
     """
@@ -89,7 +89,7 @@ class Coupling(Brief):
 
 @dataclass
 class LocalAxes(Brief):
-    """Axes of nodes in which their supports, forces and equations are meant.
+    """Local axes of nodes for their supports, forces and equations.
 
     Parameters
     ----------
@@ -116,14 +116,14 @@ class StraightLine(Brief):
     """Nodes that stay on the straight line through two others, in any motion of these.
 
     They may slide along it. Each loses the displacement along its axis that is further from
-    the line at the start; the line may turn until that axis lies along it.
+    the line at the start; the line may rotate until it is parallel to that axis.
 
     Parameters
     ----------
     nodes : str or array_like of int
-        Node, edge or cell set, or node indices; both ends are left out.
+        Node, edge or cell set, or node indices; both ends are excluded.
     first, last : int
-        The nodes that define the line, at two places.
+        The nodes that define the line, at different positions.
     """
 
     nodes: str | Ints

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Reference = int | tuple[float, float] | None
 
-#: Ways to treat what overlaps, or is apart, at the start.
+#: Treatment of overlaps and gaps at the start.
 STARTS = ("keep", "adjust", "ramp")
 METHODS = ("mortar", "node_to_segment")
 
@@ -40,8 +40,9 @@ class RigidCurve(Brief):
         (x0, y0) to (x1, y1) where sweep is 0, else an arc about (cx, cy) from (x0, y0) through
         the angle sweep [rad], counter-clockwise if positive.
     reference : int, tuple of float or None
-        Node (index) that carries the curve: move, turn, load or hold it as any node, its
-        reaction is that of the curve. A point, or None: the curve stays where it is.
+        Node (index) that carries the curve: it can be moved, rotated, loaded or fixed like any
+        node; its
+        reaction is that of the curve. A point, or None: the curve is fixed.
     """
 
     segments: Floats
@@ -80,7 +81,7 @@ class RigidCurve(Brief):
         inside: bool = False,
         reference: Reference = None,
     ) -> RigidCurve:
-        """A disc, or with `inside` a round hole with the deformable body in it."""
+        """A disc, or with `inside` a round hole that contains the deformable body."""
         return cls.arc(centre, radius, 0.0, 360.0 if inside else -360.0, reference=reference)
 
     @classmethod
@@ -164,7 +165,7 @@ class RigidCurve(Brief):
 
     @property
     def backward(self) -> Floats:
-        """The segments the other way round, the rigid body on the left, shape (n, 7)."""
+        """The segments in reverse order, the rigid body on the left, shape (n, 7)."""
         back: Floats = self.segments[::-1].copy()
         back[:, :2], back[:, 2:4] = self.segments[::-1, 2:4], self.segments[::-1, :2]
         back[:, 6] *= -1.0
@@ -173,7 +174,7 @@ class RigidCurve(Brief):
 
 @dataclass
 class PressureLaw(Brief):
-    """Pressure [force/length^2] against overclosure [length], instead of none below contact.
+    """Pressure [force/length^2] against overclosure [length], in place of hard contact.
 
     Parameters
     ----------
@@ -242,7 +243,7 @@ class PressureLaw(Brief):
             return k * w, np.full_like(w, k), 0.5 * k * w * w
         if self.kind == "exponential":
             c, p0 = float(self.overclosure[0]), float(self.pressure[0]) / (math.e - 1.0)
-            # Straight on from 30 c: the exponential of a bad iterate must not overflow.
+            # Linear beyond 30 c: the exponential of a bad iterate must not overflow.
             s = w / c + 1.0
             near = np.minimum(s, 30.0)
             e, over = np.exp(near), s - near
@@ -272,31 +273,31 @@ class ContactPair(Brief):
         Edge set, or pairs of cell index and local edge: the side that carries the pressures;
         the finer or softer one.
     master : str, array_like of int or RigidCurve
-        The other side; the slave again for contact of a surface with itself.
+        The opposite surface; the slave again for self-contact.
     method : {"mortar", "node_to_segment"}
     friction : float
         Coulomb coefficient, >= 0.
     law : PressureLaw, optional
-        Pressure against overclosure; without it nothing penetrates.
+        Pressure against overclosure; without it, contact is hard.
     clearance : float, optional
-        Gap at the start [length], whatever the coordinates say.
+        Initial gap [length], independent of the coordinates.
     start : {"keep", "adjust", "ramp"}
-        Overlap of the coordinates at the start: pushed out in the first increment, taken as
-        the state of contact without strain, or pushed out over the first step.
+        Overlap of the coordinates at the start: removed in the first increment, treated as
+        contact without strain, or removed over the first step.
     adjust : float
         With ``start="adjust"``: gaps up to this at the start [length] count as contact, too.
     adjust_nodes : str or array_like of int, optional
         With ``start="adjust"``: these slave nodes only, whatever their gap.
     smooth : bool
-        Take the edges of a master that is no rigid curve as a curve without kinks; corners sharper
-        than 50 degrees stay.
+        Treat the edges of a deformable master as a curve without kinks; corners sharper
+        than 50 degrees are kept.
     stabilise : bool
-        Damp the two surfaces in static steps until the end of each, so that bodies which
-        nothing else holds find each other.
+        Damp the two surfaces in static steps until the end of each, so that bodies without
+        other supports come into contact.
     stabilise_from : int
         First step that is damped, from 1.
     reach : float
-        Distance at which pairs are looked at [length]; 0 takes four edges.
+        Search distance for pairs [length]; 0 for four edges.
     name : str
     """
 
@@ -357,14 +358,14 @@ class ContactPair(Brief):
 
 @dataclass
 class Tie(Brief):
-    """Two surfaces joined without the same nodes.
+    """Two surfaces joined without common nodes.
 
     Parameters
     ----------
     slave, master : str or array_like of int, shape (n, 2)
     tolerance : float
-        Largest distance that is bridged [length]; 0 takes a tenth of the longest edge. What
-        is farther apart stays free.
+        Largest distance that is tied [length]; 0 for a tenth of the longest edge. Edges
+        farther apart are not tied.
     name : str
     """
 
@@ -392,8 +393,8 @@ def joint_thickness(
 ) -> Floats:
     """Thickness of the joint at the slave edges: the smaller of both sides.
 
-    The area of contact, and with it the contact pressure, does so not depend on which side is
-    the slave. The other side's thickness is that of its undeformed edge nearest by.
+    The contact area, and with it the contact pressure, then does not depend on which side is
+    the slave. The thickness of the other side is that of its nearest undeformed edge.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A model as plain data: what reports and pages show of it beside the mesh."""
+"""A model as plain data for reports, beside the mesh."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 CURVE_POINTS = 61
 #: Plastic strain up to which a hardening law without a table is drawn.
 CURVE_STRAIN = 0.1
-#: Fields of materials and steps that say nothing in a table.
+#: Fields of materials and steps that are omitted in tables.
 HIDDEN = {"where", "name", "rows", "yield_curve", "supports", "loads", "outputs", "path"}
 
 
@@ -50,7 +50,7 @@ def describe(model: Model, steps: Sequence[Step] = ()) -> dict[str, Any]:
     -------
     dict
         Of lists, dicts, strings and numbers only. Nodes and cells are indices from 0; ``step``
-        is 0 for what holds in every step.
+        is 0 for entries of every step.
     """
     steps = list(steps) or model.steps
     materials = list({id(s.material): s.material for s in model.sections}.values())

@@ -50,7 +50,7 @@ def dof_indices(dofs: object, where: Location | None = None) -> tuple[int, ...]:
     Raises
     ------
     InputError
-        If one is none, or there are none.
+        If one is unknown, or there are none.
     """
     names = dofs.split() if isinstance(dofs, str) else dofs
     if not isinstance(names, (list, tuple)) or not names:

@@ -1,4 +1,4 @@
-"""The registered elements and their facts, as the core gives them."""
+"""The registered elements and their facts, from the core."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -22,16 +22,16 @@ class Element:
     ----------
     name : str
     cell : str
-        Kind of cell that it fits.
+        Kind of cell.
     n_nodes, dofs_per_node, n_points : int
     n_internal_modes : int
-        Modes of displacement that no other element shares.
+        Internal displacement modes, condensed within the element.
     hourglass_modes : int
         Zero-energy modes beyond the three rigid ones.
     alpha_b : float
-        Share of a normal edge traction that goes into end moments.
+        Fraction of a normal edge traction that gives end moments.
     free_volume : bool
-        Does not lock in plane strain where the volume cannot change.
+        Does not lock in plane strain with incompressible material.
     bending_cells : int
         Cells through a slender part below which it is too stiff in bending; 0 for none.
     weighted : bool
@@ -40,13 +40,13 @@ class Element:
         Nonlinear strains are linear about the mean gradient of the element, so that its internal
         modes are stable at large strain.
     stabilized : bool
-        Has one point, and a stiffness of its own for the hourglass.
+        Has one point and a stabilized hourglass mode.
     line : bool
         Line element (truss, beam, spring) and no part of the plane.
     spring : bool
         Line element without mass, section and axial strain.
     turns : bool
-        Whether its frame turns with it.
+        Whether it has a co-rotated frame.
     """
 
     name: str
@@ -73,7 +73,7 @@ class Element:
 
     @property
     def loose_modes(self) -> bool:
-        """Whether large plastic strain can run into its incompatible modes."""
+        """Whether large plastic strain can localize in its incompatible modes."""
         return self.n_internal_modes > 0 and not (self.drilling or self.about_mean)
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class InitialFields:
-    """What :class:`corota.Model` knows of temperatures and initial stresses."""
+    """Temperatures and initial stresses of :class:`corota.Model`."""
 
     initial_temperatures: list[InitialTemperature]
     initial_stresses: list[InitialStress]
@@ -30,7 +30,7 @@ class InitialFields:
         def _cells(self, cells: str | ArrayLike) -> str | Ints: ...
 
     def initial_temperature(self, value: ArrayLike, nodes: str | ArrayLike = "") -> None:
-        """Set the temperature at which there is no thermal strain; 0 where none is given.
+        """Set the temperature without thermal strain; 0 where none is given.
 
         Parameters
         ----------
@@ -51,7 +51,7 @@ class InitialFields:
         zz: ArrayLike = 0.0,
         xy: ArrayLike = 0.0,
     ) -> None:
-        """Stress cells in the reference; what it does not balance moves the structure.
+        """Set the stress of cells in the reference; unbalanced stress deforms the structure.
 
         Parameters
         ----------

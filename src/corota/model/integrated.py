@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 
 class IntegratedAmplitude(Amplitude):
-    """The integral of a table over time: how far a support has moved from where it began.
+    """The integral of a table over time: the displacement of a support from its start.
 
     The table is linear between its points, so velocity and displacement are polynomials there.
-    A support with this amplitude moves on from where the step finds it.
+    A support with this amplitude moves from its position at the start of the step.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class LineSections:
-    """What :class:`corota.Model` knows of line elements."""
+    """Line elements of :class:`corota.Model`."""
 
     mesh: Mesh
     sections: list[Section]
@@ -62,7 +62,7 @@ class LineSections:
         inertia : float
             Second moment of the cross-section [length^4].
         shear_area : float, optional
-            Area that takes shear [length^2]; 0 for no shear deformation.
+            Shear area [length^2]; 0 for no shear deformation.
         """
         if not (np.isfinite(inertia) and inertia > 0.0 and 0.0 <= shear_area < np.inf):
             raise InputError(

@@ -1,4 +1,4 @@
-"""How supports and loads are given: the same methods of a model and of a step."""
+"""Methods of models and steps that define supports and loads."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class Loading:
     """Methods that add to ``supports`` and ``loads``.
 
-    A model checks places by its mesh at once; those of a step are checked when it runs.
+    A model checks sets and nodes at once; those of a step are checked when it runs.
     """
 
     supports: list[Fixed]
@@ -48,7 +48,7 @@ class Loading:
         rotation: float | bool | None = None,
         amplitude: str = "",
     ) -> None:
-        """Hold or move nodes; ``None`` leaves a direction free.
+        """Fix or move nodes; ``None`` leaves a direction free.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class Loading:
         x, y : float or None
             Displacement at the end of a step [length].
         rotation : float, bool or None
-            ``True`` holds the drilling rotation, a number prescribes it [rad]. Nodes of beams, of
+            ``True`` fixes the drilling rotation, a number prescribes it [rad]. Nodes of beams, of
             ``OPT``, ``Q4D`` and ``Q4DI``, and reference nodes have one; where no node of the
             place has, ``check`` warns and the results have a note.
         amplitude : str
@@ -66,7 +66,7 @@ class Loading:
         Raises
         ------
         InputError
-            If there is no such place, or a value is not finite.
+            If there is no such set or node, or a value is not finite.
 
         Examples
         --------
@@ -97,8 +97,9 @@ class Loading:
     ) -> None:
         """Apply a dead force or a drilling moment.
 
-        On an edge set the values are the resultant, spread consistently over the length of the
-        edges, whatever the mesh. On nodes they hold for each node. A name that is both, as the
+        On an edge set the values are the resultant, distributed consistently over the length of the
+        edges, independent of the mesh. On nodes they apply to each node. A name of both, such as
+        the
         sides of :func:`corota.mesh.rectangle` are, means the edges.
 
         Parameters
@@ -112,14 +113,14 @@ class Loading:
         total : bool
             The values are the resultant on nodes too, shared equally.
         per_node : bool
-            The values hold for each node of an edge set too, as those of ``*CLOAD``.
+            The values apply to each node of an edge set too, as those of ``*CLOAD``.
         amplitude : str
             Name in ``Model.amplitudes``; empty: ramp in static steps.
 
         Raises
         ------
         InputError
-            If there is no such place, or a value is not finite.
+            If there is no such set or node, or a value is not finite.
 
         Examples
         --------
@@ -145,9 +146,9 @@ class Loading:
         amplitude: str = "",
         follow: bool = False,
     ) -> None:
-        """Apply a traction [force/length^2] on edges: dead, or turning with them.
+        """Apply a traction [force/length^2] on edges: dead, or following them.
 
-        One that follows keeps its components along and across the edge in geometrically nonlinear
+        A follower traction keeps its tangential and normal components in geometrically nonlinear
         steps, and acts on its current length.
         """
         kind: Literal["following traction", "traction"]
@@ -185,16 +186,16 @@ class Loading:
     ) -> None:
         """Apply the centrifugal force of a steady spin to cells (default all).
 
-        The model is seen from a frame that turns with it: the force grows with the current
+        The frame of reference rotates with the model: the force grows with the current
         distance from the axis in geometrically nonlinear steps, with that of the undeformed body
-        in linear ones. Modes and buckling see its stiffness. Coriolis forces are left out.
+        in linear ones. Modes and buckling include its stiffness. Coriolis forces are omitted.
 
         Parameters
         ----------
         omega : float
             Angular velocity [rad/time]; its sign does not matter.
         about : tuple of float
-            Where the axis meets the plane [length].
+            Point where the axis meets the plane [length].
         cells : str or array_like of int
             Cell set ("" for all), cell indices, or a mask of cells.
         amplitude : str
@@ -207,7 +208,7 @@ class Loading:
     def temperature(
         self, value: ArrayLike, nodes: str | ArrayLike = "", amplitude: str = ""
     ) -> None:
-        """Bring nodes to a temperature, in which materials with an ``expansion`` expand.
+        """Set the temperature of nodes; materials with an ``expansion`` expand.
 
         Parameters
         ----------

@@ -65,7 +65,7 @@ class Amplitude(Brief):
     def derivatives(
         self, time: float, window: float, first: float = -np.inf, last: float = np.inf
     ) -> tuple[float, float]:
-        """Rate and acceleration of the factor at a time, seen over a window.
+        """Rate and acceleration of the factor at a time, by differences over a window.
 
         Both are of second order in the window: central differences, or one-sided ones where
         the window would reach beyond `first` or `last`; these have the error of the central ones
@@ -79,7 +79,7 @@ class Amplitude(Brief):
         window : float
             Half the width [time].
         first, last : float
-            Times between which the table is looked at.
+            Times between which the table is used.
 
         Returns
         -------
@@ -156,7 +156,7 @@ def finite(value: object, what: str, where: Location | None) -> float | NDArray[
     Raises
     ------
     InputError
-        If it is none.
+        If it is not.
     """
     if np.ndim(value) == 0:  # type: ignore[arg-type]
         return number(value, what, where)
@@ -184,7 +184,7 @@ class Fixed(Brief):
     amplitude : str
         Name in ``Model.amplitudes``; empty: ramp in static steps.
     keep : bool
-        Hold the nodes where the step finds them, whatever `value` is.
+        Fix the nodes at their position at the start of the step, whatever `value` is.
     """
 
     nodes: str | Ints
@@ -220,7 +220,7 @@ class NodalForce(Brief):
     amplitude : str
         Name in ``Model.amplitudes``; empty: ramp in static steps.
     follower : bool
-        Whether a force turns with the rotation of its node in geometrically nonlinear steps; it
+        Whether a force follows the rotation of its node in geometrically nonlinear steps; it
         is dead otherwise.
     """
 
@@ -241,9 +241,9 @@ class NodalForce(Brief):
 
 @dataclass
 class Force(Brief):
-    """A dead force, meant as a resultant on edges and per node on nodes.
+    """A dead force: a resultant on edges, and per node on nodes.
 
-    What it is becomes known with the mesh: see :meth:`on`.
+    The mesh decides which: see :meth:`on`.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ class Force(Brief):
     moment : float
         Drilling moment [force*length].
     spread : {"", "total", "per node"}
-        Whether the values are the resultant or hold for each node; by default the resultant on
+        Whether the values are the resultant or apply to each node; by default the resultant on
         edges and per node on nodes.
     amplitude : str
         Name in ``Model.amplitudes``; empty: ramp in static steps.
@@ -277,7 +277,7 @@ class Force(Brief):
         self.amplitude = _amplitude(self.amplitude, self.where)
 
     def on(self, mesh: Mesh) -> list[NodalForce | EdgeLoad]:
-        """The loads that it consists of on a mesh.
+        """The equivalent loads on a mesh.
 
         A resultant on edges is a traction, and a moment is shared by the nodes as a moment per
         length; a total on nodes is shared equally.
@@ -350,13 +350,13 @@ class EdgeLoad(Brief):
     kind : {"pressure", "traction", "following traction", "shear"}
         ``pressure``: normal, positive into the element, follows the deforming edge in
         geometrically nonlinear steps (the thickness stays the undeformed one); ``traction``:
-        dead, fixed in space; ``following traction``: the same on the undeformed edge, turns with
+        dead, fixed in space; ``following traction``: the same on the undeformed edge, rotates with
         it and acts on its current length, as a pressure does; ``shear``: along the edge, with the
         element on the left, and follows it.
     value : tuple of float
         ``(p,)``, ``(tx, ty)`` or ``(t,)`` [force/length^2]; times thickness and length.
     total : bool
-        Whether a traction's value is a total force [force], spread over the edges' area.
+        Whether a traction's value is a total force [force], distributed over the edges' area.
     """
 
     edges: str | Ints
@@ -387,7 +387,7 @@ class BodyForce(Brief):
         ``centrifugal``: value ``(omega^2, x0, y0)`` [1/time^2, length, length], at current
         positions in geometrically nonlinear steps.
     direction : tuple of float or None
-        Of gravity, as it was given: a negative size and a size of zero keep their direction.
+        Of gravity, as given: also kept for a negative or zero size.
         That of the value by default.
     """
 
@@ -463,7 +463,7 @@ class Temperature(Brief):
 
 @dataclass
 class InitialTemperature(Brief):
-    """Temperature of nodes at which there is no thermal strain; 0 where none is given.
+    """Temperature of nodes without thermal strain; 0 where none is given.
 
     Parameters
     ----------
@@ -497,10 +497,10 @@ class InitialStress(Brief):
     where: Location | None = field(default=None, compare=False, repr=False)
 
 
-#: What acts once the mesh is known.
+#: Loads that act on a given mesh.
 AppliedLoad = NodalForce | EdgeLoad | BodyForce | Temperature
 Load = AppliedLoad | Force
-#: Loads that ``OP=NEW`` takes away together: those of *CLOAD, of *DLOAD and *DSLOAD, and of
+#: Loads that ``OP=NEW`` removes together: those of *CLOAD, of *DLOAD and *DSLOAD, and of
 #: *TEMPERATURE.
 LoadKind = Literal["force", "distributed", "temperature"]
 LOAD_KINDS: tuple[LoadKind, ...] = ("force", "distributed", "temperature")
@@ -514,7 +514,7 @@ def kind_of(load: AppliedLoad) -> LoadKind:
 
 
 def check_loads(loads: object, where: Location | None = None) -> None:
-    """Refuse what is no load.
+    """Refuse objects that are not loads.
 
     Raises
     ------
@@ -532,7 +532,7 @@ def check_loads(loads: object, where: Location | None = None) -> None:
 
 
 def check_supports(supports: object, where: Location | None = None) -> None:
-    """Refuse what is no support.
+    """Refuse objects that are not supports.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Names of the local strain measures, the paper's names for them, and which one to take."""
+"""Names of the local strain measures, the paper's names for them, and which one to use."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -16,12 +16,13 @@ LocalStrain = Literal["linear", "logarithmic", "green_lagrange", "simplified", "
 #: Measures of the local displacement gradient: its symmetric part, the Hencky strain, and the
 #: Green-Lagrange strain.
 LOCAL_STRAINS = ("linear", "logarithmic", "green_lagrange")
-#: The approaches of Cho, Joo, Shin and Kim (2017). Only the first pages of the paper were at hand:
+#: The approaches of Cho, Joo, Shin and Kim (2017). Only the first pages of the paper were
+#: available:
 #: that its modified approach is the logarithmic strain is our reading.
 ALIASES = {"simplified": "linear", "modified": "logarithmic"}
-#: Local strain above which the linear measure is no longer a good one.
+#: Local strain above which the linear measure is no longer accurate.
 LARGE_STRAIN = 0.05
-#: Which measure to take: the one text of messages, of the check and of the documents.
+#: Advice on the measure, for messages, the check and the documents.
 ADVICE = (
     "Up to local strains of 5 % the default, local_strain='linear', is right. Beyond that, use "
     "local_strain='logarithmic' for materials that flow; for elastic ones compare "
@@ -33,7 +34,7 @@ ADVICE = (
 def local_strain(name: str, where: Location | None = None) -> str:
     """Name of a measure in :data:`LOCAL_STRAINS`, from it or from an alias.
 
-    Blanks, hyphens, underscores and the case of letters do not count.
+    Blanks, hyphens, underscores and case are ignored.
 
     Raises
     ------

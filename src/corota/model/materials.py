@@ -128,17 +128,17 @@ class Material(Brief):
     name: str = field(default="", kw_only=True)
     where: Location | None = field(default=None, kw_only=True, compare=False, repr=False)
 
-    #: Name under which the core knows the law.
+    #: Name of the law in the core.
     law = ""
     #: Whether the law has plastic flow.
     flows = False
     #: Whether stress is a linear function of strain.
     linear = False
-    #: Whether the answer depends on the path of the strain.
+    #: Whether the stress depends on the strain path.
     remembers = True
-    #: Whether it has axes of its own.
+    #: Whether it has material axes.
     oriented = False
-    #: Whether trusses and beams take it.
+    #: Whether trusses and beams support it.
     for_lines = False
 
     def compliance(self) -> NDArray[np.float64]:
@@ -153,7 +153,7 @@ class Material(Brief):
         )
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
-        """Numbers handed to the core, in the order that the law's file documents.
+        """Numbers passed to the core, in the order documented in the law's file.
 
         Parameters
         ----------

@@ -84,7 +84,7 @@ class Model(Loading, LineSections, InitialFields):
     sections : list of Section
     amplitudes : dict of str to Amplitude
     supports : list of Fixed
-        Hold in every step.
+        Active in every step.
     loads : list of Load
         Act in every step; a deck's loads are in its steps.
     steps : list of Step
@@ -96,13 +96,13 @@ class Model(Loading, LineSections, InitialFields):
     point_masses : list of PointMass
     dashpots : list of Dashpot
     constraints : list of Constraint
-        Equations, couplings and straight lines, in force in every step.
+        Equations, couplings and straight lines, active in every step.
     axes : list of LocalAxes
         Axes of nodes; the last for a node counts.
     contacts : list of ContactPair
     ties : list of Tie
     notes : list of str
-        What the reader ignored, repaired or assumed.
+        Notes of the reader: what it ignored, repaired or assumed.
     title : str
         Heading of a deck.
     sources : list of str
@@ -112,7 +112,7 @@ class Model(Loading, LineSections, InitialFields):
     time_points : dict of str to ndarray
         Times [time] within a step, by the name that :class:`corota.model.steps.Output` gives.
     unit_system : Units
-        Names of the units, see :meth:`units`; empty if nobody told.
+        Names of the units, see :meth:`units`; empty if not given.
     """
 
     def __init__(self, mesh: Mesh, name: str = "model") -> None:
@@ -140,7 +140,7 @@ class Model(Loading, LineSections, InitialFields):
         self.unit_system = Units()
 
     def units(self, *names: str) -> None:
-        """Name the units the model is meant in; axes, tables and files then bear them.
+        """Name the units of the model, for axes, tables and files.
 
         Nothing is converted: the numbers must be consistent by themselves.
 
@@ -148,7 +148,7 @@ class Model(Loading, LineSections, InitialFields):
         ----------
         *names : str
             Units of length, force, mass, time and temperature, in any order; those that are
-            left out are not told.
+            omitted have no label.
 
         Raises
         ------
@@ -239,7 +239,7 @@ class Model(Loading, LineSections, InitialFields):
         spin: float = 0.0,
         about: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        """Give nodes an initial rigid motion.
+        """Set an initial rigid motion of nodes.
 
         Parameters
         ----------
@@ -269,14 +269,14 @@ class Model(Loading, LineSections, InitialFields):
         y: float = 0.0,
         rotation: float = 0.0,
     ) -> None:
-        """Damp the approach of two nodes of an element, or the motion of one to the ground.
+        """Add a dashpot between two nodes of an element, or from one to the ground.
 
         Parameters
         ----------
         first, second : int, int or None
             Node indices.
         c : float
-            Along the line of the two nodes, which turns with them [force*time/length].
+            Along the current line of the two nodes [force*time/length].
         x, y, rotation : float
             To the ground [force*time/length], [force*length*time].
         """
@@ -288,7 +288,7 @@ class Model(Loading, LineSections, InitialFields):
         )
 
     def equation(self, *terms: tuple[int, str, float], rhs: float = 0.0) -> None:
-        """Relate dofs linearly: the sum of coefficient times dof is `rhs`.
+        """Add a linear equation: the sum of coefficient times dof is `rhs`.
 
         Parameters
         ----------
@@ -339,7 +339,7 @@ class Model(Loading, LineSections, InitialFields):
         angle: float = 0.0,
         centre: tuple[float, float] | None = None,
     ) -> None:
-        """Turn the axes in which supports and forces of nodes are meant.
+        """Set local axes of nodes for their supports and forces.
 
         Parameters
         ----------
@@ -369,8 +369,9 @@ class Model(Loading, LineSections, InitialFields):
     ) -> None:
         """Define contact of two edge sets, or of one and a rigid curve; see ``docs/contact.md``.
 
-        The parameters are those of :class:`corota.model.contact.ContactPair`; the same set twice is
-        contact of a surface with itself.
+        The parameters are those of :class:`corota.model.contact.ContactPair`; the same set twice
+        gives
+        self-contact.
         """
         other = master if isinstance(master, RigidCurve) else self._edges(master)
         self.contacts.append(
@@ -402,7 +403,7 @@ class Model(Loading, LineSections, InitialFields):
         self.ties.append(Tie(self._edges(slave), self._edges(master), tolerance, name))
 
     def copy(self) -> Model:
-        """A model of its own that may be changed: a variant, or the next run of a sweep.
+        """An independent copy: for a variant, or the next run of a sweep.
 
         Examples
         --------
@@ -418,7 +419,7 @@ class Model(Loading, LineSections, InitialFields):
         return deepcopy(self)
 
     def check(self, steps: Step | Sequence[Step] | None = None) -> Findings:
-        """Look for what will fail, mislead or surprise, without solving more than the start.
+        """Check for errors and likely mistakes, without solving more than the start.
 
         Parameters
         ----------
@@ -532,12 +533,12 @@ class Findings(list["Diagnostic"]):
 
     @property
     def errors(self) -> list[Diagnostic]:
-        """What a run refuses."""
+        """Findings that a run refuses."""
         return [d for d in self if d.severity == "error"]
 
     @property
     def warnings(self) -> list[Diagnostic]:
-        """What looks wrong and does not stop a run."""
+        """Findings that look wrong but do not stop a run."""
         return [d for d in self if d.severity == "warning"]
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Ways along an equilibrium path, and the points on it where stability changes."""
+"""Methods for equilibrium paths, and the points on them where stability changes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -26,10 +26,10 @@ class Label(int):
 
 @dataclass(kw_only=True)
 class ArcLength(Brief):
-    """Follow the path by its length: through limit points and snap-back, without tuning.
+    """Follow the path by arc length: through limit points and snap-back, without tuning.
 
     The step ends where the first of the named ends is reached. With none named it ends at
-    load factor 1; otherwise the load factor may go where it likes.
+    load factor 1; otherwise the load factor is not limited.
 
     Parameters
     ----------
@@ -41,13 +41,13 @@ class ArcLength(Brief):
     increments : int, optional
         End after so many increments.
     shape : {"cylindrical", "spherical"}
-        Whether only displacements make the length of an increment, or the load factor too.
+        Whether only displacements count in the length of an increment, or the load factor too.
     locate : bool
-        Locate limit and bifurcation points and make them increments of their own.
+        Locate limit and bifurcation points and make each an increment.
     switch : bool
-        Leave the path at the first bifurcation point along the branch that turns off.
+        Switch to the branch at the first bifurcation point.
     side : {1, -1}
-        To which side of the mode, whose largest component is positive.
+        Side of the mode, whose largest component is positive.
     branch : int
         Which branch to take, from 1, where several leave a multiple bifurcation point; they are
         listed in :attr:`CriticalPoint.branches`.
@@ -109,9 +109,9 @@ class DisplacementControl(Brief):
     also : list of tuple
         More terms ``(where, dof, weight)`` that are added to the controlled quantity.
     increments : int
-        Increments if all goes well.
+        Increments without cut-backs.
     locate : bool
-        Locate limit and bifurcation points and make them increments of their own.
+        Locate limit and bifurcation points and make each an increment.
 
     Examples
     --------
@@ -153,7 +153,7 @@ class CriticalPoint(Brief):
     kind : {"limit", "bifurcation"}
         Whether the load factor has a turning point there, or another branch crosses.
     step, increment : int
-        Of the frame that holds it.
+        Of its frame.
     factor : float
         Load factor.
     mode : ndarray, shape (n_nodes, 3)
@@ -165,7 +165,7 @@ class CriticalPoint(Brief):
     negative : tuple of int
         Negative pivots before and after; -1 where unknown.
     branches : ndarray, shape (m, n_nodes, 3)
-        Directions in which branches leave, as far as they were looked for (``switch=True``).
+        Directions of the branches, if they were searched (``switch=True``).
     """
 
     kind: Literal["limit", "bifurcation"]
@@ -197,7 +197,7 @@ class Modes(Brief):
     step : int
         Step that found them.
     factors : ndarray, shape (m,)
-        Rising; for buckling the factors on the perturbing load that make the state critical;
+        Increasing; for buckling the factors on the perturbing load that make the state critical;
         else frequencies [1/time].
     shapes : ndarray, shape (m, n_nodes, 3)
         Displacements and rotation by node; for buckling the largest displacement is 1, for

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Most back-stresses of a material.
+#: Largest number of back-stresses of a material.
 MAX_BACK_STRESSES = 6
 
 
@@ -33,7 +33,7 @@ class Voce(Brief):
     Parameters
     ----------
     Q : float
-        Growth of the yield stress in the end [force/length^2], >= 0.
+        Saturated growth of the yield stress [force/length^2], >= 0.
     b : float
         Rate in terms of the equivalent plastic strain, >= 0.
     H : float
@@ -102,7 +102,7 @@ class Mises(LawOfTheCore):
     isotropic: float | Voce = 0.0
     kinematic: float = 0.0
     chaboche: Sequence[tuple[float, float]] = ()
-    #: Where each row of the yield curve stands in a deck.
+    #: Location of each row of the yield curve in a deck.
     rows: Sequence[Location] = field(default=(), kw_only=True, compare=False, repr=False)
 
     law = "mises"

@@ -16,7 +16,7 @@ from corota.model.single_point import LawOfTheCore
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: Halvings after which an interval is as small as rounding.
+#: Halvings after which an interval is of rounding size.
 BISECTIONS = 60
 
 
@@ -24,9 +24,9 @@ BISECTIONS = 60
 class RambergOsgood(LawOfTheCore):
     """Deformation plasticity: ``E e = s + offset (|s| / yield_stress)^(exponent - 1) s``.
 
-    The strain is a function of the stress alone, so that unloading goes back along the same
-    curve. Under loads that grow together it is the plasticity of the power law (fracture
-    mechanics, notches); where parts unload, take :class:`~corota.Mises`.
+    The strain is a function of the stress alone, so that unloading follows the same
+    curve. Under proportional loads it is power-law plasticity (fracture
+    mechanics, notches); where parts unload, use :class:`~corota.Mises`.
 
     Parameters
     ----------

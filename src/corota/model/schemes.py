@@ -70,5 +70,5 @@ SCHEMES: dict[str, Callable[[float, float], Scheme]] = {
 
 
 def names() -> tuple[str, ...]:
-    """Every scheme that a dynamic step may name."""
+    """Names of all schemes of dynamic steps."""
     return (*SCHEMES, "energy_momentum", "central_difference")

@@ -1,4 +1,4 @@
-"""What cells are made of."""
+"""Element type, material and thickness of cells."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -39,8 +39,8 @@ class Section(Brief):
     plane : {"stress", "strain"}
     local_strain : {"linear", "logarithmic", "green_lagrange"}
         Measure of the local displacement gradient. ``linear`` is the classical co-rotational one,
-        for local strains of a few percent; ``logarithmic`` serves large strain, with flow or
-        without; ``green_lagrange`` makes an elastic body the St. Venant-Kirchhoff solid.
+        for local strains of a few percent; ``logarithmic`` is for large strain, with plasticity or
+        without; ``green_lagrange`` gives the St. Venant-Kirchhoff solid.
         ``simplified`` and ``modified``, the names of Cho et al. (2017), stand for the first two.
     orientation : float
         Angle of the material axes from the global ones in the reference [rad].

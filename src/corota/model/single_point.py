@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class LawOfTheCore(Material, ABC):
-    """A plastic law that can be tried at a single point."""
+    """A plastic law that can be evaluated at a single point."""
 
     E: float
 
@@ -26,10 +26,10 @@ class LawOfTheCore(Material, ABC):
     @property
     @abstractmethod
     def first_yield(self) -> float:
-        """Uniaxial stress where plastic strain begins or is first felt [force/length^2]."""
+        """Uniaxial stress where plastic strain begins or becomes noticeable [force/length^2]."""
 
     def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
-        """Answer of a single point to a strain path, one implicit step per row.
+        """Response of a single point to a strain path, one implicit step per row.
 
         Parameters
         ----------

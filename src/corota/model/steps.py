@@ -1,4 +1,4 @@
-"""Analysis steps: what is done with the model, and what is written."""
+"""Analysis steps with their loads, supports and outputs."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -43,13 +43,13 @@ class Output(Brief):
     where : str
         Node or cell set, or name of a contact pair; empty for all.
     frequency : int
-        Every so many increments; 0 only at the end of the step.
+        Every n increments; 0 for the end of the step only.
     totals : {"no", "yes", "only"}
-        Sums over the set beside, or instead of, the rows.
+        Sums over the set in addition to, or instead of, the rows.
     time_points : str
         Name of a list of times in ``Model.time_points``; empty for none.
     in_global : bool
-        Print nodal vectors in global axes where nodes have their own, too.
+        Print nodal vectors in global axes also for nodes with local axes.
     """
 
     kind: Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
@@ -73,7 +73,7 @@ class Step(Brief, Loading):
     ----------
     nlgeom : bool
         Large rotations; otherwise the same elements in a fixed frame. Once on, it stays on in
-        later static and dynamic steps. Frequencies without it leave the preload out.
+        later static and dynamic steps. Frequencies without it omit the preload.
     period : float
         Duration of the step [time].
     first_increment, smallest_increment, largest_increment : float
@@ -84,12 +84,12 @@ class Step(Brief, Loading):
     supports, loads : list
         Those of this step, beside the model's.
     new_supports : bool
-        Forget the supports of earlier steps (``OP=NEW``) instead of adding and modifying.
+        Remove the supports of earlier steps (``OP=NEW``) instead of adding and modifying.
     new_loads : bool or collection of {"force", "distributed", "temperature"}
-        Forget the loads of earlier steps: all, or those of some kinds.
+        Remove the loads of earlier steps: all, or those of some kinds.
     outputs : list of Output
     restart : int
-        Keep a checkpoint every so many increments and one of the end of the step; 0 for none.
+        Keep a checkpoint every n increments and at the end of the step; 0 for none.
     """
 
     nlgeom: bool = True
@@ -109,7 +109,7 @@ class Step(Brief, Loading):
     where: Location | None = field(default=None, compare=False, repr=False)
 
     procedure = ""
-    #: Whether the state at the start has velocities and forces that only the procedure finds.
+    #: Whether the procedure computes velocities and forces of the initial state.
     starts_in_motion = False
 
     def __post_init__(self) -> None:
@@ -132,7 +132,7 @@ class Step(Brief, Loading):
             raise InputError("a step needs at least one increment", self.where)
 
     def _kinds(self) -> None:
-        """Name the kinds of loads that are forgotten."""
+        """Name the kinds of loads that are removed."""
         given = self.new_loads
         wanted = (LOAD_KINDS if given else ()) if isinstance(given, bool) else given
         if unknown := set(wanted) - set(LOAD_KINDS):
@@ -143,7 +143,7 @@ class Step(Brief, Loading):
         self.new_loads = frozenset(wanted)
 
     def renews(self, kind: LoadKind) -> bool:
-        """Whether the step forgets earlier loads of a kind."""
+        """Whether the step removes earlier loads of a kind."""
         return not isinstance(self.new_loads, bool) and kind in self.new_loads
 
 
@@ -156,7 +156,7 @@ class Static(Step):
     increments : int, optional
         Start with ``period / increments`` (and grow no further than that).
     ramp : bool
-        Loads without amplitude grow linearly over the step; else they act at once.
+        Loads without amplitude grow linearly over the step; otherwise they act at once.
     tolerance : float
         Largest residual force relative to the force scale of the model, and likewise moments.
     max_iterations : int
@@ -166,8 +166,8 @@ class Static(Step):
         Increments are then arcs, in units in which a linear structure takes one for a load
         factor of one; the first is a twentieth of the period by default.
     at_limit : {"stop", "follow"}
-        What load control does where the load cannot be raised further: end there with the
-        reason, or go on along the path by arc length until the full load is reached.
+        Action where load control cannot increase the load further: end there with the
+        reason, or continue by arc length until the full load is reached.
     plastic_increment : float
         Largest growth of the equivalent plastic strain at any point in one increment of load
         control; larger increments are cut back. 0 for no limit.
@@ -201,7 +201,7 @@ class Static(Step):
         super().__post_init__()
 
     def _path_increments(self) -> None:
-        """Defaults of arcs: no largest one, and a first one that a limit load can bear."""
+        """Defaults of arcs: no largest one, and a first one suitable for a limit load."""
         share = 1.0 / self.increments if self.increments else 0.05
         first = self.first_increment or share * self.period
         largest = self.largest_increment or math.inf
@@ -274,16 +274,16 @@ class Dynamic(Step):
 class Buckle(Step):
     """Linear buckling about the state that the steps before reached.
 
-    The tangent there is followed to first order along the linear response to a perturbing
+    The tangent is expanded to first order along the linear response to a perturbing
     load; the factors are those at which it becomes singular. The perturbing load is that of
-    the step, or the model's own where the step has none; what earlier steps applied stays.
+    the step, or the model's own where the step has none; loads of earlier steps remain.
 
     Parameters
     ----------
     modes : int
-        Lowest positive factors that are wanted.
+        Number of lowest positive factors.
     preload : bool
-        Start from the state that the steps before reached; else from the structure without load.
+        Start from the state after the steps before; otherwise from the unloaded structure.
     """
 
     modes: int = 1
@@ -304,11 +304,11 @@ class Frequency(Step):
     Parameters
     ----------
     modes : int
-        How many, from the lowest.
+        Number of modes, from the lowest.
     mass : {"consistent", "constant", "lumped"}
     complex_modes : bool
-        Take damping (of materials and dashpots) and, under a centrifugal load, Coriolis forces in:
-        complex frequencies with rates of growth or decay. Loads that follow the structure without
+        Include damping (of materials and dashpots) and, under a centrifugal load, Coriolis forces:
+        complex frequencies with rates of growth or decay. Follower loads without
         a potential make frequencies complex in any case.
     rayleigh : tuple of float
         Damping of complex modes per mass [1/time] and per stiffness [time].
@@ -343,7 +343,7 @@ class ModalDynamic(Step):
         Damping per mass [1/time] and per stiffness [time], added.
     residual : bool
         Add a residual mode for each pattern of loads and moving supports: with them the static
-        response is exact, however few the modes.
+        response is exact with any number of modes.
     """
 
     increments: int = 0
@@ -385,7 +385,7 @@ class SteadyState(Step):
     mass : {"consistent", "constant", "lumped"}
         Of the whole model; modes have that of their own step.
     imaginary_loads, imaginary_supports : list
-        Loads, and moves of held dofs, that act a quarter of a period ahead of the others.
+        Loads, and motions of supports, that act a quarter of a period ahead of the others.
     """
 
     lowest: float
@@ -421,7 +421,7 @@ class SteadyState(Step):
             )
 
     def sweep(self, own: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Frequencies to answer at, finer where they matter: between eigenfrequencies."""
+        """Frequencies of the response, refined between eigenfrequencies."""
         import numpy as np
 
         inside = own[(own > self.lowest) & (own < self.highest)]
@@ -433,12 +433,12 @@ class SteadyState(Step):
 def check_damping(
     given: ModalDamping, rayleigh: tuple[float, float], where: Location | None
 ) -> None:
-    """Refuse damping of modes that is negative or whose ranges make no sense.
+    """Refuse damping of modes that is negative or has invalid ranges.
 
     Raises
     ------
     InputError
-        With what is wrong.
+        With the cause.
     """
     if min(rayleigh) < 0.0:
         raise InputError(f"damping must be >= 0, not {rayleigh}", where)

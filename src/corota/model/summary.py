@@ -107,7 +107,7 @@ def joint_lines(model: Model) -> list[str]:
 
 
 def support_lines(model: Model, supports: Iterable[Fixed]) -> list[str]:
-    """Directions that each support holds or moves, up to ten places."""
+    """Directions that each support fixes or moves, up to ten places."""
     found: dict[str, list[str]] = {}
     for support in supports:
         where = support.nodes

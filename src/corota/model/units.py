@@ -1,7 +1,7 @@
-"""The units a model is meant in: labels only, no number is ever converted.
+"""The units of a model: labels only, numbers are never converted.
 
-Corota computes with bare numbers; a consistent set of units is the user's affair. What is told
-here names the axes, tables and files, and lets :mod:`corota.check.units` compare.
+Corota computes with plain numbers; consistent units are the user's responsibility. The names given
+here label axes, tables and files, and are used by :mod:`corota.check.units`.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -30,7 +30,7 @@ KNOWN: dict[str, dict[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0, "h": 3600.0},
     "temperature": {"K": 1.0, "°C": 1.0, "C": 1.0, "°F": 5.0 / 9.0, "F": 5.0 / 9.0},
 }  # fmt: skip
-#: Names that a derived unit has of its own.
+#: Names of derived units.
 NAMED = {
     ("force/length^2", "N", "mm"): "MPa",
     ("force/length^2", "N", "m"): "Pa",
@@ -52,13 +52,13 @@ NAMED = {
 _ENERGY = {"energy": "force*length", "energy/length^3": "force*length/length^3"}
 _FACTOR = re.compile(r"([*/]?)([a-z]+)(?:\^(\d))?")
 _RAISED = {"2": "²", "3": "³", "4": "⁴"}
-#: Share by which masses may differ from force times time squared over length.
+#: Relative tolerance of masses against force times time squared over length.
 SAME = 1e-3
 
 
 @dataclass(frozen=True)
 class Units:
-    """Names of the units; an empty one is not told.
+    """Names of the units; empty if not given.
 
     Parameters
     ----------
@@ -126,11 +126,11 @@ class Units:
         )
 
     def size(self, kind: str) -> float:
-        """Size of a unit in SI; 0 if it is not told."""
+        """Size of a unit in SI; 0 if it is not given."""
         return KNOWN[kind].get(getattr(self, kind), 0.0)
 
     def label(self, dimension: str) -> str:
-        """The unit of a dimension such as ``force/length^2``; empty if a part is not told.
+        """The unit of a dimension such as ``force/length^2``; empty if a part is not given.
 
         Parameters
         ----------

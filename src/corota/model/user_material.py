@@ -33,7 +33,7 @@ class UserMaterial(Material):
         result is stress (n, p, 3), tangent (n, p, 3, 3) and the new history. The dict may have
         ``strain_zz``, ``stress_zz``, ``energy`` and ``PEEQ``, each (n, p), for output.
     members : int
-        Numbers of history a point.
+        Number of history variables per point.
     initial : array_like, shape (members,), optional
         History at the start; zeros by default.
 
@@ -127,7 +127,7 @@ class UserMaterial(Material):
         return stress, tangent, new, extra
 
     def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
-        """Answer of a single point to a strain path, as of :meth:`corota.Mises.respond`."""
+        """Response of a single point to a strain path, as of :meth:`corota.Mises.respond`."""
         path = np.atleast_2d(np.asarray(strain, float))
         state = self.start(1, 1)
         stress, tangent, extras = [], [], []

@@ -1,4 +1,4 @@
-"""Curves of ``*AMPLITUDE`` that are no tables, sampled so finely that a table says the same."""
+"""Curves of ``*AMPLITUDE`` without a table, sampled finely."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Curve:
             value = first + size * np.exp(-later / decay)
         time = start + later
         if start > 0.0:
-            # What jumps at the start jumps within a thousandth of a sample.
+            # A jump at the start takes a thousandth of a sample.
             gap = 1e-3 * later[1]
             time, value = np.append([start - gap], time), np.append([first], value)
         return Amplitude(time, value, self.total, self.name, self.where)

@@ -1,4 +1,4 @@
-"""What the cards of a deck said, before names and numbers are resolved."""
+"""The contents of the cards of a deck, before names and numbers are resolved."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -41,13 +41,13 @@ FOLLOWS = re.compile(
     r"no (element set|surface|set|node set) named|element (set )?\S+ |elements? .* not defined|"
     r"the deck has no elements|surface \S+ (cannot|has no)|either NSET|.* elements of curves only"
 )
-#: Findings kept; the rest is counted only.
+#: Diagnostics kept; the rest is counted only.
 MAX_DIAGNOSTICS = 200
 
 
 @dataclass
 class Deck:
-    """Everything said so far, and every fault found."""
+    """All data read so far, and all errors found."""
 
     lenient: bool = False
     #: Element and plane (or "") by the deck's name of an element.
@@ -68,7 +68,7 @@ class Deck:
     controls: dict[str, float] = field(default_factory=dict)
     #: Whether the model is built: all cards are read.
     building: bool = False
-    #: Element types that were refused: what names their elements is not told again.
+    #: Refused element types: references to their elements are not reported again.
     refused_types: set[str] = field(default_factory=set)
     #: Origin and axes (rows) of ``*SYSTEM``.
     system: tuple[Floats, Floats] | None = None
@@ -115,7 +115,7 @@ class Deck:
         text: str | None = None,
         hint: str = "",
     ) -> None:
-        """Record an error; reading goes on."""
+        """Record an error; reading continues."""
         self._record("error", card, where, message, text, hint)
 
     def warning(
@@ -147,11 +147,13 @@ class Deck:
         if len(text) > 160:
             text = text[:157] + "..." if not where or where.column <= 157 else ""
         if self.refused_types and self.building and FOLLOWS.match(message):
-            return  # the elements were refused; what names them is not told again
+            return  # the elements were refused; references to them are not reported again
         name = numerals.clipped(card.spelled, 60) if card else ""
         message, hint = numerals.clipped(message), numerals.clipped(hint)
         found = Diagnostic(severity, message, where, name, text, hint)
-        if found not in self.diagnostics:  # a part with several instances has its faults once
+        if (
+            found not in self.diagnostics
+        ):  # errors of a part with several instances are reported once
             self.diagnostics.append(found)
 
     def row_error(self, card: Card, row: Row, index: int, message: str, hint: str = "") -> None:
@@ -159,7 +161,7 @@ class Deck:
         self.error(card, row.at(index), message, text=row.text, hint=hint)
 
     def note(self, text: str) -> None:
-        """Tell what was ignored, repaired or assumed, once."""
+        """Note what was ignored, repaired or assumed, once."""
         text = numerals.clipped(text)
         if text not in self.notes:
             self.notes.append(text)
@@ -222,7 +224,7 @@ class Deck:
     def choice(self, card: Card, name: str, choices: Iterable[str], default: str) -> str:
         """Value of a parameter out of a list (compared without case and blanks).
 
-        The first letters of one alone, three at least, stand for it, as in Abaqus.
+        Unique abbreviations of at least three letters are accepted, as in Abaqus.
         """
         if not card.has(name):
             return default

@@ -1,4 +1,4 @@
-"""What single cards leave: plain data of nodes, sets, sections and loads, not yet looked up."""
+"""Data of single cards: nodes, sets, sections and loads, with names not yet resolved."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

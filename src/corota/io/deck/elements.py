@@ -1,4 +1,4 @@
-"""Element names of decks and what stands for them here."""
+"""Element names of decks and the corresponding elements."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -15,9 +15,9 @@ class DeckElement:
     kind: str
     element: str
     plane: str = ""
-    #: What the name says to the letter, where another element stands for it.
+    #: Literal element, where another one is used for it.
     literal: str = ""
-    #: What is told where this element is taken for another formulation.
+    #: Note where this element replaces another formulation.
     note: str = ""
     #: Why a section of it must say the plane state.
     ask: str = ""
@@ -29,11 +29,11 @@ OWN = {name: elements.find(name).cell for name in elements.names()}
 #: CalculiX and Abaqus names, without the prefix CPS (plane stress) or CPE (plane strain).
 ALIASES = {"3": "T3", "4": "Q4", "4I": "Q4I", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R"}
 
-#: What reduced integration means to the letter; the element above is the default, see the page
+#: Literal elements of reduced integration; the element above is the default, see the page
 #: of keywords.
 LITERAL = {"4R": "Q4R"}
 
-#: Formulations that exist against locking, and what stands for them.
+#: Formulations against locking, and the elements used for them.
 MIXED = {
     "3H": "T3",
     "4H": "Q4I",

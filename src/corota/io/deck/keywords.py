@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Keyword:
-    """What a keyword does, and the parameters that it knows.
+    """Function of a keyword, and its parameters.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Keyword:
     ignored : str
         Names that are accepted and have no effect here; each is noted.
     place : {"model", "step", "any"}
-        Where the card may stand.
+        Where the card is allowed.
     """
 
     function: Callable[[Deck, Card], None]
@@ -62,7 +62,7 @@ def heading(deck: Deck, card: Card) -> None:
 
 
 def parameter(deck: Deck, card: Card) -> None:
-    """``*PARAMETER``: its values are in the text already."""
+    """``*PARAMETER``: its values are already substituted in the text."""
 
 
 _PRINT = "TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
@@ -540,7 +540,7 @@ def _unknown(deck: Deck, card: Card) -> None:
 
 
 def _answered(deck: Deck, card: Card, why: str) -> None:
-    """Mark what a refused card would have given: that it is missing is not told again."""
+    """Mark the data of a refused card: it is not reported as missing again."""
     if deck.material is not None and why == _PLASTIC and not deck.material.law:
         deck.material.law = "REFUSED"
     if deck.step is not None and why in (_PROCEDURE, _HEAT) and deck.step.procedure is None:

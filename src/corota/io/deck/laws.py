@@ -1,4 +1,4 @@
-"""The table of material laws of decks: their constants, what they make and how they are written."""
+"""The table of material laws of decks: their constants, materials and cards."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -54,7 +54,7 @@ class DeckLaw:
 
 
 def _lamina(e1: float, e2: float, nu12: float, g12: float, *_: float, **common: Any) -> Material:
-    # A lamina says nothing of the third direction: it is taken as the second one.
+    # A lamina has no constants of the third direction: those of the second are used.
     return Orthotropic(e1, e2, e2, nu12, nu12, 0.0, g12, **common)
 
 

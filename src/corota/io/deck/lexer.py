@@ -26,7 +26,7 @@ MAX_DEPTH = 16
 MAX_FILES = 1000
 #: Bytes of a deck with everything that it includes.
 MAX_BYTES = 8 << 30
-#: Bytes of memory that a deck or mesh takes for each of its own (measured on a million nodes).
+#: Memory per byte of a deck or mesh (measured on a million nodes).
 READ = 8.0
 
 _QUOTED = re.compile(r'^"(.*)"$')
@@ -235,7 +235,7 @@ class Lexer:
         return self.cards
 
     def _find_units(self, data: bytes) -> None:
-        """Look for the comment that names the units, near the head of the deck."""
+        """Find the comment that names the units, near the head of the deck."""
         found = _UNITS.search(data, 0, UNITS_WITHIN)
         if found is not None:
             line = data.count(b"\n", 0, found.start(1)) + 1
@@ -415,7 +415,7 @@ class Lexer:
             raise ValueError(f"the deck and its files exceed {MAX_BYTES >> 30} GB")
         _core.require_memory(READ * status.st_size, f"reading {path.name}")
         with open(path, "rb") as file:
-            # Python reserves what may be read: no more than is there.
+            # Python allocates the requested size: read no more than the file has.
             data = file.read(status.st_size)
         data = data.removeprefix(b"\xef\xbb\xbf")
         if b"\n" not in data:

@@ -1,4 +1,4 @@
-"""Numbers of decks: what a field may say, and why it is refused otherwise."""
+"""Numbers of decks: allowed values of a field, and reasons of refusal."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

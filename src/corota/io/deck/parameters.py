@@ -1,4 +1,4 @@
-"""``*PARAMETER``: named numbers of a deck, worked out and put where ``<name>`` stands."""
+"""``*PARAMETER``: named numbers of a deck, evaluated and substituted for ``<name>``."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

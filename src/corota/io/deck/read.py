@@ -93,7 +93,7 @@ def read_deck(
 
 
 def _name_units(model: Model, lexer: Lexer) -> None:
-    """Take the units of a comment; one that is not understood is a note, not a fault."""
+    """Read the units of a comment; an unknown one is a note, not an error."""
     if lexer.units is None:
         return
     text, where = lexer.units

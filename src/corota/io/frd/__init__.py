@@ -1,3 +1,3 @@
-"""Result files of CalculiX, ``.frd``: what cgx, PrePoMax and FreeCAD open."""
+"""Result files of CalculiX, ``.frd``: for cgx, PrePoMax and FreeCAD."""
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -35,7 +35,7 @@ class Block:
     components : tuple of (str, int, int, int)
         Name, kind (1 scalar, 2 vector, 4 tensor), row and column.
     request : str
-        The variable that asks for it in ``*NODE FILE``, ``*EL FILE`` or ``*CONTACT FILE``.
+        The variable that requests it in ``*NODE FILE``, ``*EL FILE`` or ``*CONTACT FILE``.
     size : str
         Name of the length of a vector that viewers compute; empty for none.
     """

@@ -86,7 +86,7 @@ def read_frd(path: str | PathLike[str]) -> Results:
         raise FileError(f"{path}: damaged or incomplete: {error}") from None
 
 
-#: Types of analysis that give modes, and what their number is.
+#: Types of analysis that give modes, and the meaning of their number.
 MODES = {2: "frequency", 3: "frequency", 4: "buckling factor"}
 
 
@@ -172,7 +172,7 @@ class _Reader:
             data = table["label"].astype(np.int64), table["v"].astype(np.float64)
         else:
             data = self._rows(stored)
-        # Modes may have the same frequency: the number of the set tells them apart.
+        # Modes may have the same frequency: the number of the set distinguishes them.
         kind, number = int(head[56:58] or 0), int(head[58:63] or 0)
         self.frames.setdefault((*where, time, kind, number), {})[name] = data
 

@@ -55,7 +55,7 @@ TINY = 1e-99
 
 @dataclass(frozen=True)
 class _Head:
-    """What the lines before a block tell."""
+    """Data of the lines before a block."""
 
     step: int
     increment: int
@@ -72,7 +72,7 @@ def _head_of(frame: Frame) -> _Head:
 class FrdWriter:
     """Writes increments one after the other; the file ends properly after each.
 
-    The state at the start is not written, as CalculiX does not. Rigid tools are line elements
+    The initial state is not written, as in CalculiX. Rigid tools are line elements
     with numbers behind all others.
 
     Parameters
@@ -81,12 +81,12 @@ class FrdWriter:
     model : Model
     steps : sequence of Step
         Their ``*NODE FILE``, ``*EL FILE`` and ``*CONTACT FILE`` requests choose what is written;
-        without any, everything is.
+        without any, all are written.
     options : FileOptions, optional
         A list of fields goes before the requests.
     binary : bool
     resume : dict, optional
-        Go on with the file that is there from such a :attr:`state`.
+        Continue the existing file from such a :attr:`state`.
     """
 
     def __init__(
@@ -209,7 +209,7 @@ class FrdWriter:
         CorotaError
             If a number is not finite; the file stays without the increment.
         FileError
-            If the disk refuses.
+            If writing fails.
         """
         check_frame(frame)
         if frame.increment == 0:
@@ -227,7 +227,7 @@ class FrdWriter:
         Raises
         ------
         FileError
-            If the disk refuses.
+            If writing fails.
         """
         labels = np.concatenate([self._model.mesh.node_labels, self._rigid_labels])
         still = np.zeros((len(self._rigid_labels), 3))
@@ -335,11 +335,11 @@ class FrdWriter:
         return block.request in names or (block is CONTACT and bool(names & {"CDIS", "CSTR"}))
 
     def sync(self) -> None:
-        """Bring everything to the disk."""
+        """Flush everything to the disk."""
         self._file.sync()
 
     def commit(self) -> None:
-        """Nothing: every increment is on disk already."""
+        """Do nothing: every increment is already on disk."""
 
     def close(self, info: dict[str, Any] | None = None) -> None:
         """Close the file."""

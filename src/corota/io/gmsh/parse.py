@@ -1,4 +1,4 @@
-"""The sections of a ``.msh`` file, checked against the bytes that are there."""
+"""The sections of a ``.msh`` file, checked against the available bytes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Block:
 
 @dataclass(slots=True)
 class Parsed:
-    """What the file says: node tags (n,), points (n, 3), blocks, names by (dimension, tag)."""
+    """Contents of the file: node tags (n,), points (n, 3), blocks, names by (dimension, tag)."""
 
     tags: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
     points: Floats = field(default_factory=lambda: np.zeros((0, 3)))
@@ -225,7 +225,7 @@ class Reader:
         InputError
             With file and line.
         """
-        # What stands before the first section is a comment.
+        # Text before the first section is a comment.
         at = max(self.data.find(b"$MeshFormat"), 0)
         while True:
             start = self.data.find(b"$", at)
@@ -513,7 +513,7 @@ def _numbers(reader: Reader, start: int, end: int) -> Floats:
     found = parse_reals(reader.data, start, end)
     if isinstance(found, int):
         text = decode(reader.data[start + found : min(end, start + found + 40)])
-        # Python takes more characters for blanks than the number reader does.
+        # Python accepts more characters as blanks than the number reader.
         word = next(iter(text.split()), text)
         raise reader.fault(_reason(word), start + found)
     _check_finite(reader, found, start)

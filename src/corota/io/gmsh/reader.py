@@ -29,12 +29,12 @@ def read_gmsh(path: str | os.PathLike[str]) -> Mesh:
     """Read a ``.msh`` file.
 
     Surfaces give cells and cell sets; curves give edge sets and node sets, points node sets.
-    Clockwise cells are turned; nodes without a cell are left out. ``Mesh.notes`` tells.
+    Clockwise cells are reversed; nodes without a cell are dropped. ``Mesh.notes`` lists them.
 
     Raises
     ------
     InputError
-        With file and line of what is not understood.
+        With file and line of the error.
     FileError
         If the file cannot be read.
     """
@@ -184,7 +184,7 @@ def _add(table: dict[str, Ints], name: str, values: Ints) -> None:
 
 
 def _compact(mesh: Mesh, used: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Mesh:
-    """Mesh without the nodes that nothing uses."""
+    """Mesh without unused nodes."""
     if used.all():
         return mesh
     new = np.full(mesh.n_nodes, -1)

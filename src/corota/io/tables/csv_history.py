@@ -1,4 +1,4 @@
-"""Histories as CSV: one row an increment, one column a quantity."""
+"""Histories as CSV: one row per increment, one column per quantity."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 #: Scalars of a frame that always have a column.
 ALWAYS = ("iterations", "strain energy", "external work", "kinetic energy")
-#: Print requests of at most so many nodes get a column for each of them.
+#: Largest number of nodes of a print request that get a column each.
 FEW_NODES = 10
 
 
@@ -89,10 +89,10 @@ def requested_nodes(
 
 
 def balance_error(scalars: dict[str, float]) -> float:
-    """Energy that appeared from nowhere, as a share of the largest so far; 0 at the start."""
+    """Energy-balance error relative to the largest energy so far; 0 at the start."""
     if "energy balance error" in scalars:
         return scalars["energy balance error"]
-    if "external work" not in scalars:  # modes, for instance: nothing was balanced
+    if "external work" not in scalars:  # modes, for instance: there is no balance
         return 0.0
     stored = [v for k, v in scalars.items() if k.endswith("energy") or k.endswith("dissipation")]
     work = scalars.get("external work", 0.0)
@@ -126,7 +126,7 @@ class Histories:
         return self._before
 
     def resume(self, before: tuple[int, float]) -> None:
-        """Go on behind a row."""
+        """Continue after a row."""
         self._before = before
 
     def row(self, frame: Frame, attempts: int = 1) -> dict[str, float]:
@@ -163,7 +163,7 @@ class Histories:
         """Total moment of the reactions, and the point it is about.
 
         Of one node that is the node itself, where it is; of several the centroid of their
-        undeformed places. Forces act where the nodes are.
+        undeformed positions. Forces act at the current positions.
         """
         if len(nodes) == 1:
             label = int(self._labels[nodes[0]])
@@ -179,7 +179,7 @@ class Histories:
 
 
 def csv_text(rows: Sequence[dict[str, float]], units: Units | None = None) -> str:
-    """Table of rows; a quantity that a row lacks is 0. Headings bear the units that are told."""
+    """Table of rows; missing quantities are 0. Headings include the given units."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     return _line(headings(names, units)) + "".join(_values(row, names) for row in rows)
 
@@ -200,7 +200,7 @@ def _values(row: dict[str, float], names: Sequence[str]) -> str:
 
 
 class CsvWriter:
-    """Grows a CSV file by a row a frame; a new column rewrites it at once.
+    """Extends a CSV file by one row per frame; a new column rewrites it.
 
     Parameters
     ----------
@@ -221,12 +221,12 @@ class CsvWriter:
         return len(self._rows), self._names
 
     def sync(self) -> None:
-        """Bring everything to the disk."""
+        """Flush everything to the disk."""
         if self._file is not None:
             self._file.sync()
 
     def resume(self, count: int, names: list[str]) -> None:
-        """Go on with the first rows and columns of the file that is there.
+        """Continue with the first rows and columns of the existing file.
 
         Raises
         ------
@@ -255,7 +255,7 @@ class CsvWriter:
         Raises
         ------
         FileError
-            If the disk refuses.
+            If writing fails.
         """
         self._rows.append(row)
         if self._file is None or any(name not in self._names for name in row):

@@ -54,7 +54,7 @@ ELEMENT_TITLES = {
 }
 
 _VECTOR = "%10d %13.6E %13.6E %13.6E"
-#: Energies per volume of which these are the sums.
+#: Energies per volume that are summed.
 DENSITY = {"ELSE": "ENER", "ELKE": "EKEDEN"}
 
 
@@ -160,7 +160,7 @@ def _node_values(model: Model, frame: Frame, name: str) -> Floats:
 
 
 def internal_force(model: Model, frame: Frame) -> Floats:
-    """What CalculiX calls ``RF``: reaction, load and force of constraints; shape (n_nodes, 2)."""
+    """CalculiX's ``RF``: reaction, load and force of constraints; shape (n_nodes, 2)."""
     values: Floats = (frame.RF + frame.F)[:, :2]
     if frame.constraint_force is not None:
         inside = distinct(np.concatenate([b.nodes.ravel() for b in model.mesh.cells]))
@@ -230,7 +230,7 @@ def _at_points(frame: Frame, cells: Ints | None, name: str) -> tuple[Ints, Ints,
     """Cell, point number (from 1) and value of every point of a set, in the set's order."""
 
     def take(block: PointFields) -> Floats | None:
-        # What a material does not have, such as plastic strain, is zero in it.
+        # Variables that a material does not have, such as plastic strain, are zero.
         return block.values.get(name, np.zeros_like(block.volume))
 
     place, owners, values = _picked(frame, cells, take)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 #: Variables of contact that are printed.
 VARIABLES = ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS")
-#: Resultant of each variable as scalars of a frame: added, taken off.
+#: Resultant of each variable as scalars of a frame: added, subtracted.
 _PARTS = {"CF": ("", None), "CFN": ("", "friction "), "CFS": ("friction ", None)}
 
 

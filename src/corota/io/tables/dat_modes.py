@@ -72,7 +72,7 @@ def eigenvalue_tables(frame: Frame) -> str:
     if not found:
         return ""
     if any(rate != 0.0 and f != 0.0 for f, rate in found):
-        # A time factor exp(i omega t): what decays has a positive imaginary part.
+        # A time factor exp(i omega t): decaying modes have a positive imaginary part.
         rows = ((2.0 * math.pi * f, f, -rate) for f, rate in found)
         text = COMPLEX + "".join(_row(k, row) for k, row in enumerate(rows, start=1))
     else:

@@ -25,7 +25,7 @@ CVG_HEAD = (
     "                              (#)     (%)           (%)        (%)         (%)\n"
 )
 
-#: What stands for a residual that is not a number.
+#: Replacement for a residual that is NaN.
 LARGEST = 9.999e98
 
 
@@ -56,7 +56,7 @@ def cvg_line(info: Iteration, largest: float) -> str:
     """
     share = 100.0 * info.correction / largest if largest > 0.0 else 0.0
     numbers = (100.0 * info.residual, share, 0.0, 0.0)
-    # An iteration may overflow on its way to being given up; the file shows a large number.
+    # An iteration may overflow before it is given up; the file shows a large number.
     columns = " ".join(f"{fortran(x if x < LARGEST else LARGEST, 4):>11}" for x in numbers)
     return (
         f" {info.step:5d} {info.increment:5d} {info.attempt:5d} {info.iteration:5d} {0:8d} "

@@ -1,4 +1,4 @@
-"""The unstructured grid of a model: its mesh, and its rigid curves as lines behind it."""
+"""The unstructured grid of a model: its mesh, followed by its rigid curves as lines."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Bytes as the filters *shuffle* and *gzip* of HDF5 read them, packed only where it pays.
+"""Bytes as the filters *shuffle* and *gzip* of HDF5 read them, compressed only where it helps.
 
 Shuffled numbers are planes: all first bytes, all second bytes, and so on. The planes of sign,
 exponent and leading digits pack well. Those of the last digits do not, and trying takes most of the
-time: a sample tells, and they are stored as they are. Sources: RFC 1950 and RFC 1951.
+time: a sample decides, and they are stored uncompressed. Sources: RFC 1950 and RFC 1951.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -28,7 +28,7 @@ def packed(planes: Sequence[bytes], level: int) -> bytes:
     planes : sequence of bytes
         What follows each other in the unpacked data.
     level : int
-        Level of deflate, 1 to 9. Level 1 looks for runs only: digits of floating-point numbers have
+        Level of deflate, 1 to 9. Level 1 searches runs only: digits of floating-point numbers have
         nothing else, and it takes half the time.
     """
     pieces, check = [_HEAD], 1

@@ -144,7 +144,7 @@ def _halved(frame: Frame, arrays: dict[str, Floats]) -> dict[str, Any]:
 
 
 def _missing(place: str, name: str) -> float:
-    """What stands where a frame lacks an array."""
+    """Fill value of an array that a frame does not have."""
     return np.nan if place == "corota/frames" and name in vf.UNKNOWN else 0.0
 
 
@@ -179,7 +179,7 @@ class VtkhdfWriter:
     sections : ndarray of int, shape (n_cells,), optional
         Section group of each cell; those of the model by default.
     resume : dict, optional
-        Go on with the file that is there from such a :attr:`state`; what is behind is dropped.
+        Continue the existing file from such a :attr:`state`; later frames are dropped.
     steps : sequence of Step, optional
         Those that are run, for the description of the model and ``fields="requested"``; the
         model's own by default.
@@ -230,14 +230,14 @@ class VtkhdfWriter:
         return {"count": self._count, "known": known}
 
     def add_modes(self, modes: Modes) -> None:
-        """Nothing: modes have a file of their own."""
+        """Do nothing: modes have a separate file."""
 
     def sync(self) -> None:
-        """Bring the last commit to the disk."""
+        """Flush the last commit to the disk."""
         self._twin.sync()
 
     def _resume(self, state: dict[str, Any]) -> None:
-        """Drop the frames that a checkpoint does not know.
+        """Drop the frames after a checkpoint.
 
         Raises
         ------
@@ -287,7 +287,7 @@ class VtkhdfWriter:
         steps.attrs["NSteps"] = count
 
     def _static(self) -> None:
-        """Write what does not change: topology, labels, sets, metadata."""
+        """Write the constant data: topology, labels, sets, metadata."""
         from corota import __version__
 
         mesh, root, grid = self.model.mesh, self._root, self._grid
@@ -343,12 +343,12 @@ class VtkhdfWriter:
         store(group, name, values, self._options.compression if values.nbytes >= SMALL else 0)
 
     def _growing(self, group: Any, name: str, number: str, rest: tuple[int, ...] = ()) -> None:
-        """Make a data set of one row a frame."""
+        """Create a data set with one row per frame."""
         shape = {"maxshape": (None, *rest), "chunks": (64, *rest)}
         group.create_dataset(name, (0, *rest), number, fletcher32=True, **shape)
 
     def add(self, frame: Frame) -> None:
-        """Take a frame; :meth:`commit` brings all taken frames to the disk.
+        """Take a frame; :meth:`commit` writes all taken frames to the disk.
 
         Raises
         ------
@@ -383,7 +383,7 @@ class VtkhdfWriter:
     def _of_sections(self, frame: Frame) -> dict[str, dict[str, Floats]]:
         """Averages at nodes within each section, where there are several and no point values.
 
-        With them a jump between sections stays a jump.
+        They preserve jumps between sections.
         """
         if not frame.fields:
             for group, arrays in frame.section_averages.items():
@@ -411,7 +411,7 @@ class VtkhdfWriter:
             store(self._file.create_group(_section(group)), "nodes", nodes)
 
     def _blocks_of_file(self, frame: Frame) -> None:
-        """Tell which cells have which variables, of a frame that was read from a file."""
+        """Cells with each variable, for a frame that was read from a file."""
         if len(self._file["corota/points"]):
             return
         names = sorted(frame.cells_with)
@@ -468,7 +468,7 @@ class VtkhdfWriter:
         }
         steps = self._root["Steps"]
         for name in ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"):
-            steps[name].resize(end, axis=0)  # what a data set is extended by is 0
+            steps[name].resize(end, axis=0)  # new rows of a data set are 0
         for name in self._still:
             self._offsets("CellData", name).resize(end, axis=0)
         for name, values in (
@@ -520,11 +520,11 @@ class VtkhdfWriter:
         if series.compression is None or series.chunks[0] != rows:
             series[first * rows :] = np.concatenate(frames)
             return
-        # Chunks are whole frames: packed here, since HDF5 would keep the interpreter waiting.
+        # Chunks are whole frames, compressed here because HDF5 would block the interpreter.
         rest = (0,) * (frames[0].ndim - 1)
         for number, values in enumerate(frames, first):
             if not values.any() and not np.isnan(series.fillvalue):
-                continue  # what is not written is 0
+                continue  # rows that are not written are 0
             data = np.ascontiguousarray(values, series.dtype)
             planes = data.view(np.uint8).reshape(-1, data.itemsize).T
             chunk = packed([plane.tobytes() for plane in planes], self._options.compression)
@@ -537,7 +537,7 @@ class VtkhdfWriter:
         Raises
         ------
         FileError
-            If the disk refuses; the frames of the commit before stay readable.
+            If writing fails; the frames of the commit before stay readable.
         """
         if self._taken:
             self._store()

@@ -1,4 +1,4 @@
-"""XML VTK files: one ``.vtu`` a frame and a ``.pvd`` that names them with their times.
+"""XML VTK files: one ``.vtu`` per frame and a ``.pvd`` with their names and times.
 
 The fall-back for programs that do not read VTKHDF. Source: VTK file formats, "XML formats",
 appended raw data with 64-bit headers.
@@ -93,7 +93,7 @@ def replace_bytes(path: Path, data: bytes) -> None:
     Raises
     ------
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     hidden = path.with_name(f".{path.name}.next")
     try:
@@ -139,10 +139,10 @@ class PvdWriter:
         return {"entries": list(self._entries)}
 
     def add_modes(self, modes: Modes) -> None:
-        """Nothing: modes have a file of their own."""
+        """Do nothing: modes have a separate file."""
 
     def sync(self) -> None:
-        """Bring the frames to the disk."""
+        """Flush the frames to the disk."""
         for name in [self.path, *self.path.parent.glob(f"{self.path.stem}_????.vtu")][-2:]:
             if name.exists():
                 sync(name)
@@ -153,7 +153,7 @@ class PvdWriter:
         Raises
         ------
         FileError
-            If the disk refuses.
+            If writing fails.
         """
         piece = self.path.with_name(f"{self.path.stem}_{len(self._entries):04d}.vtu")
         replace_bytes(piece, vtu_bytes(self.model, frame, self._averaging, self._sections))
@@ -166,7 +166,7 @@ class PvdWriter:
         )
 
     def commit(self) -> None:
-        """Nothing: every frame is on disk already."""
+        """Do nothing: every frame is already on disk."""
 
     def close(self, info: dict[str, Any] | None = None) -> None:
         """Nothing is open."""

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 def read_vtk_xml(path: Path) -> Results:
     """Read a ``.pvd`` with its ``.vtu`` files, or one ``.vtu``.
 
-    The files do not tell steps and increments: frames are counted.
+    The files do not contain steps and increments: frames are counted.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def read_vtk_xml(path: Path) -> Results:
             raise ValueError("no frames")
         mesh = _mesh(read[0])
         results = _Sectioned(Model(mesh, path.stem), read[0]["section"][: mesh.n_cells])
-        # A file of its own is the end of an analysis, not its start.
+        # A single file is the end of an analysis, not its start.
         for number, data in enumerate(read, start=int(path.suffix.lower() == ".vtu")):
             results.add(_frame(mesh, data, number))
     except OSError as error:

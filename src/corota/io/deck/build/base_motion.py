@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from corota.io.deck.drafts import Draft, StepDraft
     from corota.model.model import Model
 
-#: What is prescribed, by how often it is integrated.
+#: Prescribed quantity by the number of its integrations.
 NAMES = {1: "velocity", 2: "acceleration"}
 
 
@@ -71,7 +71,7 @@ def base_motion(
 
 
 def _again(draft: Draft, step: StepDraft) -> bool:
-    """Whether a step gives the same support anew."""
+    """Whether a step defines the same support again."""
     return any(d.target == draft.target and d.index == draft.index for d in step.supports)
 
 

@@ -60,7 +60,7 @@ class _Builder:
         }
 
     def add(self, pair: PairDraft) -> None:
-        """Build one pair; faults go to the deck."""
+        """Build one pair; errors are recorded in the deck."""
         interaction = None if pair.tied else interaction_of(self.deck, pair)
         slave = self._surface(pair, 0)
         itself = key(pair.slave) == key(pair.master)
@@ -185,7 +185,7 @@ class _Builder:
         return edges if surface.nodes else full
 
     def _view(self, card: Card) -> View:
-        """Where a card stands; the assembly for one of a part without instances."""
+        """Name space of a card; the assembly for one of a part without instances."""
         return (views_in(self.sets.views, self.deck, card.scope) or self.sets.views)[0]
 
     def _full(self, card: Card, name: str) -> str:
@@ -195,7 +195,7 @@ class _Builder:
 
     def _curve(self, name: str, surface: Surface) -> RigidCurve | None:
         if surface.profile is None:
-            return None  # its faults are told already
+            return None  # its errors are reported already
         if name in self.curves:
             return self.curves[name]
         view = self.sets.surfaces[name][0]
@@ -276,7 +276,7 @@ class _Builder:
         return None
 
     def unused(self) -> None:
-        """Tell of rigid bodies of profiles that do not exist, and of what nothing uses."""
+        """Report rigid bodies of undefined profiles, and unused definitions."""
         for name, (card, _) in self.carriers.items():
             if name not in self.sets.surfaces:
                 shown = card.value("ANALYTICALSURFACE")

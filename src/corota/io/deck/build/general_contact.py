@@ -20,8 +20,8 @@ EXTERIOR, DEFAULT = "ALL_EXTERIOR", "GENERAL_CONTACT"
 def add_general(deck: Deck, model: Model, sets: Sets) -> None:
     """Add the pairs of general contact to those of the deck.
 
-    All outer edges are one surface that touches itself, which holds each body against each other
-    and against itself; and they touch every rigid profile and rigid side that is a surface.
+    All outer edges are one surface with self-contact, which covers contact between bodies
+    and within each body; every rigid profile and rigid side that is a surface is another master.
     """
     draft = deck.general
     if draft is None:

@@ -148,7 +148,7 @@ class LoadBuilder:
         return self._cell_load(draft, amplitude)
 
     def _turns(self, draft: Draft, nodes: str | Ints) -> bool:
-        """Whether a force can turn with its nodes; told where it cannot and should."""
+        """Whether a force can follow its nodes; an error where it cannot but should."""
         if draft.index == 2:
             return False
         if self._rotating(nodes).all():
@@ -177,7 +177,7 @@ class LoadBuilder:
         if found is None or amplitude is None:
             return None
         if not len(found.cells):
-            # Lines of a meshing program are no elements here; a set of them alone is empty too.
+            # Lines of a meshing program are not elements here; a set of lines only is empty too.
             self.deck.row_error(draft.card, draft.row, 0, f"element set {draft.target} is empty")
             return None
         if draft.kind == "pressure":

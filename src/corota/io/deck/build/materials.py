@@ -31,7 +31,7 @@ def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
             found.expansion = draft.expansion
         return found
     except InputError as error:
-        # Constants of a plastic material are judged with its curve, on the card of the curve.
+        # Constants of a plastic material are checked with its curve, on the card of the curve.
         plastic = draft.plastic
         card = draft.law_card if plastic is None else plastic.card or plastic.cyclic_card
         deck.error(card, error.where or draft.law_where, error.message)
@@ -49,7 +49,7 @@ def _law(draft: MaterialDraft) -> Material:
 
 
 def settle_temperature(deck: Deck, temperature: float | None) -> None:
-    """Take constants that depend on temperature at the one that the whole model has.
+    """Evaluate temperature-dependent constants at the uniform temperature of the model.
 
     Where it differs (``None``), such constants are refused.
     """
@@ -77,7 +77,7 @@ def settle_temperature(deck: Deck, temperature: float | None) -> None:
 
 
 def share_damping(deck: Deck) -> None:
-    """Damping that all used materials have alike becomes that of the model.
+    """Damping that all used materials share becomes that of the model.
 
     Point masses then take part, as in CalculiX, which has one damping for the whole model.
     """

@@ -1,4 +1,4 @@
-"""From what a deck said to a mesh: numbers looked up, cells turned, sets resolved."""
+"""From a deck to a mesh: numbers looked up, cells reversed, sets resolved."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 LARGEST = 1e100
 #: Powers of ten that are added to the numbers of instances; then multiples of a smaller one.
 LARGEST_OFFSET = 10**12
-#: Faults of one sort that are listed one by one.
+#: Errors of one kind that are listed individually.
 MAX_LISTED = 20
 
 
@@ -74,7 +74,7 @@ class View:
 
 @dataclass
 class Placed:
-    """Cells of one block that are fit for use."""
+    """Valid cells of one block."""
 
     kind: str
     nodes: Ints
@@ -489,7 +489,7 @@ def _rotated(keep: list[int], side: int, quadratic: bool) -> list[int]:
 
 
 def views_in(views: list[View], deck: Deck, scope: object) -> list[View]:
-    """Views that a card speaks of: that of its instance, those of its part, or the assembly."""
+    """Views of a card: that of its instance, those of its part, or the assembly."""
     if scope is None or scope is deck.root:
         return views[:1]
     return [
@@ -501,7 +501,7 @@ def views_in(views: list[View], deck: Deck, scope: object) -> list[View]:
 
 
 def _truss_labels(scope: Scope) -> Ints:
-    """Line elements of sets that hold nothing else and have a section: trusses."""
+    """Line elements of sets that contain only lines and have a section: trusses."""
     none = np.zeros(0, np.int64)
     curves = [none, *(b.labels for b in scope.elements if b.type in LINES)]
     every = np.concatenate(curves)
@@ -535,7 +535,7 @@ def view_of(views: list[View], target: str) -> tuple[View, str] | None:
 
 
 def placed(points: Floats, instance: Instance | None) -> Floats:
-    """Shift, then turn."""
+    """Shift, then rotate."""
     if instance is None:
         return points
     moved = points + np.array(instance.shift)

@@ -1,4 +1,4 @@
-"""From what a deck said to a model: its parts in their order, and the steps."""
+"""From a deck to a model: its parts in order, and the steps."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

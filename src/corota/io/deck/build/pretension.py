@@ -42,7 +42,7 @@ class PretensionBuilder:
     ----------
     deck : Deck
     model : Model
-        Whose mesh has its sets.
+        With the sets of its mesh.
     sets : Sets
     """
 
@@ -52,7 +52,7 @@ class PretensionBuilder:
         self.cuts: list[tuple[PretensionDraft, Ints, Ints, Floats]] = []
 
     def cut(self) -> None:
-        """Give the elements of each surface nodes of their own there."""
+        """Give the elements of each surface separate nodes there."""
         for draft in self.deck.pretensions:
             for view in views_in(self.sets.views, self.deck, draft.card.scope):
                 name = self.sets.mesh_name(self.model.mesh.edge_sets, view, draft.surface)

@@ -50,7 +50,7 @@ class SectionBuilder:
     def __init__(self, targets: Targets) -> None:
         self.targets, self.deck, self.sets = targets, targets.deck, targets.sets
         self.meshes, self.model, self.mesh = targets.meshes, targets.model, targets.mesh
-        #: Thickness of nodes, nan where none is given; worked out where it is wanted.
+        #: Thickness of nodes, nan where none is given; computed on demand.
         self.nodal: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
 
     def build(self) -> None:

@@ -31,7 +31,7 @@ _NONE: Ints = np.zeros(0, np.int64)
 
 @dataclass(slots=True)
 class Elements:
-    """What an element set holds: cells, and line elements of curves."""
+    """Contents of an element set: cells, and line elements of curves."""
 
     cells: Ints
     lines: Ints
@@ -109,7 +109,7 @@ class Sets:
     def full_name(self, table: Mapping[str, object], view: View, name: str) -> str:
         """Key of a set seen from a view, empty if there is none.
 
-        A name that the view does not know is that of the only instance that has it.
+        A name unknown to the view is that of the only instance that has it.
         """
         for candidate in (key(view.prefix) + key(name), key(name)):
             if candidate in table:
@@ -127,7 +127,7 @@ class Sets:
     def node_set(self, full: str) -> Ints | None:
         """Node indices of a set; ``None`` after an error."""
         if full not in self._nodes:
-            self._nodes[full] = None  # a set that is met again while it is open is circular
+            self._nodes[full] = None  # a set that occurs within itself is circular
             view, named = self.nsets[full]
             self._nodes[full] = self._resolve_nodes(view, named)
         return self._nodes[full]
@@ -147,7 +147,7 @@ class Sets:
                 continue
             at = view_of(self.views, entry.name[1:] + "0") if entry.name else None
             nodes = (at[0] if at else view).nodes(entry.labels)
-            # Programs leave such nodes out of a set; whether that is harmless depends on its use.
+            # Programs omit such nodes from a set; whether that is harmless depends on its use.
             self.missing.append((named.name, entry.labels[nodes < 0], entry.where))
             parts.append(nodes[nodes >= 0])
         return _unique(np.concatenate(parts))

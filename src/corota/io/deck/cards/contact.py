@@ -318,14 +318,14 @@ def clearance(deck: Deck, card: Card) -> None:
 
 
 def contact_controls(deck: Deck, card: Card) -> None:
-    """``*CONTACT CONTROLS, STABILIZE[, SLAVE=, MASTER=]``: damp bodies that nothing else holds."""
+    """``*CONTACT CONTROLS, STABILIZE[, SLAVE=, MASTER=]``: damp bodies without other supports."""
     if not card.has("STABILIZE"):
         deck.note(f"{card.where}: {card.spelled} is ignored: contact needs no control parameters")
         return
     if card.value("STABILIZE") or list(card.rows()):
         deck.note(f"{card.where}: {card.spelled}: the factor is not used; the damping is chosen")
     named = card.has("SLAVE") or card.has("MASTER")
-    # As other controls it stays for the steps behind.
+    # Like other controls it applies to later steps, too.
     first = max(len(deck.steps), 1)
     if deck.general is not None and not named:
         deck.general.stabilise = deck.general.stabilise or first
@@ -336,7 +336,7 @@ def contact_controls(deck: Deck, card: Card) -> None:
 
 
 def contact_interference(deck: Deck, card: Card) -> None:
-    """``*CONTACT INTERFERENCE, SHRINK``: slave, master whose overlap is pushed out slowly."""
+    """``*CONTACT INTERFERENCE, SHRINK``: slave, master whose overlap is removed slowly."""
     if not card.has("SHRINK"):
         deck.error(card, card.where, "SHRINK is expected", hint="or use *CLEARANCE, VALUE=")
         return

@@ -1,4 +1,4 @@
-"""Cards of motion: procedures, damping, initial velocities."""
+"""Cards of dynamics: procedures, damping, initial velocities."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
 
 
-#: What ``APPLICATION=`` asks for, and the ALPHA of HHT that goes with it.
+#: Values of ``APPLICATION=`` with their ALPHA of HHT.
 APPLICATIONS = {
     "TRANSIENTFIDELITY": -0.05,
     "MODERATEDISSIPATION": -1.0 / 3.0,
     "QUASI-STATIC": 0.0,
 }
-#: What ``SCHEME=`` asks for, which is our own parameter.
+#: Values of ``SCHEME=``, which is our own parameter.
 SCHEMES = {"HHT": "hht", "ENERGYMOMENTUM": "energy_momentum"}
 #: Increments of an explicit step without INC.
 EXPLICIT_INCREMENTS = 10_000_000
@@ -101,7 +101,7 @@ def dynamic(deck: Deck, card: Card) -> None:
         else scheme,
         **({"rho_inf": 0.0} if quasi_static else {}),
         "mass": "lumped" if explicit else "consistent",
-        # Loads act at once unless an amplitude says otherwise.
+        # Loads act at once unless they have an amplitude.
         "ramp": _grows(now) or (quasi_static and not now.card.has("AMPLITUDE")),
         "rayleigh": deck.damping,
     }

@@ -1,4 +1,4 @@
-"""Cards of trusses, beams and springs, and the sections that they become."""
+"""Cards of trusses, beams and springs, and their sections."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -210,7 +210,7 @@ def _of_walls(
 
 
 def _of_abaqus(deck: Deck, card: Card) -> bool:
-    """Whether only Abaqus writes such a deck: parts, or parameters that CalculiX does not have."""
+    """Whether the deck is for Abaqus: parts, or parameters that CalculiX does not have."""
     return bool(deck.parts) or card.has("TEMPERATURE") or card.has("POISSON")
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _TRACTION = re.compile(r"(TRVEC|TRSHR)(\d{1,9})\Z", re.ASCII)
 
 
-#: Loads that other programs know, and what to give instead.
+#: Loads of other programs, and what to give instead.
 _OTHER_LOADS = (
     (re.compile(r"HP\d?\Z"), "give each edge its mean pressure: P1 to P4, or P on surfaces"),
     (
@@ -147,7 +147,7 @@ def _gravity(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
     elif size == 0.0:
         deck.row_error(card, row, 3, "the direction of gravity is zero")
     else:
-        # A size that is not positive still has the direction that it was given.
+        # A size that is not positive keeps its given direction.
         value = (g * nx / size, g * ny / size, *((nx / size, ny / size) if g <= 0.0 else ()))
         now.loads.append(
             Draft("gravity", card, row, row.get(0), value, amplitude=card.value("AMPLITUDE"))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from corota.io.deck.laws import DeckLaw
     from corota.io.deck.lexer import Card, Row
 
-#: Names of ``TYPE=`` of ``*ELASTIC``, and what they stand for.
+#: Values of ``TYPE=`` of ``*ELASTIC``, and their laws.
 ELASTIC_TYPES = {
     "": "ISOTROPIC",
     "ISO": "ISOTROPIC",
@@ -166,7 +166,7 @@ def solid_section(deck: Deck, card: Card) -> None:
     known = [name.replace("_", "").upper() for name in (*LOCAL_STRAINS, *ALIASES)]
     local = local_strain(deck.choice(card, "LOCALSTRAIN", known, "LINEAR"))
     mean = deck.choice(card, "DILATATION", ("POINT", "MEAN"), "POINT") == "MEAN"
-    # What is not positive, and elements without this weight, the section refuses.
+    # The section refuses values that are not positive, and elements without this weight.
     beta0 = deck.parameter_number(card, "BETA0", 0.0, 0.0) if card.has("BETA0") else None
     rows = list(card.rows())
     thickness: float | None = 1.0
@@ -224,7 +224,7 @@ def orientation(deck: Deck, card: Card) -> None:
     name = deck.required(card, "NAME")
     systems = ("RECTANGULAR", "CYLINDRICAL", "SPHERICAL", "ZRECTANGULAR", "USER")
     if deck.choice(card, "SYSTEM", systems, "RECTANGULAR") != "RECTANGULAR":
-        # Whether it matters depends on the material of the section.
+        # Its effect depends on the material of the section.
         if name:
             deck.scope.orientations[key(name)] = math.nan
         return

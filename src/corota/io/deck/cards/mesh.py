@@ -157,7 +157,7 @@ def element(deck: Deck, card: Card) -> None:
 
 
 def _known_types(type_: str) -> str:
-    """A type that is spelled alike and means the same, or the known ones."""
+    """A type with a similar name, or the known ones."""
     same = [t for t in (*ELEMENTS, *LINE_ELEMENTS) if t not in OWN and t[:3] == type_[:3]]
     known = "known: CPS and CPE with " + ", ".join([*ALIASES, *OWN, *LINE_ELEMENTS])
     return nearest(type_, same, 0.8) or known
@@ -168,7 +168,7 @@ def _element_rows(deck: Deck, card: Card, chunk: Chunk, size: int) -> tuple[Ints
     values, numbers, odd = parse_table(source.data, chunk.start, chunk.stop, chunk.line, size + 1)
     if not odd:
         return values.reshape(-1, size + 1), numbers
-    # A line that goes on in the next one cannot be read alone: all are read again.
+    # A line that continues in the next one cannot be read alone: all are read again.
     table, lines = [], []
     part = Card(card.keyword, card.spelled, {}, card.where, card.text, [chunk])
     for row in _joined(part.rows(), size + 1):
@@ -278,7 +278,7 @@ def _set(deck: Deck, card: Card, table: dict[str, NamedSet], parameter: str) -> 
 
 
 def _set_rows(card: Card, found: NamedSet, name: str) -> Iterator[Row]:
-    """Rows of a set; long pieces with nothing but labels are taken at once."""
+    """Rows of a set; long pieces that contain only labels are read in bulk."""
     for chunk in card.chunks:
         if chunk.stop - chunk.start > LONG:
             labels = parse_labels(chunk.source.data, chunk.start, chunk.stop, chunk.line)

@@ -1,4 +1,4 @@
-"""Cards that ask for output."""
+"""Cards of output requests."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
 
-#: Variables that are written, by the place where they live.
+#: Variables that are written, by their location.
 WRITTEN = {
     "node": ("U", "RF", "UR"),
     "el": ("S", "E", "PEEQ", "ENER", "ELSE", "ELKE", "EVOL"),
@@ -29,7 +29,7 @@ ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
 def restart(deck: Deck, card: Card) -> None:
     """``*RESTART, WRITE[, FREQUENCY=]``: keep checkpoints of this step and the later ones.
 
-    What ``READ`` means is done before; steps of the earlier deck end with it.
+    ``READ`` is handled before; steps of the earlier deck end with it.
     """
     deck.no_rows(card)
     if card.has("READ") and deck.step is not None:
@@ -94,7 +94,7 @@ def output(deck: Deck, card: Card) -> None:
 
 
 def ignored(deck: Deck, card: Card) -> None:
-    """Read a card that has no meaning here."""
+    """Read a card that has no effect here."""
     deck.note(f"{card.where}: {card.spelled} is ignored")
 
 

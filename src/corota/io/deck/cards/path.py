@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from corota.io.deck.drafts import StepDraft
     from corota.io.deck.lexer import Card
 
-#: Values of *CONTROLS that have a meaning here: position in its line, option of the step.
+#: Values of *CONTROLS that are used here: position in its line, option of the step.
 _CONTROLS = {"FIELD": (0, "tolerance"), "TIMEINCREMENTATION": (4, "max_iterations")}
 #: Kinds of *CONTROLS that change nothing here.
 _WITHOUT_EFFECT = ("LINESEARCH", "CONTACT", "CONSTRAINTS")
@@ -38,7 +38,7 @@ def static(deck: Deck, card: Card) -> None:
 
 
 def _take_controls(deck: Deck) -> None:
-    """Give the static step that is open what ``*CONTROLS`` said so far."""
+    """Apply ``*CONTROLS`` so far to the open static step."""
     now = deck.step
     static_now = now is not None and now.procedure is not None and now.make is None
     if now is not None and static_now and deck.controls:
@@ -101,7 +101,7 @@ def _riks(deck: Deck, card: Card) -> None:
 
 
 def buckle(deck: Deck, card: Card) -> None:
-    """``*BUCKLE``: the number of factors; what else the line holds steers other solvers."""
+    """``*BUCKLE``: the number of factors; other entries control other solvers."""
     now: StepDraft | None = open_step(deck, card)
     if now is None:
         return
@@ -125,7 +125,7 @@ def buckle(deck: Deck, card: Card) -> None:
 
 
 def controls(deck: Deck, card: Card) -> None:
-    """``*CONTROLS``: tolerance and iterations are taken, the rest is noted."""
+    """``*CONTROLS``: tolerance and iterations are used, the rest is noted."""
     if card.has("RESET"):
         deck.controls.clear()
         return

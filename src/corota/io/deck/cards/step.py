@@ -1,4 +1,4 @@
-"""Cards of steps: where they begin and end, and their times."""
+"""Cards of steps: begin, end and times."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 
@@ -120,7 +120,7 @@ def step_times(deck: Deck, card: Card, now: StepDraft) -> None:
 
 
 def renews(deck: Deck, now: StepDraft | None, card: Card, kind: str) -> bool:
-    """Whether a card takes away what earlier steps gave of its kind (``OP=NEW``)."""
+    """Whether a card removes loads of its kind from earlier steps (``OP=NEW``)."""
     new = deck.choice(card, "OP", ("NEW", "MOD"), "MOD") == "NEW"
     if now is None:
         return new
@@ -148,7 +148,7 @@ def loads_of(deck: Deck, card: Card, kind: LoadKind) -> StepDraft | None:
 def keeps_preload(deck: Deck, card: Card, now: StepDraft) -> bool:
     """Whether a step starts from stresses and displacements of the steps before.
 
-    As in CalculiX, it is ``*STEP, PERTURBATION`` that says so.
+    As in CalculiX, ``*STEP, PERTURBATION`` requests it.
     """
     kept = now.card.has("PERTURBATION")
     if len(deck.steps) > 1 and not kept:

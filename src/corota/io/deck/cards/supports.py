@@ -1,4 +1,4 @@
-"""``*BOUNDARY``: what is held or moved."""
+"""``*BOUNDARY``: fixed and moved nodes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 
@@ -30,7 +30,7 @@ NAMED_SUPPORTS = {
 }
 
 
-#: What a support prescribes, and how often that is integrated to a displacement.
+#: Prescribed quantity of a support, and the number of integrations to a displacement.
 RATES = {"DISPLACEMENT": 0, "VELOCITY": 1, "ACCELERATION": 2}
 
 

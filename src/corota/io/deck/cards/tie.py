@@ -52,7 +52,7 @@ def equation(deck: Deck, card: Card) -> None:
                 tie.terms.append(
                     Draft("term", card, of_node, of_node.get(i), (value,), PLANAR[dof])
                 )
-        if tie.terms:  # what is zero in the plane says nothing
+        if tie.terms:  # terms that vanish in the plane are dropped
             deck.ties.append(tie)
         at += 1 + 3 * count
 
@@ -214,7 +214,7 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 def mpc(deck: Deck, card: Card) -> None:
     """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
 
-    ``PLANE`` holds by itself. Rows that begin with a node go on with the one before.
+    ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
     """
     line: TieDraft | None = None
     for row in card.rows():
@@ -254,7 +254,7 @@ def mpc(deck: Deck, card: Card) -> None:
 
 
 def _on_line(tie: TieDraft, card: Card, row: Row, start: int) -> None:
-    """Take the nodes of a row; zeros stand for none."""
+    """Take the nodes of a row; zeros are ignored."""
     for i in range(start, len(row)):
         if row.get(i) not in ("", "0"):
             tie.terms.append(Draft("node", card, row, row.get(i), (0.0,)))

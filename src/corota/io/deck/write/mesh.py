@@ -34,7 +34,7 @@ def write_deck_mesh(mesh: Mesh, path: Path, title: str = "") -> None:
     Raises
     ------
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     replace_text(path, "".join(_cards(mesh, title or path.stem)))
 

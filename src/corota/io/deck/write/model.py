@@ -61,9 +61,9 @@ def write_deck(
     Raises
     ------
     UnsupportedError
-        If something of the model has no card here; nothing is left out in silence.
+        If a part of the model has no card; nothing is silently omitted.
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     target = Path(path)
     chosen = [steps] if isinstance(steps, Step) else list(model.steps if steps is None else steps)
@@ -72,7 +72,7 @@ def write_deck(
 
 
 class _Writer:
-    """Cards of one model; sets that it has to invent start with an underscore."""
+    """Cards of one model; generated sets start with an underscore."""
 
     def __init__(self, model: Model, steps: list[Step]) -> None:
         self.model, self.mesh = model, model.mesh
@@ -80,7 +80,7 @@ class _Writer:
         self._sets: list[str] = []
         self._invented = 0
         self._materials: dict[int, str] = {}
-        self._edges: list[tuple[Ints, str]] = []  # surfaces that had to be invented
+        self._edges: list[tuple[Ints, str]] = []  # generated surfaces
 
     def cards(self) -> Iterator[str]:
         model = self.model
