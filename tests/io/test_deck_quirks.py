@@ -233,7 +233,7 @@ def test_circular_and_deep_includes_are_refused(tmp_path: Path) -> None:
     for level in range(20):
         (tmp_path / f"d{level}.inp").write_text(f"*INCLUDE, INPUT=d{level + 1}.inp\n")
     found = faults(tmp_path, "*INCLUDE, INPUT=d0.inp\n" + DECK)
-    assert "more than 16 deep" in found[0].message
+    assert "nested more than 16 levels deep" in found[0].message
 
 
 def test_sparse_numbers_cost_nothing(tmp_path: Path) -> None:

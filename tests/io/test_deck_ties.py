@@ -115,7 +115,7 @@ def test_a_deck_with_a_rigid_end_bends_like_the_model(tmp_path: Path) -> None:
         ("*COUPLING, REF NODE=20, SURFACE=NO\n*KINEMATIC\n", "no surface named NO"),
         ("*COUPLING, REF NODE=20, SURFACE=END\n*KINEMATIC\n3, 4\n", "no dof of the plane"),
         ("*KINEMATIC\n1, 2\n", "belongs to a *COUPLING"),
-        ("*MPC\nSTRAIGHT, 1, 2\n", "three nodes at least"),
+        ("*MPC\nSTRAIGHT, 1, 2\n", "at least three nodes"),
         ("*MPC\nMEANROT, 1, 2, 3\n", "MPC type 'MEANROT' is not supported"),
         ("*MPC\nBEAM, 1\n", "two nodes are expected"),
         ("*TRANSFORM, NSET=END\n1., 0., 0., -1., 0., 0.\n", "b left of it"),

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 class Stop(BaseObserver):
     """Observer that ends the analysis after the increment in which a signal came.
 
-    The first signal asks for the end; another one a second later at the latest ends the process,
-    even within the core. SIGUSR1 asks for a checkpoint and nothing else.
+    The first signal requests the end; a second one ends the process within a second,
+    even in the core. SIGUSR1 requests a checkpoint only.
     """
 
     #: Signals that end a run, where the system has them.
@@ -42,7 +42,7 @@ class Stop(BaseObserver):
         self.terminal, self.files, self.signal = terminal, files, ""
         self.stop = False
 
-    def end(self, number: int, frame: object) -> None:
+    def on_signal(self, number: int, frame: object) -> None:
         """Note the signal; a second one stops at once."""
         if self.signal:
             raise KeyboardInterrupt
@@ -58,7 +58,7 @@ class Stop(BaseObserver):
     def listening(self) -> Iterator[None]:
         """Take over the signals for a while; one that is ignored, as under nohup, stays so."""
         before: dict[int, Any] = {}
-        handlers = {name: self.end for name in self.ENDING} | {"SIGUSR1": self.save}
+        handlers = {name: self.on_signal for name in self.ENDING} | {"SIGUSR1": self.save}
         for name, handler in handlers.items():
             number = getattr(signal, name, None)
             if number is None or signal.getsignal(number) is signal.SIG_IGN:
