@@ -1,4 +1,4 @@
-"""What can be said of a model before it is solved."""
+"""Checks of a model before it is solved."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -26,14 +26,14 @@ __all__ = ["check", "examine"]
 
 
 def check(model: Model, steps: Step | Sequence[Step] | None = None) -> list[Diagnostic]:
-    """Look for what will fail, mislead or surprise, without solving more than the start.
+    """Check for errors and likely mistakes, without solving more than the start.
 
     Errors are what a run refuses: cells without a section or of the wrong shape, inverted cells,
-    and motions that nothing holds, with the node to hold. A model with steps is judged by the
-    run's own first increment, so that constraints, ties and contact hold what they hold there;
-    what looks wrong and does not stop a run at its start is a warning, as is a motion that only a
-    later step lets free. Warnings are also meshes that lock,
-    distorted cells, nodes at the same place, doubtful units. Notes count and list.
+    and free motions, with the node to fix. A model with steps is checked by the
+    run's own first increment, so that constraints, ties and contact are included;
+    problems that do not stop a run at its start are warnings, as is a motion that only a
+    later step releases. Warnings are also given for meshes that lock,
+    distorted cells, coincident nodes, doubtful units. Notes count and list.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def check(model: Model, steps: Step | Sequence[Step] | None = None) -> list[Diag
 def examine(model: Model) -> tuple[list[Diagnostic], int]:
     """Findings of :func:`check`, and the exit code: 0 if a run starts.
 
-    A mesh without sections and steps is no model yet, and has no errors of one.
+    A mesh without sections and steps is not yet a model, and is not checked as one.
     """
     found, code = check_data(model), 0
     if model.sections or model.steps:
@@ -80,7 +80,7 @@ def examine(model: Model) -> tuple[list[Diagnostic], int]:
         elif complete and _plain(model):
             found += check_rigid(model)
     elif model.mesh.n_cells:
-        # Nothing is asked of a mesh yet.
+        # A mesh alone is not checked as a model.
         found += [replace(d, severity="note") for d in check_sections(model)[0]]
         found += check_cells(model)
     order = {"error": 0, "warning": 1, "note": 2}
@@ -89,13 +89,13 @@ def examine(model: Model) -> tuple[list[Diagnostic], int]:
 
 
 def _by_start(model: Model, found: list[Diagnostic]) -> tuple[list[Diagnostic], int]:
-    """Findings in the light of whether the run starts, and the exit code if it does not."""
+    """Findings, adjusted to whether the run starts, and the exit code if it does not."""
     error = refusal(model)
     if error is None:
         found = [replace(d, severity="warning") if d.severity == "error" else d for d in found]
         if not _plain(model):
             return found, 0
-        # What rests without loads starts, and so does what later steps let free.
+        # Models without loads start, and so do bodies that later steps release.
         free = check_rigid(model, first=1) or check_rigid(model)
         return found + [replace(d, severity="warning") for d in free], 0
     named = isinstance(error, SingularError) and _plain(model)
@@ -107,6 +107,6 @@ def _by_start(model: Model, found: list[Diagnostic]) -> tuple[list[Diagnostic], 
 
 
 def _plain(model: Model) -> bool:
-    """Whether supports and common nodes alone hold the model's bodies."""
+    """Whether supports and common nodes alone constrain the model's bodies."""
     joined = model.constraints or model.axes or model.contacts or model.ties
     return not joined and all(block.kind in SHAPED for block in model.mesh.cells)

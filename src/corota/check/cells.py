@@ -1,4 +1,4 @@
-"""Shape of the cells, and nodes that nothing joins."""
+"""Shape of the cells, and unconnected nodes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

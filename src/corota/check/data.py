@@ -1,4 +1,4 @@
-"""Counts, sets that nothing uses, steps and loads without effect."""
+"""Counts, unused sets, steps and loads without effect."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Free rigid-body modes and hinges, with the node that would hold them."""
+"""Free rigid-body modes and hinges, with the node to fix."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
 
 #: Share of the largest eigenvalue of the constraints below which a mode is free.
 FREE = 1e-13
-#: Bodies joined by common nodes that are looked at together.
+#: Largest number of bodies joined by common nodes that are checked together.
 MAX_BODIES = 400
 
 
 def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
     """Findings over all static steps (over the model's supports, if it has no step).
 
-    Supports and common nodes are all it knows: it names the motions of plain models. Steps before
-    `first`, from 0, are left out.
+    It uses supports and common nodes only, and names the motions of plain models. Steps before
+    `first`, from 0, are ignored.
     """
     mesh = model.mesh
     rotating = rotating_nodes(model)
@@ -49,7 +49,7 @@ def check_rigid(model: Model, first: int = 0) -> list[Diagnostic]:
 
 
 def _held(model: Model, rotating: NDArray[np.bool_]) -> list[Floats]:
-    """Dofs held in each step, each of shape (n_nodes, 3)."""
+    """Dofs fixed in each step, each of shape (n_nodes, 3)."""
     base = np.zeros((model.mesh.n_nodes, 3), bool)
     _hold(model, base, model.supports)
     now, found = base.copy(), []

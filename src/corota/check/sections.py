@@ -1,4 +1,4 @@
-"""Sections: every cell has one that fits; elements that lock where they stand."""
+"""Sections: every cell has one that fits; elements that lock in their use."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

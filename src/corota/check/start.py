@@ -1,4 +1,4 @@
-"""Whether a run starts: its own first increment is the judge."""
+"""Whether a run starts, by its own first increment."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -21,10 +21,10 @@ class _Begun(Exception):
 
 
 class _Watch(BaseObserver):
-    """Ends a run as soon as it is known to have started.
+    """Ends a run as soon as it has started.
 
-    Without contact one solution of the tangent is enough. With it bodies may part and be held by
-    nothing until the first increment is accepted.
+    Without contact one solution of the tangent is enough. With contact bodies may separate and be
+    unconstrained until the first increment is accepted.
     """
 
     def __init__(self, contact: bool) -> None:
@@ -49,7 +49,7 @@ class _Watch(BaseObserver):
 def refusal(model: Model) -> CorotaError | None:
     """Why a run of the model's steps would not start; None if it would.
 
-    The system is the run's own: constraints, ties and contact hold what they hold there.
+    The system is that of the run, with constraints, ties and contact.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PASCAL, LARGE = 1e9, 50.0
 #: Wave speeds of solids, from rubber in m/s to diamond in mm/s.
 SLOW, FAST = 10.0, 5e7
-#: The same in m/s, where units are told: foam to diamond.
+#: The same in m/s, where units are given: foam to diamond.
 SLOW_SI, FAST_SI = 1.0, 2e4
 #: Young's moduli of solids, from gels to diamond [Pa].
 SOFT, STIFF = 1e2, 2e12
@@ -32,7 +32,7 @@ LIGHT, HEAVY = 1.0, 3e4
 
 
 def check_units(model: Model) -> list[Diagnostic]:
-    """Warnings, one a material; with the units of the model where it tells them."""
+    """Warnings, one per material; with the units of the model if given."""
     points = model.mesh.points
     size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     found: dict[str, Diagnostic] = {}
@@ -91,7 +91,7 @@ def _doubts(
 
 
 def _told(units: Units, modulus: float, density: float) -> Iterator[tuple[str, str]]:
-    """Doubts about numbers whose units are told."""
+    """Warnings about numbers with given units."""
     length, force = units.size("length"), units.size("force")
     stress = units.label("force/length^2")
     pascal = modulus * force / length**2

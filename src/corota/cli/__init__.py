@@ -1,4 +1,4 @@
-"""The command line, ``corota COMMAND``; heavy imports wait until they are needed."""
+"""The command line, ``corota COMMAND``; large modules are imported on demand."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from corota.cli.terminal import Terminal
 
-#: Set to see the Python traceback of an error.
+#: Set this variable to see the Python traceback of an error.
 TRACEBACK = "COROTA_TRACEBACK"
 
 
@@ -102,7 +102,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         terminal.error(f"{name}{error.strerror or error}")
         return 5 if error.errno == errno.ENOMEM else 6
     except BaseException as error:
-        # A panic of the core is no Exception.
+        # A panic of the core is not an Exception.
         if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
             raise
         _trace()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def run(args: Any, terminal: Terminal) -> int:
-    """Check an input; 0 if its run starts, else the code by which the run refuses it."""
+    """Check an input; 0 if its run starts, otherwise the exit code of the run."""
     from corota.check import examine
 
     try:

@@ -1,4 +1,4 @@
-"""``corota convert``: from one format to another, as the endings say."""
+"""``corota convert``: from one format to another, by file extension."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""``corota demo``: run an example that comes with the wheel; no file and no network is needed."""
+"""``corota demo``: run a built-in example without files or network."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

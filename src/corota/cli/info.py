@@ -1,4 +1,4 @@
-"""``corota info``: what is in a deck, a mesh or a result file."""
+"""``corota info``: contents of a deck, a mesh or a result file."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -50,7 +50,7 @@ def run(args: Any, terminal: Terminal) -> int:
 
 
 def model_record(model: Model) -> dict[str, Any]:
-    """Give the same for machines."""
+    """Return the same as a record."""
     mesh = model.mesh
     return {
         "event": "model",

@@ -21,7 +21,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class Version(argparse.Action):
-    """Print the version without importing anything heavy."""
+    """Print the version without importing large modules."""
 
     def __call__(self, parser: argparse.ArgumentParser, *rest: object) -> NoReturn:
         from corota import __version__

@@ -91,7 +91,7 @@ def _iterate(source: Path) -> Path:
 
 
 def _of_motion(args: Any, source: Path, results: Results, terminal: Terminal) -> int:
-    """Modes, response or energies; modes lie in a file of their own."""
+    """Modes, response or energies; modes are in a separate file."""
     from corota import plots
     from corota.io.result_reader import read_results
 

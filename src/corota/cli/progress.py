@@ -1,4 +1,4 @@
-"""What a run shows while it works: a live line on terminals, a line an increment elsewhere."""
+"""Progress of a run: a live line on terminals, a line per increment elsewhere."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -130,7 +130,7 @@ class Progress(BaseObserver):
 
 
 def duration(seconds: float) -> str:
-    """A time for people: ``0.42 s``, ``12.3 s``, ``3:07``, ``2:03:10``."""
+    """A duration for display: ``0.42 s``, ``12.3 s``, ``3:07``, ``2:03:10``."""
     if seconds < 10.0:
         return f"{seconds:.2f} s"
     if seconds < 60.0:

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def run(args: Any, terminal: Terminal) -> int:
-    """Write the page and tell its size."""
+    """Write the page and print its size."""
     from corota.report import report_job
 
     path = report_job(args.job, args.output, limit=args.limit, title=args.title)

@@ -1,4 +1,4 @@
-"""``corota resume``: go on with a run that stopped."""
+"""``corota resume``: resume a stopped run."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

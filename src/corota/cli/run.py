@@ -1,4 +1,4 @@
-"""``corota run``: read, solve, write, tell."""
+"""``corota run``: read, solve, write, report."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Stop(BaseObserver):
 
     @contextlib.contextmanager
     def listening(self) -> Iterator[None]:
-        """Take over the signals for a while; one that is ignored, as under nohup, stays so."""
+        """Handle the signals in a block; ignored ones, as under nohup, stay ignored."""
         before: dict[int, Any] = {}
         handlers = {name: self.on_signal for name in self.ENDING} | {"SIGUSR1": self.save}
         for name, handler in handlers.items():
@@ -157,7 +157,7 @@ def carry_out(
     begin: float,
     start: Checkpoint | None = None,
 ) -> int:
-    """Solve, from a checkpoint if there is one, and tell; return the exit code."""
+    """Solve, from a checkpoint if there is one, and report; return the exit code."""
     from corota.analysis.run import solve
     from corota.io.events import Events
 
@@ -221,7 +221,7 @@ def carry_out(
 
 @contextlib.contextmanager
 def _served(files: JobFiles, name: str, terminal: Terminal, port: int | None) -> Iterator[None]:
-    """Serve the page of the run while it goes on, if requested."""
+    """Serve the page during the run, if requested."""
     if port is None:
         yield
         return
@@ -238,7 +238,7 @@ def _served(files: JobFiles, name: str, terminal: Terminal, port: int | None) ->
 
 
 def _tell_checkpoint(files: JobFiles, terminal: Terminal) -> None:
-    """Say how to go on, if there is something to go on from."""
+    """Print how to resume, if there is a checkpoint."""
     path = files.folder / f"{files.name}.ckpt"
     if files.error is None and files.checkpointed is not None and path.exists():
         terminal.line(

@@ -1,4 +1,4 @@
-"""Standard output and error that may be a terminal, a pipe, closed or full."""
+"""Standard output and error, which may be a terminal, a pipe, closed or full."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -17,7 +17,7 @@ _COMMANDS_AND_COLORS = re.compile(rf"\033|{_REST}")
 
 
 class Terminal:
-    """Writes lines; a reader that went away never stops the work.
+    """Writes lines; a closed reader never stops the run.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Terminal:
         return "utf" in (getattr(sys.stdout, "encoding", "") or "").lower()
 
     def color(self, text: str, name: str) -> str:
-        """Text in a color, where colors are wanted."""
+        """Text in a color, where colors are enabled."""
         return f"\033[{COLORS[name]}m{text}\033[0m" if self.colored else text
 
     def line(self, text: str = "") -> None:
@@ -70,7 +70,7 @@ class Terminal:
             self._open = True
 
     def _clear(self) -> str:
-        """Remove the progress line before something lasting is printed."""
+        """Remove the progress line before other output."""
         was, self._open = self._open, False
         return "\r\033[2K" if was else ""
 
@@ -103,7 +103,7 @@ class Terminal:
             self._silence()
 
     def _silence(self) -> None:
-        """Send everything that still comes, and Python's own flush at the end, nowhere."""
+        """Discard all further output, and Python's own flush at the end."""
         self._gone = True
         with contextlib.suppress(OSError, ValueError, AttributeError):
             nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -121,7 +121,7 @@ class Terminal:
 
 
 def _plain(text: str, colored: bool) -> str:
-    """Text without what would command the terminal, but for colors where they are wanted.
+    """Text without control sequences, except colors where they are enabled.
 
     Names and lines of a deck are repeated in messages; they may hold anything.
     """
@@ -130,6 +130,6 @@ def _plain(text: str, colored: bool) -> str:
 
 
 def _printable(text: str, stream: TextIO) -> str:
-    """Text with what the stream cannot encode replaced."""
+    """Text with replacements for characters that the stream cannot encode."""
     encoding = getattr(stream, "encoding", None) or "utf-8"
     return text.encode(encoding, "replace").decode(encoding, "replace")

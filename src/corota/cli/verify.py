@@ -91,7 +91,7 @@ def _list(wanted: list[Problem], terminal: Terminal) -> int:
 
 
 def cells(outcome: Outcome) -> list[tuple[str, ...]]:
-    """Rows of the table, a value each; the name and the seconds stand in the first."""
+    """Rows of the table, one per value; the first has the name and the seconds."""
     rows: list[tuple[str, ...]] = []
     for k, v in enumerate(outcome.values):
         rows.append(

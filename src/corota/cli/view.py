@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def run(args: Any, terminal: Terminal) -> int:
-    """Open the window, or write what it would show."""
+    """Open the window, or write its picture."""
     from corota.io.result_reader import read_results
 
     with read_results(args.file) as results:

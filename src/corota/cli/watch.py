@@ -1,4 +1,4 @@
-"""``corota watch``: a run at work, in a browser or in the terminal."""
+"""``corota watch``: a run in progress, in a browser or in the terminal."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from corota.report.records import JobPaths, Records
     from corota.report.server import JobWatch
 
-#: Seconds between two looks at the files, and seconds that a job may take to write its first.
+#: Seconds between two checks of the files, and seconds that a job may take to write its first.
 BEAT, PATIENCE = 0.5, 30.0
 #: Residuals of these powers of ten and below, or above, have the lowest and the highest bar.
 LOWEST, HIGHEST = -12.0, 0.0
@@ -49,7 +49,7 @@ def run(args: Any, terminal: Terminal) -> int:
 
 
 def tell_address(address: str, terminal: Terminal) -> None:
-    """Print where the page is."""
+    """Print the address of the page."""
     terminal.line(f"Watch at {address}")
     terminal.record({"event": "page", "address": address})
 
@@ -92,7 +92,7 @@ def _in_terminal(watch: JobWatch, terminal: Terminal) -> None:
 
 
 def _news(records: Records, shown: list[int]) -> list[str]:
-    """What came since the last look, in the order of its kinds."""
+    """News since the last check, in the order of their kinds."""
     lines = [_increment(r) for r in records.increments[shown[0] :] if r.get("increment")]
     lines += [
         f"  step {c['step']}, increment {c['increment']}, attempt {c['attempt']}: {c['reason']}; "

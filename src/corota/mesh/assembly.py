@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def assembly(**bodies: Mesh) -> Mesh:
-    """Put bodies side by side: nodes stay apart even where they coincide.
+    """Combine bodies in one mesh: coincident nodes are not merged.
 
-    Each set gets the name of its body in front, ``lower.top``; each body is a cell set and a
-    node set of its own name.
+    Set names get the name of their body as a prefix, ``lower.top``; each body is a cell set and a
+    node set with its name.
 
     Parameters
     ----------

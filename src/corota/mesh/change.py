@@ -1,4 +1,4 @@
-"""Meshes made from other meshes; every function returns a new one."""
+"""Modified meshes; every function returns a new one."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -20,7 +20,7 @@ _SPLIT = {
     "right": {"quad4": ((0, 1, 2), (0, 2, 3)), "quad9": ((0, 1, 2, 4, 5, 8), (0, 2, 3, 8, 6, 7))},
     "left": {"quad4": ((0, 1, 3), (1, 2, 3)), "quad9": ((0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 6, 8))},
 }
-#: Triangle and side that take the place of each side of a quadrilateral.
+#: Triangle and side that replace each side of a quadrilateral.
 _SIDES = {"right": ((0, 0), (0, 1), (1, 1), (1, 2)), "left": ((0, 0), (1, 0), (1, 1), (0, 2))}
 _TRIANGLE = {"quad4": "tri3", "quad9": "tri6"}
 
@@ -31,7 +31,7 @@ def move(
     angle: float = 0.0,
     scale: float = 1.0,
 ) -> Mesh:
-    """Scale, then turn about the origin, then shift a mesh.
+    """Scale a mesh, then rotate it about the origin, then shift it.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def move(
 
 
 def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
-    """Join meshes and make nodes at the same place one.
+    """Join meshes and merge coincident nodes.
 
     Sets of the same name are united; node and cell numbers start again from 1. Edges along which
     two meshes are joined lie inside the body now: they leave the edge sets, and where a node set
@@ -67,7 +67,7 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
     ----------
     *meshes : Mesh
     tolerance : float, optional
-        Distance up to which nodes are one [length]; 1e-9 of the largest extension if absent.
+        Distance up to which nodes are merged [length]; 1e-9 of the largest extension if absent.
 
     Examples
     --------
@@ -335,7 +335,7 @@ def placed_middles(mesh: Mesh, points: Floats) -> Mesh:
     ----------
     mesh : Mesh
     points : ndarray, shape (n_nodes, 2)
-        New places of the corners; other rows are replaced.
+        New positions of the corners; other rows are replaced.
     """
     changed = _copy(mesh, points)
     outer = np.zeros(mesh.n_nodes, bool)
@@ -349,7 +349,7 @@ def placed_middles(mesh: Mesh, points: Floats) -> Mesh:
     for block in mesh.cells:
         if block.kind == "quad9":
             n = changed.points[block.nodes[:, :8]]
-            # Centre of the serendipity map, so that the cell stays free of a bubble.
+            # Center of the serendipity map, so that the cell has no bubble.
             place = n[:, 4:].sum(axis=1) / 2 - n[:, :4].sum(axis=1) / 4
             changed.points[block.nodes[:, 8]] = place
     return changed

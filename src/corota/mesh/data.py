@@ -104,7 +104,7 @@ class Mesh(Brief):
     edge_sets : dict of str to ndarray of int, shape (n, 2)
         Pairs of global cell index and local edge (from 0).
     notes : list of str
-        What a reader repaired or left out.
+        Notes of a reader: what it repaired or dropped.
     """
 
     points: Floats
@@ -225,13 +225,13 @@ class Mesh(Brief):
         return np.asarray(ends[:, 0] * np.int64(self.n_nodes) + ends[:, 1])
 
     def set_name(self, name: str, *kinds: str) -> str:
-        """A set's own name from one in other letters' case.
+        """Name of a set, found regardless of case.
 
         Parameters
         ----------
         name : str
         *kinds : str
-            ``"node"``, ``"edge"``, ``"cell"``: the kinds of sets that will do; all by default.
+            ``"node"``, ``"edge"``, ``"cell"``: the accepted kinds of sets; all by default.
 
         Raises
         ------
@@ -273,7 +273,7 @@ class Mesh(Brief):
         Raises
         ------
         InputError
-            If there is no such set, or these are no indices of nodes of the mesh.
+            If there is no such set, or the indices are not nodes of the mesh.
         """
         if isinstance(where, str):
             return self.nodes_of(where)
@@ -319,7 +319,7 @@ class Mesh(Brief):
         Raises
         ------
         InputError
-            If there is no such set, or these are no edges of the mesh.
+            If there is no such set, or the pairs are not edges of the mesh.
         """
         if isinstance(where, str):
             return self.edge_sets[self.set_name(where, "edge")]

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 def read(path: str | os.PathLike[str]) -> Mesh:
     """Read a mesh.
 
-    Gmsh's ``.msh`` (2.2 and 4.1, text and binary) and decks ``.inp`` are read here; other
-    formats by meshio, if it is installed. Physical groups become sets: of cells for surfaces,
+    Gmsh's ``.msh`` (2.2 and 4.1, text and binary) and decks ``.inp`` are read directly; other
+    formats through meshio, if it is installed. Physical groups become sets: of cells for surfaces,
     of edges and nodes for curves, of nodes for points.
 
     Parameters
@@ -29,7 +29,7 @@ def read(path: str | os.PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        With file and line, for a file that is not understood.
+        With file and line of the error.
     FileError
         If the file cannot be read.
     """

@@ -195,7 +195,7 @@ def annulus(
 
 
 def distort(mesh: Mesh, amount: float, seed: int = 0) -> Mesh:
-    """Shift the corner nodes inside a mesh at random; the boundary stays.
+    """Shift the corner nodes inside a mesh at random; the boundary does not move.
 
     Nodes in the middle of sides and cells follow, so that inner sides stay straight.
 
@@ -272,7 +272,7 @@ def _blend(sides: Sequence[Curve], nx: int, ny: int) -> Floats:
 
 
 def _build(lattice: Floats, nx: int, ny: int, cell: Kind, diagonal: Diagonal) -> Mesh:
-    """Mesh on a lattice of (2 ny + 1, 2 nx + 1) points; unused ones are left out."""
+    """Mesh on a lattice of (2 ny + 1, 2 nx + 1) points; unused ones are dropped."""
     width = 2 * nx + 1
     i, j = np.meshgrid(np.arange(nx), np.arange(ny))
     corner = (2 * j * width + 2 * i).ravel()

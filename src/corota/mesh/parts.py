@@ -1,4 +1,4 @@
-"""Which cells and nodes hang together."""
+"""Connected parts of cells and nodes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -27,14 +27,14 @@ def cells_of(mesh: Mesh, where: str | Ints) -> Ints:
 
 
 def part_of_cells(mesh: Mesh) -> Ints:
-    """Number the parts that hang together by common nodes; shape (n_cells,)."""
+    """Number the parts connected by common nodes; shape (n_cells,)."""
     nodes, cells = _incidence(mesh)
     total = mesh.n_nodes + mesh.n_cells
     return _components(nodes, cells + mesh.n_nodes, total)[mesh.n_nodes :]
 
 
 def part_of_nodes(mesh: Mesh) -> Ints:
-    """Number the parts that hang together by common nodes; shape (n_nodes,), -1 without cells."""
+    """Number the parts connected by common nodes; shape (n_nodes,), -1 without cells."""
     nodes, cells = _incidence(mesh)
     out = np.full(mesh.n_nodes, -1, np.int64)
     out[nodes] = part_of_cells(mesh)[cells]
@@ -42,7 +42,7 @@ def part_of_nodes(mesh: Mesh) -> Ints:
 
 
 def stiff_part_of_cells(mesh: Mesh) -> Ints:
-    """Number the parts that hang together by common sides; shape (n_cells,)."""
+    """Number the parts connected by common sides; shape (n_cells,)."""
     keys, rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
         for local in EDGES[block.kind]:
@@ -56,7 +56,7 @@ def stiff_part_of_cells(mesh: Mesh) -> Ints:
 
 
 def parts_without(mesh: Mesh, without: NDArray[np.bool_]) -> Ints:
-    """Number the parts that hang together by cells, those of a mask left out; shape (n_nodes,)."""
+    """Number the parts connected by cells, except those of a mask; shape (n_nodes,)."""
     nodes, cells = _incidence(mesh)
     kept = ~without[cells]
     total = mesh.n_nodes + mesh.n_cells

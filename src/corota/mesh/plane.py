@@ -1,4 +1,4 @@
-"""Points in space that lie in one plane, turned into the plane of the model."""
+"""Points in space that lie in one plane, rotated into the plane of the model."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 #: Distance from the plane that counts as rounding, relative to the size of the part.
 FLAT = 1e-6
-#: Axes of a plane that become x and y, in right-handed order, and the one that is left out.
+#: Axes of a plane that become x and y, in right-handed order, and the one that is dropped.
 _PLANES = (("xy", (0, 1), 2), ("xz", (0, 2), 1), ("yz", (1, 2), 0))
 
 
@@ -31,7 +31,7 @@ def into_plane(points: Floats, used: NDArray[np.bool_]) -> tuple[Floats, list[st
     -------
     points : ndarray, shape (n, 2)
     notes : list of str
-        What was turned or left out.
+        What was rotated or dropped.
 
     None where the used points lie in no such plane.
     """

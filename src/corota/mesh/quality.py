@@ -31,7 +31,7 @@ def n_corners(kind: str) -> int:
 
 
 def corner_sines(kind: str, points: Floats) -> Floats:
-    """Sine of the turn at each corner, positive counter-clockwise.
+    """Sine of the angle at each corner, positive counter-clockwise.
 
     Parameters
     ----------
@@ -63,7 +63,8 @@ def _sides(kind: str, points: Floats) -> tuple[Floats, Floats, Floats]:
 def classify(kind: str, points: Floats) -> Ints:
     """Say of each cell whether it is ``GOOD``, ``CLOCKWISE``, ``FOLDED`` or ``FLAT``.
 
-    A flat cell has no area, or a side of no length; a folded one turns both ways at its
+    A flat cell has no area, or a side of no length; a folded one has corner angles of both signs at
+    its
     corners, or its Jacobian changes sign at integration points.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What a user selects by arrays: indices or masks of nodes and cells, pairs for edges."""
+"""Selections by arrays: indices or masks of nodes and cells, pairs for edges."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -34,7 +34,7 @@ def indices(
     Raises
     ------
     InputError
-        If these are not indices, or none, or out of range.
+        If these are not indices, are empty or out of range.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def pairs(given: ArrayLike, count: int | None = None, where: Location | None = N
     Raises
     ------
     InputError
-        If these are no such pairs.
+        If these are not such pairs.
     """
     array = _array(given, "edge", where)
     if array.dtype == np.bool_ or array.ndim != 2 or array.shape[1] != 2:
@@ -111,7 +111,7 @@ def one(given: object, what: str, count: int | None = None, where: Location | No
     Raises
     ------
     InputError
-        If it is none, or out of range.
+        If it is not an index, or out of range.
     """
     if isinstance(given, (bool, np.bool_)) or not isinstance(given, (int, np.integer)):
         raise InputError(f"a {what} is given by its index, not {given!r}", where)

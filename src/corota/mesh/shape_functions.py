@@ -1,4 +1,4 @@
-"""Shape functions of the cell kinds, as geometry and nodal fields have them."""
+"""Shape functions of the cell kinds, for geometry and nodal fields."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An analysis as a moving picture, uniform in time."""
+"""An analysis as an animation, uniform in time."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 #: Pictures of one pass, at most.
 MOST_FRAMES = 120
-#: Even numbers of pixels and colors that every player knows.
+#: Even numbers of pixels and colors that every player supports.
 PLAYABLE = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]
 #: Colors of a GIF, which can have 256.
 PALETTE = 128
@@ -54,7 +54,7 @@ def require_ffmpeg() -> None:
 
 
 def moments(times: NDArray[np.float64], most: int, spacing: str) -> Ints:
-    """Frames to show, one a picture; a long increment is shown for as long as it takes.
+    """Frames to show, one per picture; a long increment is shown proportionally longer.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def moments(times: NDArray[np.float64], most: int, spacing: str) -> Ints:
         return np.asarray(even)
     if np.ptp(steps) <= 1e-6 * steps.max():
         return np.asarray(even)
-    # As many pictures as resolve the shortest increments, up to the most.
+    # Enough pictures to resolve the shortest increments, up to the limit.
     wanted = int(min(most, max(count, round((times[-1] - times[0]) / steps.min()) + 1)))
     at = np.linspace(times[0], times[-1], wanted)
     after = np.searchsorted(times, at + 1e-9 * (times[-1] - times[0]), side="right") - 1
@@ -87,9 +87,9 @@ def animate(
     dpi: float = 100.0,
     spacing: Literal["time", "increments"] = "time",
 ) -> Path:
-    """Write an analysis as a moving picture, with one color scale and one window for all.
+    """Write an analysis as an animation, with one color scale and one window for all.
 
-    Each picture is handed on as soon as it is drawn; a state that is shown longer is drawn once.
+    Each picture is passed on as soon as it is drawn; a state that is shown longer is drawn once.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def animate(
         Length of one pass.
     dpi : float
     spacing : {"time", "increments"}
-        Uniform in time, or a picture an increment however long it is.
+        Uniform in time, or one picture per increment.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def animate(
     InputError
         If the ending is unknown, or a program for it is missing.
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     target = picture_path(path, tuple(FORMATS))
     choose(spacing, ("time", "increments"), "spacing")
@@ -149,7 +149,7 @@ def animate(
             painted = paint(ax, mpl, drawing, int(chosen[0]), scale, edges, True, limits)
             ax.set_xlim(low[0] - pad, high[0] + pad)
             ax.set_ylim(low[1] - pad, high[1] + pad)
-            # The longest title makes the layout of all.
+            # The longest title determines the layout of all.
             ax.set_title(frame_title(results, int(chosen[-1]), scale), loc="left")
             bar = figure.colorbar(
                 painted,
@@ -183,7 +183,7 @@ def animate(
 
 
 class _Stage:
-    """Axes whose ticks, labels and color bar are drawn once, and what is painted in them anew.
+    """Axes whose ticks, labels and color bar are drawn once; only the contents are repainted.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ class _Stage:
     def __init__(self, figure: Any, ax: Any) -> None:
         self._figure, self._ax = figure, ax
         figure.canvas.draw()
-        figure.set_layout_engine("none")  # else the axes move with the titles
+        figure.set_layout_engine("none")  # otherwise the axes move with the titles
         painted = self._painted()
         for artist in painted:
             artist.set_visible(False)
@@ -208,12 +208,12 @@ class _Stage:
         return [*self._ax.collections, *self._ax.lines, *self._ax.patches]
 
     def clear(self) -> None:
-        """Take away what was painted."""
+        """Remove the painted contents."""
         for artist in self._painted():
             artist.remove()
 
     def picture(self) -> Any:
-        """What is painted now, on the empty axes: 8-bit colors, shape (height, width, 3)."""
+        """The painted contents on the empty axes: 8-bit colors, shape (height, width, 3)."""
         canvas = self._figure.canvas
         canvas.restore_region(self._empty)
         for artist in sorted(self._painted(), key=lambda one: one.get_zorder()):
@@ -223,7 +223,7 @@ class _Stage:
 
 
 def _gif(pictures: Iterator[Any], path: Path, rate: int) -> None:
-    """Pictures one after the other; Pillow keeps what differs from the one before."""
+    """Pictures in sequence; Pillow stores the differences."""
     from PIL import Image
 
     palette: Any = None
@@ -334,7 +334,7 @@ def _html(pictures: Iterator[Any], path: Path, rate: int) -> None:
     path.write_text(page, encoding="utf-8")
 
 
-#: Ending of the file name to what makes a film of pictures, of which it gets one at a time.
+#: Encoder by file extension; it gets one picture at a time.
 FORMATS: dict[str, Callable[[Iterator[Any], Path, int], None]] = {
     ".gif": _gif,
     ".mp4": _mp4,

@@ -1,4 +1,4 @@
-"""Contact along its line: pressure, shear traction, and the state of every node."""
+"""Contact along a surface: pressure, shear traction, and the state of every node."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -40,7 +40,7 @@ def contact_line(
 ) -> Any:
     """Draw pressure, and shear traction if there is any, along the slave surface of a pair.
 
-    The way along it is that of the undeformed surface, the body on the left; the part that
+    The abscissa is the length along the undeformed surface, the body on the left; the part
     is closed is shown, with a tenth more on either side.
 
     Parameters
@@ -198,7 +198,7 @@ def _pair(results: Results, name: str) -> ContactPair:
 
 
 def _contours(results: Results, pair: ContactPair) -> list[tuple[Ints, Floats]]:
-    """Nodes of the slave surface in their order, and the way along it; one for each contour."""
+    """Nodes of the slave surface in order, and the length along it; one for each contour."""
     mesh = results.mesh
     edges = mesh.edge_sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
     chain: dict[int, tuple[int, ...]] = {}

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Meshes with fewer cells show their edges unless asked otherwise.
+#: Meshes with fewer cells show their edges by default.
 EDGES_UP_TO = 1500
 #: Bands of color between the smallest and the largest value.
 BANDS = 16
@@ -44,7 +44,7 @@ EDGES_FROM = 0.008
 
 @dataclass
 class Drawing:
-    """What of a model stays the same from frame to frame.
+    """Data of a model that are the same for all frames.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Drawing:
             for group, part in self.parts
         ]
         if self.name in NEVER_NEGATIVE:
-            # Extrapolation from the points overshoots beside the plastic front.
+            # Extrapolation from the points overshoots near the plastic front.
             return [(part, np.maximum(values, 0.0)) for part, values in drawn]
         return drawn
 

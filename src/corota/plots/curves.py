@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from corota.results.history import History
 
-#: Quantities that belong on the upright axis whatever is asked first.
+#: Quantities that are always drawn on the vertical axis.
 _UPRIGHT = ("load factor", "RF", "F1", "F2", "M3", "RM3")
 
 
@@ -32,8 +32,8 @@ def curve(
 ) -> Any:
     """Draw histories against another.
 
-    A single history against the load factor or a force is drawn the engineers' way: the load
-    upright, the displacement along. Of an equilibrium path the stable branches are solid, the
+    A single history against the load factor or a force has the usual axes: load
+    vertical, displacement horizontal. Of an equilibrium path the stable branches are solid, the
     unstable ones dashed, and limit and bifurcation points are marked.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What all pictures share: the figure, its look, and writing it."""
+"""Common parts of all pictures: the figure, its style, and writing it."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -37,10 +37,10 @@ STYLE = {
     "figure.dpi": 110.0,
     "axes.prop_cycle": None,
 }
-#: Colors that stay apart in print and for the color-blind (Okabe and Ito).
+#: Colors that are distinct in print and for the color-blind (Okabe and Ito).
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999")
 INK, PALE = "#20242b", "#9aa3b0"
-#: What pulls and what presses; positive and negative values of section forces.
+#: Colors of tension and compression, and of positive and negative section forces.
 TENSION, COMPRESSION = COLORS[1], COLORS[0]
 #: Width of new figures [inch]; 0 for that of each kind of picture.
 _WIDTH: ContextVar[float] = ContextVar("width", default=0.0)
@@ -82,17 +82,17 @@ def look() -> Any:
 
 @contextlib.contextmanager
 def width_of(millimeters: float) -> Any:
-    """Make all new figures inside of a ``with`` block so wide, such as one column of a page.
+    """Set the width of all new figures inside a ``with`` block, such as one column of a page.
 
     Parameters
     ----------
     millimeters : float
-        0 for the own width of each kind of picture.
+        0 for the default width of each kind of picture.
 
     Raises
     ------
     InputError
-        If it is no width of a page.
+        If it is not a page width.
     """
     if millimeters and not 40.0 <= millimeters <= 1000.0:
         raise InputError(f"the width of a picture is 40 to 1000 mm, not {millimeters:g}")
@@ -150,7 +150,7 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
     Raises
     ------
     FileError
-        If the disk refuses.
+        If writing fails.
     """
     target = picture_path(path)
     hidden = target.with_name(f".{target.name}.next")
@@ -167,14 +167,14 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
 
 
 def label_axes(ax: Any, units: Units) -> None:
-    """Name x and y, with the unit of length where it is told."""
+    """Label x and y, with the unit of length if given."""
     unit = f" [{units.length}]" if units.length else ""
     ax.set_xlabel(f"x{unit}")
     ax.set_ylabel(f"y{unit}")
 
 
 def wrap_texts(figure: Any) -> None:
-    """Break titles and labels that would run out of the figure."""
+    """Wrap titles and labels that exceed the figure."""
     wide, high = (72.0 * inches for inches in figure.get_size_inches())
     columns = {round(ax.get_position().x0, 2) for ax in figure.axes if not hasattr(ax, "_colorbar")}
     count = max(len(columns), 1)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: What the section forces are, with their dimensions.
+#: Names of section forces, with their dimensions.
 NAMES = {
     "N": ("normal force", "force"),
     "V": ("shear force", "force"),
@@ -56,8 +56,8 @@ def section_forces(
 ) -> Any:
     """Draw the diagram of a section force on trusses and beams.
 
-    Moments are drawn on the side that they stretch; normal and shear forces, where positive, on
-    the left of the way from the first node to the second.
+    Moments are drawn on the tension side; positive normal and shear forces on
+    the left of the direction from the first node to the second.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def section_forces(
 
 
 def _smooth(left: Floats, nodes: NDArray[np.int64]) -> Floats:
-    """Normals at the ends of lines, shape (n, 2, 2); of two lines that go on at a node the mean."""
+    """Normals at the ends of lines, shape (n, 2, 2); the mean between two collinear lines."""
     side = np.repeat(left[:, None], 2, axis=1)
     begins, ends = (np.bincount(nodes[:, k], minlength=nodes.max() + 1) for k in (0, 1))
     through = (begins == 1) & (ends == 1)
@@ -149,7 +149,7 @@ def _smooth(left: Floats, nodes: NDArray[np.int64]) -> Floats:
 
 
 def _pieces(ends: Floats, tops: Floats, values: Floats) -> list[Floats]:
-    """Outlines of what of the diagrams is positive."""
+    """Outlines of the positive parts of the diagrams."""
     found = []
     for axis, top, (first, last) in zip(ends, tops, values, strict=True):
         if first <= 0.0 and last <= 0.0:
@@ -198,7 +198,7 @@ def section_diagram(
     path: str | PathLike[str] | None = None,
     dpi: float = 150.0,
 ) -> Any:
-    """Draw N, V and M of planar elements over the way along their axis.
+    """Draw N, V and M of planar elements along their axis.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def _three(
     with look():
         figure = new_figure(5.2, 4.6, shown=path is None)
         panels = figure.subplots(3, 1, sharex=True)
-        # What is zero but for rounding is drawn as zero.
+        # Values of rounding size are drawn as zero.
         arm = float(np.ptp(results.mesh.points, axis=0).max()) or 1.0
         force = max(*(float(np.abs(r).max()) for r in rows[:2]), float(np.abs(rows[2]).max()) / arm)
         for ax, (name, (what, of)), values in zip(panels, NAMES.items(), rows, strict=True):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Beams, bars, springs and links stand apart from cells' edges and from supports.
+#: Beams, bars, springs and links are distinct from cell edges and supports.
 BEAM, BAR, SPRING, LINK = "#35506e", "#8a5a2b", "#8c2f6b", "#9aa3ae"
 #: Windings of a spring, and their height over the diagonal of the model.
 WINDINGS, HEIGHT = 5, 0.012
@@ -34,7 +34,7 @@ def _cells(subject: Model, section: Section) -> list[int]:
 
 
 def zigzag(first: Floats, last: Floats, height: float) -> Floats:
-    """Way of a spring between two points, shape (m, 2)."""
+    """Line of a spring between two points, shape (m, 2)."""
     along = last - first
     length = float(np.linalg.norm(along))
     if length == 0.0:
@@ -46,7 +46,7 @@ def zigzag(first: Floats, last: Floats, height: float) -> Floats:
 
 
 def draw_lines(ax: Any, subject: Model, size: float) -> None:
-    """Draw what the cells' faces and edges do not show.
+    """Draw line elements, masses and links.
 
     Beams are heavy lines, bars lighter ones with open ends, springs zigzags (to the ground a short
     one; a ring where they turn), dashpots dashed, point masses dots, rigid bodies and couplings

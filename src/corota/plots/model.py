@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 #: Colors of sections, pale enough for symbols above them.
 SHADES = ("#dbe7f3", "#fbe6d3", "#dcefe4", "#f3e0ec", "#f8efc9", "#e4e4ea")
-#: Symbols of one kind stand apart by this share of the model's diagonal.
+#: Spacing of symbols of one kind, relative to the model's diagonal.
 APART = 0.022
 #: Sets in the legend, at most.
 MOST_SETS = 8
@@ -56,8 +56,9 @@ def model(
 ) -> Any:
     """Draw a model: sections in colors, node and edge sets, supports and loads.
 
-    Triangles point along held directions, squares hold the rotation, violet arrows are
-    prescribed movements, orange ones loads; lengths compare loads of one kind only. Beams and bars
+    Triangles point along fixed directions, squares fix the rotation, violet arrows are
+    prescribed displacements, orange ones loads; lengths compare loads of one kind only. Beams and
+    bars
     are heavy lines, springs zigzags, thin lines lead to reference nodes.
 
     Parameters
@@ -180,7 +181,7 @@ def _sets(ax: Any, subject: Model) -> None:
 
 
 def _spread(points: Floats, size: float) -> NDArray[np.int64]:
-    """Indices of points that stand apart: one in each square of a grid."""
+    """Indices of spaced points: one in each square of a grid."""
     square = np.round(points / (APART * size)).astype(np.int64)
     _, first = np.unique(square, axis=0, return_index=True)
     return np.sort(first)
@@ -283,7 +284,7 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
 def _arrow(
     ax: Any, at: Any, vector: Any, color: str, tail: bool = False, wide: bool = False
 ) -> None:
-    """Draw an arrow whose head, or whose tail, touches a point."""
+    """Draw an arrow with its head or its tail at a point."""
     at, vector = np.asarray(at, dtype=float), np.asarray(vector, dtype=float)
     start, end = (at, at + vector) if tail else (at - vector, at)
     if not tail:  # loads pull or push: show the force where it can be seen, outside

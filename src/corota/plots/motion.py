@@ -1,4 +1,4 @@
-"""Pictures of motion: mode shapes, frequency response, the balance of energies."""
+"""Pictures of dynamics: mode shapes, frequency response, the energy balance."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -32,7 +32,7 @@ ENERGIES = {
 
 
 def modes(results: Results, *, path: str | PathLike[str] | None = None, dpi: float = 150.0) -> Any:
-    """Draw mode shapes beside each other, each with its frequency or buckling factor.
+    """Draw mode shapes side by side, each with its frequency or buckling factor.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def _natural(results: Results) -> list[float]:
 def energies(
     results: Results, *, path: str | PathLike[str] | None = None, dpi: float = 150.0
 ) -> Any:
-    """Draw the energies of a motion over time, and what is missing in their balance.
+    """Draw the energies over time, and the energy-balance error.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def energies(
     Raises
     ------
     InputError
-        If there is no balance of energies.
+        If there is no energy balance.
     """
     frames = [f for f in results.frames if "energy balance" in f.scalars]
     if not any(f.scalars.get(name) for f in frames for name in ENERGIES):

@@ -39,7 +39,7 @@ def draw_path(ax: Any, x: Floats, y: Floats, results: Results, *, legend: bool =
     ax : matplotlib axes
     x, y : ndarray, shape (n_frames,)
     results : Results
-        Their frames tell stability and critical points.
+        Their frames contain stability and critical points.
     legend : bool
     """
     stable = np.array([f.scalars.get("stable", 1.0) != 0.0 for f in results.frames])

@@ -1,4 +1,4 @@
-"""The boundary between what flows and what is elastic."""
+"""The elastic-plastic boundary."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -40,7 +40,7 @@ CROSSES, LINES = (45, 6), (24, 8)
 MOST = 18.0
 #: Stresses below this share of the largest are not drawn.
 SMALL = 0.01
-#: Kinds of lines: trajectories of both principal stresses, or the way of a force along an axis.
+#: Kinds of lines: trajectories of both principal stresses, or the flow of a force along an axis.
 KINDS = ("principal", "x", "y")
 
 
@@ -54,7 +54,7 @@ def principal(
     ax: Any = None,
     dpi: float = 150.0,
 ) -> Any:
-    """Draw the principal stresses of the plane as crosses, as long as they are large.
+    """Draw the in-plane principal stresses as crosses, with lengths proportional to the stress.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def principal(
     low = positions.min(axis=0)
     spacing = _apart(results, positions, float(areas.sum()), *CROSSES)
     spacing = max(spacing, float(np.sqrt(np.median(areas))))
-    # Of the cells in a square the one next to its middle.
+    # Of the cells in a square, the one nearest to its middle.
     square = np.floor((centers - low) / spacing).astype(np.int64)
     order = np.argsort(np.hypot(*(centers - low - (square + 0.5) * spacing).T), kind="stable")
     _, first = np.unique(square[order], axis=0, return_index=True)
@@ -92,7 +92,7 @@ def principal(
     stress = np.stack([results.cells(n, frame)[cells[first]] for n in ("S11", "S22", "S12")], 1)
     values, angles = principal_axes(stress)
     largest = float(np.abs(values).max())
-    # Beside a concentrated load the rest would be too short to see.
+    # Otherwise a concentrated load makes the rest too short.
     whole = float(np.quantile(np.abs(values), 0.98)) or largest
     with look():
         from matplotlib.collections import LineCollection
@@ -128,14 +128,14 @@ def flow(
     ax: Any = None,
     dpi: float = 150.0,
 ) -> Any:
-    """Draw how force flows through the body, in lines that are wide where stress is large.
+    """Draw the flow of force through the body, in lines that are wide where stress is large.
 
     Parameters
     ----------
     results : Results
         With stress.
     kind : {"principal", "x", "y"}
-        Trajectories of both principal stresses; or the way that a force along x (or y) takes:
+        Trajectories of both principal stresses; or the flow of a force along x (or y):
         lines along the vector of stress (S11, S12) (or S12, S22), between two of which the force
         stays the same (Kelly and Tosh 2000).
     frame : int
@@ -348,7 +348,7 @@ def _on_grid(corners: Floats, values: Floats, shape: tuple[int, int]) -> Floats:
 
 
 def _trajectory(field: _Field, family: int) -> Any:
-    """Direction and size of a principal stress; the direction has no sense of its own."""
+    """Direction and size of a principal stress; the direction has no sign."""
 
     def direction(stress: Floats, before: Floats | None) -> tuple[Floats, float]:
         xx, yy, xy = stress.tolist()
@@ -370,7 +370,7 @@ def _load_path(row: int) -> Any:
         vector = stress[[0, 2]] if row == 0 else stress[[2, 1]]
         size = float(np.hypot(*vector))
         found = vector / size if size > 0.0 else np.zeros(2)
-        # Tension and compression pass on the same force.
+        # Tension and compression transmit the same force.
         if before is not None and found @ before < 0.0:
             found = -found
         return found, size

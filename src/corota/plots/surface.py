@@ -1,4 +1,4 @@
-"""Cells as small triangles, edges as short lines: curved shapes drawn as they are."""
+"""Cells as small triangles, edges as short lines, to draw curved shapes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -47,7 +47,7 @@ def pattern(kind: str, parts: int) -> tuple[Floats, Ints]:
 
 
 def parts_of(kind: str, n_cells: int) -> int:
-    """Into how many parts to divide a side: fewer in large meshes."""
+    """Number of parts of a side: fewer in large meshes."""
     if kind == "tri3":
         return 1
     if n_cells > 40000:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     class Table(Protocol):
-        """What is drawn of a sweep."""
+        """Interface of a sweep for pictures."""
 
         parameters: list[str]
         measures: list[str]

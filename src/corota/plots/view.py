@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Viewer:
-    """A window on results: what it shows is set by methods, sliders and keys.
+    """A window on results, controlled by methods, sliders and keys.
 
     Keys: right and left change the frame, up and down the variable, ``e`` shows and hides the
     edges of elements.
@@ -69,7 +69,7 @@ class Viewer:
         return self._limits[self.name]
 
     def draw(self) -> None:
-        """Show the frame, the variable and the scale that are set."""
+        """Show the current frame, variable and scale."""
         state = self.results.frame(self.frame)
         moved = self._still.copy()
         moved[:, :2] += self.scale * state.U
@@ -163,7 +163,7 @@ def view(
     scale: float = 1.0,
     path: str | PathLike[str] | None = None,
 ) -> Any:
-    """Look at results in a window; in a notebook by trame, where it is installed.
+    """Show results in a window; in a notebook with trame, if it is installed.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def view(
     Returns
     -------
     object
-        What PyVista shows: nothing after a window, a widget in a notebook.
+        PyVista's return value: None after a window, a widget in a notebook.
 
     Raises
     ------

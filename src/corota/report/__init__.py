@@ -1,7 +1,7 @@
-"""The report: one page for a browser, from results in memory, from files, or of a run at work.
+"""The report: one page for a browser, from results in memory, from files, or of a run in progress.
 
-The page is one file that asks nobody for anything: styles, scripts and data are inside, the data
-deflated. ``assets`` holds the page in parts; Python picks the data and puts the parts together.
+The page is one self-contained file: styles, scripts and data are inside, the data
+deflated. ``assets`` contains the parts of the page; Python selects the data and assembles the page.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -31,7 +31,7 @@ def write_report(
     path : path-like
         ``.html``.
     limit : float
-        Size of the page [megabytes]; what does not fit is thinned, with a note in the page.
+        Size limit of the page [megabytes]; excess data are thinned, with a note in the page.
     title : str
         Heading; the name of the model by default.
 
@@ -42,7 +42,7 @@ def write_report(
     Raises
     ------
     InputError
-        If the limit does not hold the model and two frames.
+        If the limit is too small for the model and two frames.
     FileError
         If the file cannot be written.
 
@@ -70,7 +70,7 @@ def report_job(
     limit: float = LIMIT,
     title: str = "",
 ) -> Path:
-    """Write the files of a job as one page for a browser; the run may have failed or still go on.
+    """Write the files of a job as one page; the run may have failed or be in progress.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""A chunk: a header and arrays, deflated; what the page reads and the server sends.
+"""A chunk: a header and arrays, deflated, for the page and the server.
 
 Before it is deflated a chunk is four bytes with the length of the header, the header as JSON, and
-the bytes of the arrays. Bytes of equal weight of an array stand together: the first bytes of all
+the bytes of the arrays. Bytes of equal weight of an array are contiguous: the first bytes of all
 numbers, then the second ones. Little-endian.
 """
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-#: Types of numbers that the page knows.
+#: Number types supported by the page.
 TYPES: dict[str, np.dtype[Any]] = {
     "f4": np.dtype("<f4"),
     "f8": np.dtype("<f8"),
@@ -69,7 +69,7 @@ def unpack(data: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
 
 
 def plain(value: Any) -> Any:
-    """Data that JSON holds: numbers of numpy as Python's, those that are not finite as None."""
+    """Data for JSON: numpy numbers as Python's, NaN and infinity as None."""
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
@@ -98,7 +98,7 @@ def rounded(values: NDArray[Any], bits: int = 14) -> NDArray[np.float32]:
     drop = 23 - bits
     half = np.uint32(1 << (drop - 1))
     kept = (whole + half) & ~np.uint32((1 << drop) - 1)
-    # Rounding up must not make an infinite number of the largest ones.
+    # Rounding up must not overflow the largest numbers.
     out: NDArray[np.float32] = np.where(np.abs(single) < 3e38, kept.view(np.float32), single)
     return out.astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""What a page holds: chunks of the model, the course of the run, and as many frames as fit."""
+"""Contents of a page: chunks of the model, the history of the run, and as many frames as fit."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -36,20 +36,20 @@ if TYPE_CHECKING:
 
 #: Size of a page [megabytes], of 10^6 bytes.
 LIMIT = 9.5
-#: Bytes of base64 for one of data, and what the page itself takes [bytes].
+#: Bytes of base64 per byte of data, and size of the page itself [bytes].
 BASE64, OWN = 4.0 / 3.0, 250_000
 #: Frames at most; more make a page slow to open.
 MOST_FRAMES = 240
-#: Frames below which arrays that matter less are left out instead.
+#: Number of frames below which less important arrays are omitted instead.
 FEW_FRAMES = 40
 #: Bits behind the point, of pages that hold many frames and of those of huge models.
 BITS, FEWER_BITS = 14, 10
-#: Dimensions of what the tables of the model show.
+#: Dimensions of the quantities in the tables of the model.
 DIMENSIONS = (
     *("length", "time", "force", "force*length", "force/length^2", "force/length^3"),
     *("mass", "mass/length^3", "length/time^2"),
 )
-#: Rows of the course of the run, and iterations, at most.
+#: Largest number of rows of the history, and of iterations.
 MOST_ROWS, MOST_ITERATIONS = 5000, 20000
 
 
@@ -63,7 +63,7 @@ class Content:
     chunks : dict of str to bytes
         ``model``, ``history``, ``frame-0``, ...
     notes : list of str
-        What was thinned or left out.
+        What was thinned or omitted.
     """
 
     title: str
@@ -88,7 +88,7 @@ def content_of_results(results: Results, *, limit: float = LIMIT, title: str = "
 
 
 def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> Content:
-    """Content of a page about the files of a job, whether it ended well or not.
+    """Content of a page about the files of a job, converged or not.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def _content(
             wanted = list(range(len(of.frames)))[1 if kind == "iterate" else 0 :]
             frames.append((kind, NodalArrays(of), wanted))
     chunks = _frames(frames, budget, content.notes, name)
-    if content.notes:  # once more, with what was left out
+    if content.notes:  # again, with the notes on omitted data
         content.chunks["history"] = history_chunk(records, facts, content.notes, again=True)
     for number, data in enumerate(chunks):
         content.chunks[f"frame-{number}"] = data
@@ -192,7 +192,7 @@ def facts_of(
 
 # The model.
 def model_chunk(results: Results, level: int = 9) -> bytes:
-    """Mesh, sets, sections, supports, loads, contact surfaces: what no frame changes."""
+    """Mesh, sets, sections, supports, loads, contact surfaces: the constant data."""
     model, mesh = results.model, results.mesh
     arrays: dict[str, NDArray[Any]] = {
         "points": mesh.points.astype(np.float32),
@@ -246,7 +246,7 @@ def _ends(results: Results, pairs: Any) -> Ints:
     return np.array(nodes, dtype=np.int64).reshape(-1, 3)
 
 
-# The course of the run.
+# The history of the run.
 def history_chunk(
     records: Records,
     facts: dict[str, Any],
@@ -262,7 +262,7 @@ def history_chunk(
     facts : dict
         Name, versions and counts, for the tables.
     notes : list of str
-        Of what the page leaves out; gets those of what is thinned here.
+        Notes on omitted data; those on data thinned here are added.
     again : bool
         Whether the notes have them already.
     level : int
@@ -297,7 +297,7 @@ def history_chunk(
 
 
 def units_of(names: Sequence[str], told: str) -> dict[str, str]:
-    """Units of columns and of what axes are called, of those that have one.
+    """Units of columns and axis labels, of those that have one.
 
     Parameters
     ----------
@@ -324,7 +324,7 @@ def thinned(count: int, most: int) -> Ints:
 def frame_chunk(
     kind: str, arrays: NodalArrays, index: int, names: list[str], bits: int, level: int = 9
 ) -> bytes:
-    """Arrays of a frame with its step, increment, time and what else it is called by."""
+    """Arrays of a frame with its step, increment, time and other labels."""
     frame = arrays.results.frames
     head = _head(kind, frame, index)
     return pack(head, arrays.read(index, names, bits), level)
@@ -358,7 +358,7 @@ def _head(kind: str, frames: Sequence[Frame], index: int) -> dict[str, Any]:
 def _frames(
     sets: Sequence[tuple[str, NodalArrays, list[int]]], budget: int, notes: list[str], name: str
 ) -> list[bytes]:
-    """Chunks of as many frames as the budget holds, [bytes]."""
+    """Chunks of as many frames as fit the budget [bytes]."""
     total = sum(len(wanted) for _, _, wanted in sets)
     if not total:
         return []
@@ -393,7 +393,7 @@ def _frames(
 
 
 def _plan(arrays: NodalArrays, wanted: list[int], budget: int) -> tuple[list[str], int, int]:
-    """Names, bits and number of frames that the budget is likely to hold."""
+    """Names, bits and number of frames that probably fit the budget."""
     few = min(len(wanted), FEW_FRAMES)
     sample = [wanted[len(wanted) // 2], wanted[-1]]
     for bits in (BITS, FEWER_BITS):

@@ -29,9 +29,9 @@ VECTORS = {
 }
 #: Tensors: name in files to the name in the page.
 TENSOR_FILES = {"stress": "S", "strain": "E", "PE": "PE", "ALPHA": "ALPHA"}
-#: What the page computes itself.
+#: Variables that the page computes.
 DERIVED_FILES = {"principal stress", "principal strain", "Mises"}
-#: What is kept longest, first; names that are not here come last.
+#: Order of importance; other names come last.
 ORDER = (
     "U", "S", *vf.CONTACT, "RF", "PEEQ", "N", "M1", "M2", "UR", "VEL", "E", "YRATIO", "ENER", "F",
     "PE", "ACC", "ALPHA", "PWORK", "PDISS", "STH",

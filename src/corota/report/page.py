@@ -1,4 +1,4 @@
-"""Putting the page together from its parts: template, styles, scripts, vendored library, data."""
+"""Assembly of the page from its parts: template, styles, scripts, vendored library, data."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -18,7 +18,7 @@ MODULES = (
     "dom", "chunk", "colors", "geometry", "fields", "source", "model", "scene", "painter",
     "overlay", "player", "history", "axes", "charts", "tables", "live", "main",
 )  # fmt: skip
-#: What a page may do: nothing but run what is in it; a live one may ask its own server too.
+#: Content security policy: only the page's own scripts; a live page may also request its server.
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data: blob:; connect-src {connect}; base-uri 'none'; form-action 'none'"
@@ -40,7 +40,7 @@ def script() -> str:
 
 
 def _wrapped(name: str) -> str:
-    """A module whose imports and exports go by way of the object ``modules``."""
+    """A module with imports and exports through the object ``modules``."""
     text = asset(f"{name}.js")
     exported = [found[2] for found in _EXPORT.finditer(text)]
     text = _IMPORT.sub(r"const \1 = modules.\2;", text)
@@ -56,11 +56,11 @@ def page(content: Content | None, *, title: str = "", live: str = "") -> str:
     Parameters
     ----------
     content : Content or None
-        What it shows; None for a live page, which asks its server.
+        Content; None for a live page, which requests it from its server.
     title : str
         Heading of a live page.
     live : str
-        Path of the server below which a live page asks.
+        Path of the server for the requests of a live page.
     """
     data = ""
     if content is not None:
@@ -79,7 +79,7 @@ def page(content: Content | None, *, title: str = "", live: str = "") -> str:
         "script": _inside(script()),
         "data": data,
     }
-    # One pass, so that nothing inside a part is taken for a place.
+    # One pass, so that text inside a part is not replaced.
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], asset("page.html"))
 
 

@@ -1,4 +1,4 @@
-"""What the files of a job tell of its course: rows of increments, iterations, cut-backs, notes."""
+"""History of a job from its files: rows of increments, iterations, cut-backs, notes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -55,7 +55,7 @@ class JobPaths:
 
     @property
     def results(self) -> Path | None:
-        """The result file; that of the run before while a run has written none."""
+        """The result file; that of the previous run until a run has written one."""
         for ending in ("vtkhdf", "hdf"):
             if self.path(ending).is_file():
                 return self.path(ending)
@@ -82,7 +82,7 @@ def find_job(job: str | PathLike[str], folder: str | PathLike[str] | None = None
         if name.lower().endswith(ending) and len(name) > len(ending):
             name = name[: -len(ending)]
             break
-    # The files of a deck elsewhere are in the current folder, unless -o said otherwise.
+    # The files of a deck elsewhere are in the current folder by default (-o).
     places = [given.parent, Path()] if folder is None else [Path(folder)]
     for place in places:
         found = JobPaths(place, name)
@@ -96,7 +96,7 @@ def find_job(job: str | PathLike[str], folder: str | PathLike[str] | None = None
 
 @dataclass
 class Records:
-    """The course of a run.
+    """The history of a run.
 
     Parameters
     ----------
@@ -107,13 +107,13 @@ class Records:
     iterations : list of tuple
         In the order of :data:`ITERATION`.
     cut_backs : list of dict
-        ``step, increment, attempt, reason, dt``, and ``after``: how many iterations came before.
+        ``step, increment, attempt, reason, dt``, and ``after``: number of iterations before.
     steps : list of dict
     notes : list of str
     units : dict of str to str
-        Units of the headings that tell one.
+        Units of the headings that have one.
     start, end : dict
-        Records of the start and the end; the end is empty while the run goes on.
+        Records of the start and the end; the end is empty while the run is in progress.
     """
 
     names: list[str] = field(default_factory=list)
@@ -134,7 +134,7 @@ class Records:
             self.iterations.append(tuple(_number(record.get(name)) for name in ITERATION))
         elif kind == "increment":
             self.increments.append({k: v for k, v in record.items() if k != "event"})
-            self.end = {}  # a run that goes on where an earlier one ended
+            self.end = {}  # a resumed run
         elif kind == "cut back":
             self.cut_backs.append({**record, "after": len(self.iterations)})
         elif kind == "step":
@@ -166,7 +166,7 @@ class Records:
 
 
 def without_units(headings: Sequence[str]) -> tuple[list[str], dict[str, str]]:
-    """Names of columns, and the units of those that tell one.
+    """Names of columns, and the units of those that have one.
 
     Examples
     --------
@@ -183,7 +183,7 @@ def _number(value: Any) -> float:
 
 
 class Tail:
-    """New whole lines of a text file that grows; an exchanged or shortened file starts anew."""
+    """New lines of a growing text file; a replaced or shortened file is read from its start."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -192,7 +192,7 @@ class Tail:
         self.anew = True
 
     def lines(self) -> list[str]:
-        """Those that came since the last call."""
+        """Lines since the last call."""
         try:
             found = self.path.stat()
             self.anew = (found.st_dev, found.st_ino) != self._file or found.st_size < self._at
@@ -221,7 +221,7 @@ class JobRecords:
         self._log, self._table = Tail(job.path("jsonl")), Tail(job.path("csv"))
 
     def update(self) -> Records:
-        """Read what came since the last call."""
+        """Read new data since the last call."""
         lines = self._log.lines()
         if lines and self._log.anew:
             table = self.records.names, self.records.rows

@@ -1,4 +1,4 @@
-"""The page of a run at work: a server for this machine only, fed by the files of the job."""
+"""The page of a run in progress: a server for this machine only, based on the files of the job."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -34,14 +34,14 @@ HOST = "127.0.0.1"
 LEVEL = 1
 #: Seconds after which a run whose process is not found counts as ended if its log does not grow.
 QUIET = 60.0
-#: Seconds within which a page that is open asks again.
+#: Seconds within which an open page sends the next request.
 STILL_ASKING = 2.5
 #: Times that a result file is read again if the run exchanged it meanwhile.
 TRIES = 4
 
 
 class JobWatch:
-    """What a page asks of a job, from its files as they are now.
+    """Data of a job for a page, from its current files.
 
     Parameters
     ----------
@@ -55,12 +55,12 @@ class JobWatch:
         self._model: tuple[str, bytes] | None = None
 
     def records(self) -> Records:
-        """The course of the run so far."""
+        """The history of the run so far."""
         with self._lock:
             return self._records.update()
 
     def state(self) -> dict[str, Any]:
-        """How far the run is: ``version`` changes with the course, ``over`` with its end."""
+        """Progress of the run: ``version`` changes with the history, ``over`` with its end."""
         found = self.records()
         return {
             "version": len(found.rows)
@@ -93,7 +93,7 @@ class JobWatch:
             return 0.0
 
     def model(self) -> bytes | None:
-        """Chunk of the model; made once for a run."""
+        """Chunk of the model; built once per run."""
 
         def make(results: FileResults) -> bytes:
             run = results.attributes.get("run", "")
@@ -104,7 +104,7 @@ class JobWatch:
         return self._read(make)
 
     def history(self) -> bytes:
-        """Chunk of the course of the run."""
+        """Chunk of the history of the run."""
         facts = self._read(lambda results: facts_of(results, self.job.name)) or {
             "job": self.job.name
         }
@@ -122,10 +122,10 @@ class JobWatch:
         return self._read(make)
 
     def _read(self, action: Callable[[FileResults], Answer]) -> Answer | None:
-        """Answer of an action to the result file; None while there is none.
+        """Result of an action on the result file; None while there is none.
 
-        The run exchanges two copies of the file and goes on writing in the one that is not
-        visible: an answer counts if the file was the visible one before and after.
+        The run exchanges two copies of the file and writes the one that is not
+        visible: a result is valid if the file was the visible one before and after.
         """
         path = self.job.path("vtkhdf")
         for _ in range(TRIES):
@@ -141,7 +141,7 @@ class JobWatch:
         return None
 
     def stop(self) -> None:
-        """Ask the run to end after the increment at work, with a checkpoint."""
+        """Request the end of the run after the current increment, with a checkpoint."""
         request_stop(self.job.folder, self.job.name)
 
 
@@ -182,7 +182,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _name(self) -> str | None:
         """The requested name; None if the address is not that of this page.
 
-        A page of another site that has its name resolve to this machine sends its own name.
+        A page of another site whose name resolves to this machine sends its own name.
         """
         port = self.server.server_address[1]
         if self.headers.get("Host") not in (f"{HOST}:{port}", f"localhost:{port}"):
@@ -212,11 +212,11 @@ class _Handler(BaseHTTPRequestHandler):
             self.close_connection = True
 
     def log_message(self, format: str, *args: object) -> None:
-        """Nothing on the terminal."""
+        """Print nothing on the terminal."""
 
 
 class PageServer(ThreadingHTTPServer):
-    """Serves the page of a job on the loopback address, at a path that nobody guesses.
+    """Serves the page of a job on the loopback address, at an unguessable path.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ class PageServer(ThreadingHTTPServer):
         self.server_close()
 
     def wait_for_pages(self, seconds: float = 10.0) -> None:
-        """Let pages that are open fetch the end of the run; they ask until they know it."""
+        """Wait until open pages have fetched the end of the run."""
         limit = time.monotonic() + seconds
         while (now := time.monotonic()) < limit and now - self._last < STILL_ASKING:
             time.sleep(0.1)

@@ -1,4 +1,4 @@
-"""Results of an analysis: frames, histories, variables, and the observers that see them."""
+"""Results of an analysis: frames, histories, variables and observers."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from corota.results.observer import BaseObserver, Iteration, Observer

@@ -1,4 +1,4 @@
-"""Results as the arrays and tables that Python users know: xarray and pandas."""
+"""Results as arrays and tables of xarray and pandas."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

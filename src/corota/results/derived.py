@@ -1,7 +1,7 @@
-"""Output variables that follow from others at the same point, and the one table of them.
+"""Output variables computed from others at the same point, and their table.
 
-A variable that is put into :data:`DERIVED` is computed with the frames, and whatever shows, prints
-or writes variables at points knows it: histories, pictures, tables and result files.
+A variable in :data:`DERIVED` is computed with the frames and available wherever
+variables at points are: in histories, pictures, tables and result files.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class PointValues(Protocol):
-    """What a derived variable sees of a block: :class:`corota.results.results.PointFields`."""
+    """Fields of a block for a derived variable: :class:`corota.results.results.PointFields`."""
 
     @property
     def values(self) -> dict[str, Floats]: ...
@@ -37,7 +37,7 @@ class Derived:
     Parameters
     ----------
     function : callable
-        Takes the fields of a block of elements, gives an array of shape (n, p) for its n elements
+        Takes the fields of a block of elements, returns an array of shape (n, p) for its n elements
         with p points, or None where the block has no such variable.
     meaning : str
         What it is, with its dimension in brackets.
@@ -57,7 +57,7 @@ def add_derived(block: PointValues) -> None:
     Raises
     ------
     InputError
-        If one has not one value for each point.
+        If one does not have one value per point.
     """
     for name, item in DERIVED.items():
         values = item.function(block)

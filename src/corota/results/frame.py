@@ -1,4 +1,4 @@
-"""What an increment leaves: a frame, and the fields of its blocks of elements."""
+"""Results of an increment: a frame, and the fields of its blocks of elements."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Frame(Brief):
     time, step_time : float
         Total and step time [time].
     factor : float
-        Load factor: share of the step's loads reached.
+        Load factor: fraction of the step's loads.
     U : ndarray, shape (n_nodes, 2)
         Displacement [length].
     UR : ndarray, shape (n_nodes,)
@@ -79,7 +79,8 @@ class Frame(Brief):
         surface, the body on the left), gap, slip so far, status (0 open, 1 closed, 2 slipping);
         tractions per reference area.
     constraint_force : ndarray, shape (n_nodes, 3), or None
-        Force and moment of constraints on nodes: what of the internal force neither loads nor
+        Force and moment of constraints on nodes: the part of the internal force that neither loads
+        nor
         supports carry. Static increments of models with constraints only; not stored in files.
     pairs : dict of str to ndarray, shape (n_nodes, 5)
         The same for each contact pair, where there are several.
@@ -93,7 +94,7 @@ class Frame(Brief):
     cells_with : dict of str to ndarray of bool, shape (n_cells,)
         Cells that have a variable, where there are no values at points.
     absent : frozenset of str
-        Attributes that a file does not hold, such as ``RF``; they are not numbers.
+        Attributes that a file does not contain, such as ``RF``; they are NaN.
     """
 
     step: int

@@ -37,10 +37,10 @@ class History(Brief, NDArrayOperatorsMixin):
     Parameters
     ----------
     name : str
-        For labels, with place and way of combining.
+        For labels, with place and reducer.
     values : ndarray, shape (n_frames,)
     results : Results
-        Where it comes from; gives the other axis of a plot.
+        Source of the history; gives the other axis of a plot.
 
     Examples
     --------
@@ -152,7 +152,7 @@ class History(Brief, NDArrayOperatorsMixin):
         ----------
         against : str or History
             ``"load factor"``, ``"time"``, ``"increment"``, a scalar of the frames, or another
-            history. A load factor or force goes on the upright axis, as engineers draw it.
+            history. A load factor or force goes on the vertical axis.
         path : path-like, optional
             Write PNG, SVG or PDF there.
         ax : matplotlib axes, optional

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Members(Brief):
-    """Section forces at both ends of line elements, in axes that turn with each.
+    """Section forces at both ends of line elements, in co-rotated axes.
 
     Parameters
     ----------
@@ -36,10 +36,10 @@ class Members(Brief):
     nodes : ndarray of int, shape (n, 2)
     N, V : ndarray, shape (n,)
         Axial force, positive in tension, and shear force [force]; constant along an element.
-        ``V = (M1 - M2) / L``: it is positive where it pushes the second end to the left of the
-        way from the first node to the second.
+        ``V = (M1 - M2) / L``: it is positive if it pushes the second end to the left of the
+        direction from the first node to the second.
     M : ndarray, shape (n, 2)
-        Moment at both ends, positive where it stretches the right side of that way
+        Moment at both ends, positive if it stretches the right side of that direction
         [force*length]; linear between.
     """
 

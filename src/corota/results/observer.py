@@ -1,4 +1,4 @@
-"""What an analysis tells those who watch it."""
+"""Interface of observers of an analysis."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Iteration:
-    """What one Newton iteration reports to observers."""
+    """Report of one Newton iteration to observers."""
 
     step: int
     increment: int
@@ -32,7 +32,7 @@ class Iteration:
 
 
 class Observer(Protocol):
-    """Sees an analysis from outside; every method is optional for implementers.
+    """Interface of an observer; every method is optional for implementers.
 
     Derive from :class:`BaseObserver` to write only those you need.
     """
@@ -65,7 +65,7 @@ class BaseObserver:
         """Give up an attempt; ``dt`` is the next one's increment."""
 
     def note(self, step: int, text: str) -> None:
-        """Receive a notice of what a step does by itself, such as a switch to arc length."""
+        """Receive a note on an automatic action of a step, such as a switch to arc length."""
 
     def end(self, results: Results, error: Exception | None) -> None:
         """Finish, with the error if there was one."""

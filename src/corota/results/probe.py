@@ -1,4 +1,4 @@
-"""Values at places: nodes, sets, points inside elements, points along a line."""
+"""Values at nodes, sets, points inside elements and points along a line."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -34,7 +34,7 @@ STEPS = 25
 
 
 class Interpolation:
-    """Nodes and shape functions of the elements that hold some points of the reference shape.
+    """Nodes and shape functions of the elements that contain given reference points.
 
     Parameters
     ----------

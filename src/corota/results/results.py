@@ -1,4 +1,4 @@
-"""Results: own copies of what an analysis produced, frame by frame."""
+"""Results of an analysis, frame by frame; all data are copies."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -56,8 +56,8 @@ class Results(Brief):
     keep : {"all", "last"}
         ``"last"`` holds one frame only, for large models whose frames go to disk.
     last_iterate : Frame or None
-        Where the last attempt ended, if the analysis did not converge: no equilibrium, to look
-        at. Its ``RF`` holds what is out of balance.
+        Last iterate, if the analysis did not converge: not in equilibrium, for
+        inspection. Its ``RF`` holds the residual.
     steps : list of Step
         Those that were run.
     """
@@ -92,7 +92,7 @@ class Results(Brief):
 
     @property
     def averaging(self) -> Averaging:
-        """Map from points to nodes; made once."""
+        """Map from points to nodes; computed once."""
         if self._averaging is None:
             from corota.results.variables import Averaging
 
@@ -114,7 +114,7 @@ class Results(Brief):
         return self.frames[index]
 
     def variables(self, index: int = -1) -> list[str]:
-        """Names that :meth:`nodal`, :meth:`history` and :meth:`plot` understand."""
+        """Variable names for :meth:`nodal`, :meth:`history` and :meth:`plot`."""
         from corota.results.variables import names_of
 
         return names_of(self.frame(index))
@@ -220,7 +220,7 @@ class Results(Brief):
         at : str, int or array_like, optional
             Set, node index or indices, or a mask of nodes; everywhere by default.
         combine : {"auto", "sum", "mean", "max"}
-            How the nodes make one number. ``"auto"``: forces are summed; displacements at a
+            Reducer over the nodes. ``"auto"``: forces are summed; displacements at a
             place are averaged, those of the whole model take the value of the largest size;
             point variables take the largest point value (at a place: the mean of the nodes).
 
@@ -276,7 +276,7 @@ class Results(Brief):
         Raises
         ------
         InputError
-            With all names that there are, scalars of frames too.
+            With all existing names, including scalars of frames.
         """
         from corota.results.variables import match_name
 
@@ -336,7 +336,7 @@ class Results(Brief):
     def view(
         self, name: str = "", *, scale: float = 1.0, path: str | PathLike[str] | None = None
     ) -> Any:
-        """Look at the results in a window of PyVista; see :func:`corota.plots.view`.
+        """Show the results in a PyVista window; see :func:`corota.plots.view`.
 
         Parameters
         ----------
@@ -357,7 +357,7 @@ class Results(Brief):
         return plots.view(self, name, scale=scale, path=path)
 
     def write(self, path: str | PathLike[str], **options: Any) -> Path:
-        """Write to a file; its ending names the format (:mod:`corota.io.writers`).
+        """Write to a file; its extension selects the format (:mod:`corota.io.writers`).
 
         Parameters
         ----------
@@ -379,7 +379,7 @@ class Results(Brief):
         return write(self, path, **options)
 
     def report(self, path: str | PathLike[str], **options: Any) -> Path:
-        """Write a page to look at the results in a browser; see :func:`corota.report.write_report`.
+        """Write an HTML page of the results; see :func:`corota.report.write_report`.
 
         Parameters
         ----------
@@ -468,7 +468,7 @@ class Results(Brief):
         Raises
         ------
         InputError
-            If the path is none, or outside of all elements.
+            If the path is invalid, or outside of all elements.
         """
         from corota.results.probe import line
 
@@ -482,13 +482,13 @@ class Results(Brief):
         frame: int = -1,
         cells: str | ArrayLike | None = None,
     ) -> SectionForces:
-        """Section forces N, V and M of a straight cut, as a free body has them.
+        """Section forces N, V and M of a straight cut, as of a free body.
 
         Parameters
         ----------
         start, end : array_like, shape (2,)
             Points of the undeformed shape, outside of the body or on its surface [length]. The
-            normal points to the right of the way between them: a cut upwards has it along x.
+            normal points to the right of the direction between them: along x for an upward cut.
         frame : int
         cells : str or array_like of int, optional
             Cut this element set only, where others lie on the line too.
@@ -496,13 +496,14 @@ class Results(Brief):
         Returns
         -------
         SectionForces
-            About the center of the cut in the deformed body. What transmits it is summed at the
+            About the center of the cut in the deformed body. The transmitted forces are summed at
+            the
             nodes of the elements next to the cut, ahead of it.
 
         Raises
         ------
         InputError
-            If the cut meets nothing, or ends inside of the body.
+            If the cut misses the body, or ends inside it.
 
         Examples
         --------
@@ -633,7 +634,7 @@ class Results(Brief):
         ----------
         frame : int
         scale : float
-            Factor of the displacements that move the points; 0 leaves them where they were.
+            Factor of the displacements of the points; 0 for the undeformed shape.
 
         Raises
         ------
@@ -683,7 +684,7 @@ class Results(Brief):
 
 
 def _place(at: Any) -> str:
-    """A place in few words: a set's name, a node, or how many nodes."""
+    """A place in few words: a set's name, a node, or a number of nodes."""
     import numpy as np
 
     if isinstance(at, str):

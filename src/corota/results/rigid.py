@@ -1,4 +1,4 @@
-"""Rigid curves of contact as lines of points, where their reference nodes have carried them."""
+"""Rigid curves of contact as lines of points, moved with their reference nodes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -45,7 +45,7 @@ def rigid_lines(curve: RigidCurve) -> list[Floats]:
 
 
 def moved(model: Model, curve: RigidCurve, frame: Frame | None, scale: float = 1.0) -> list[Floats]:
-    """Lines of a curve where its reference node has carried it."""
+    """Lines of a curve, moved with its reference node."""
     lines = rigid_lines(curve)
     reference = curve.reference
     if frame is None or not isinstance(reference, int | np.integer):

@@ -1,4 +1,4 @@
-"""Section forces: the resultant of what is transmitted through a cut of the body."""
+"""Section forces: the resultant of the forces transmitted through a cut of the body."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -37,10 +37,11 @@ BALANCED = 1e-6
 
 @dataclass
 class SectionForces(Brief):
-    """Resultant of a cut, in axes that turn with the body.
+    """Resultant of a cut, in axes that rotate with the body.
 
-    The normal points to the right of the way from the first to the second point of the cut: a cut
-    upwards has it along x. The forces are those that the part ahead exerts on the part behind,
+    The normal points to the right of the direction from the first to the second point of the cut:
+    an
+    upward cut has it along x. The forces are those that the part ahead exerts on the part behind,
     along the normal and along the cut. The signs are those of beams.
 
     Parameters
@@ -51,7 +52,7 @@ class SectionForces(Brief):
         Shear force along the cut from its first to its second point; ``-dM/ds`` along the normal
         where no load acts [force].
     M : float
-        Bending moment about the center, positive where it stretches the side of the first point
+        Bending moment about the center, positive if it stretches the side of the first point
         (for a cut upwards: the lower side) [force*length].
     force : ndarray, shape (2,)
         The same force in global axes.
@@ -105,7 +106,7 @@ class Cut:
     Raises
     ------
     InputError
-        If the cut meets nothing, or ends inside of the body.
+        If the cut misses the body, or ends inside it.
     """
 
     def __init__(
@@ -205,7 +206,7 @@ class Cut:
         Raises
         ------
         InputError
-            If the file of the results holds no stress.
+            If the result file contains no stress.
         """
         state = self.results.frame(frame)
         moved = state.U if self._nlgeom(state) else 0.0
@@ -270,7 +271,7 @@ class Cut:
         return center, axis / np.hypot(*axis)
 
     def _nlgeom(self, state: Frame) -> bool:
-        """Whether the frame's step has large displacements, so that statics are of their shape."""
+        """Whether the frame's step has large displacements: equilibrium of the deformed shape."""
         steps = self.results.steps or self.results.model.steps
         if 0 < state.step <= len(steps):
             return steps[state.step - 1].nlgeom
@@ -348,7 +349,7 @@ class Cut:
         return force, moment
 
     def _need_plain_elements(self) -> None:
-        """Refuse elements whose forces are more than those of their stress."""
+        """Refuse elements whose nodal forces do not follow from their stress."""
         told = getattr(self.results, "description", {}).get("sections", [])
         names = {s.element for s in self.results.model.sections} | {s["element"] for s in told}
         for name in sorted(names):
@@ -526,7 +527,7 @@ def diagram(
     if count < 2 or not width > 0.0:
         raise InputError(f"a diagram needs two or more cuts and a width > 0, not {count}, {width}")
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
-    # Cuts at the very ends would have nothing behind or ahead of them.
+    # Cuts at the ends would have no part behind or ahead of them.
     at = along[-1] * (np.arange(count) + 0.5) / count
     x = np.stack([np.interp(at, along, corners[:, i]) for i in (0, 1)], axis=1)
     piece = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(along) - 2)

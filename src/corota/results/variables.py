@@ -52,7 +52,7 @@ NODAL: dict[str, tuple[str, int]] = {
     "CSTATUS": ("C", 4),
 }
 
-#: Scalars of frames that say nothing where they are missing; others are 0 there.
+#: Scalars of frames that are undefined where missing; others are 0 there.
 UNKNOWN = ("stable", "negative pivots")
 
 #: Columns of the contact values at nodes.
@@ -82,7 +82,7 @@ INVARIANTS: dict[str, tuple[str, str]] = {
 #: Tensors by their names in files; other values have their own.
 STORED = {"S": "stress", "E": "strain"}
 
-#: Other spellings that :func:`canonical` understands (compared in lower case).
+#: Other spellings that :func:`canonical` accepts (compared in lower case).
 ALIASES = {
     "displacement": "U",
     "rotation": "UR3",
@@ -101,7 +101,7 @@ ALIASES = {
     "exy": "E12",
 }
 
-#: What each variable is, with its dimension; used in labels, file metadata and documents.
+#: Description of each variable, with its dimension; used in labels, file metadata and documents.
 MEANING = {
     "U1": "displacement x [length]",
     "U2": "displacement y [length]",
@@ -164,7 +164,7 @@ MEANING = {
 
 
 def meaning(name: str) -> str:
-    """What a variable is, with its dimension; empty where that is not known."""
+    """Description of a variable, with its dimension; empty if unknown."""
     return MEANING.get(name) or (DERIVED[name].meaning if name in DERIVED else "")
 
 
@@ -190,7 +190,7 @@ _OF_THE_WHOLE = {
 def dimension(name: str) -> str:
     """Dimension of a variable, a history or a scalar of frames, as ``force/length^2``.
 
-    Empty for numbers without one, and where it is not known.
+    Empty for numbers without one, and if unknown.
 
     Examples
     --------
@@ -221,7 +221,7 @@ _OF_ARRAYS = {
 
 
 def dimension_of_array(name: str) -> str:
-    """Dimension of an array of a result file, as :func:`dimension` has it."""
+    """Dimension of an array of a result file, in the form of :func:`dimension`."""
     stem = name.removeprefix("cell ").partition(": ")[0]
     return _OF_ARRAYS[stem] if stem in _OF_ARRAYS else dimension(stem)
 
@@ -270,7 +270,7 @@ def labelled(name: str, units: Units, of: str = "") -> str:
 
 
 def described(name: str, units: Units) -> str:
-    """What a variable is, with its unit; with its dimension where no unit is told."""
+    """Description of a variable, with its unit, or with its dimension where no unit is given."""
     text = meaning(name)
     unit = units.label(dimension(name))
     if not unit or not text:
@@ -326,7 +326,7 @@ def available(fields: Iterable[PointFields]) -> list[str]:
 
 
 def canonical(name: str, frame: Frame) -> str:
-    """Name of a variable as the tables have it.
+    """Canonical name of a variable.
 
     Raises
     ------
@@ -347,7 +347,7 @@ def names_of(frame: Frame) -> list[str]:
 
 
 def match_name(name: str, valid: list[str]) -> str:
-    """Find a name in a list, whatever its case or alias; else raise with the list."""
+    """Find a name in a list, regardless of case or alias; raise with the list if there is none."""
     wanted = ALIASES.get(name.lower(), name)
     for candidate in valid:
         if candidate.lower() == wanted.lower():
@@ -372,7 +372,7 @@ def nodal_value(frame: Frame, name: str) -> Floats:
     """A variable of :data:`NODAL` at all nodes, shape (n_nodes,)."""
     attribute, column = NODAL[name]
     array = getattr(frame, attribute)
-    if array is None:  # a static step in an analysis that moves elsewhere
+    if array is None:  # a static step in an analysis with dynamic steps
         return np.zeros(len(frame.U))
     if array.ndim == 1:
         return np.asarray(array)
@@ -449,7 +449,7 @@ def section_of_cells(model: Model) -> Ints:
 
 
 class Averaging:
-    """Point values averaged at nodes; keeps the maps of the last blocks seen.
+    """Point values averaged at nodes; caches the maps of the last blocks.
 
     Parameters
     ----------
@@ -507,7 +507,7 @@ class Averaging:
                 continue
             count += np.bincount(flat, minlength=n)
             matrix = extrapolation(block.shape)
-            # einsum, not @: threads of a BLAS would spin beside the solver for so small a factor.
+            # einsum, not @: threads of a BLAS would compete with the solver for a small product.
             for name in names:
                 if name not in block.values:
                     continue
@@ -515,7 +515,7 @@ class Averaging:
                 if values.ndim == 2:
                     at = np.einsum("np,kp->nk", values, matrix)
                     if (values >= 0.0).all():
-                        # Energy densities and the like: a straight line must not make them < 0.
+                        # Energy densities and similar: linear extrapolation must not make them < 0.
                         np.maximum(at, 0.0, out=at)
                     sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
                     continue

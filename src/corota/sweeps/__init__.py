@@ -1,4 +1,4 @@
-"""Many runs of one model: parameters, measures, workers, a table that grows and can be resumed."""
+"""Many runs of one model: parameters, measures, workers, a table that can be resumed."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from corota.sweeps.design import grid, sample

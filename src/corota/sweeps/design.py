@@ -1,4 +1,4 @@
-"""Designs of experiments: which parameter values a sweep runs."""
+"""Designs of experiments: parameter values of a sweep."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: What makes one number of a history.
+#: Reducers of a history to one number.
 REDUCERS: dict[str, Callable[[Floats], float]] = {
     "last": lambda values: float(values[-1]),
     "first": lambda values: float(values[0]),
@@ -48,13 +48,13 @@ class Measure:
     text : str
         ``REDUCER(VARIABLE@PLACE)`` with ``last``, ``first``, ``max``, ``min``, ``absmax`` or
         ``mean``; a variable as in :meth:`Results.history`; a place is a set or a node number and
-        may be left out. Names that are no identifiers stand in quotes. A history without a
+        may be omitted. Names that are not identifiers are quoted. A history without a
         reducer is its last value. ``+ - * / **`` and ``abs`` combine measures.
 
     Raises
     ------
     InputError
-        If the text is no such expression.
+        If the text is not such an expression.
 
     Examples
     --------

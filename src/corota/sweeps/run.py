@@ -1,4 +1,4 @@
-"""Running a sweep: rows to workers, values back, each row kept as soon as it is there."""
+"""Running a sweep: rows to workers, values back, each row stored when it is done."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -52,16 +52,16 @@ def sweep(
         A mapping of names to values makes all combinations; otherwise one mapping a row, as
         :func:`corota.grid` and :func:`corota.sample` give them.
     measures : mapping, sequence of str or str
-        What is kept of each run: functions of the results that return a number, or texts such as
+        Measures of each run: functions of the results that return a number, or strings such as
         ``"max(RM3@hub)"`` (:class:`corota.sweeps.measures.Measure`).
     executor : concurrent.futures.Executor, optional
-        Where the rows run: ``MPIPoolExecutor`` of mpi4py, ``Client.get_executor()`` of Dask, or
+        Executor of the rows: ``MPIPoolExecutor`` of mpi4py, ``Client.get_executor()`` of Dask, or
         any other. By default a pool of processes with one thread each.
     workers : int, optional
         Processes of the default pool; all cores by default. 1 runs in this process.
     store : path-like, optional
-        File (``.jsonl``) that keeps each row when it ends. Rows that it holds are not run again,
-        so a sweep that was stopped goes on. Failed rows run again.
+        File (``.jsonl``) that stores each row when it ends. Stored rows are not run again,
+        so a stopped sweep can be resumed. Failed rows run again.
     progress : callable, optional
         ``progress(done, total, failed)`` after each row.
 
@@ -73,7 +73,7 @@ def sweep(
     Raises
     ------
     InputError
-        If the input is no sweep, or if every row failed.
+        If the input is not a sweep, or if every row failed.
     ResourceError
         If the workers died.
 
@@ -130,7 +130,7 @@ def sweep(
 
 
 def named(measures: Measures) -> dict[str, Callable[[Results], float]]:
-    """Measures by name; a text without a name is its own."""
+    """Measures by name; the default name is the text."""
     if isinstance(measures, str):
         measures = [measures]
     if not isinstance(measures, Mapping):
@@ -153,7 +153,7 @@ def _spread(
     executor: Executor | None,
     workers: int,
 ) -> None:
-    """Let an executor run rows."""
+    """Run rows in an executor."""
     payload = packed(job, foreign=executor is not None)
     pool: Any = nullcontext(executor)
     if executor is None:
@@ -200,12 +200,12 @@ def packed(job: Job, foreign: bool) -> bytes:
     """Job as bytes that a worker can read.
 
     Functions of a script or notebook exist only there: `foreign` workers get their text, which
-    cloudpickle does where it is installed.
+    if cloudpickle is installed.
 
     Raises
     ------
     InputError
-        If the job cannot leave this process.
+        If the job cannot be sent to another process.
     """
     by_value = find_spec("cloudpickle") is not None
     if by_value and foreign:
@@ -229,5 +229,5 @@ def _job(payload: bytes) -> Job:
 
 
 def unpacked_run(payload: bytes, row: dict[str, Any]) -> Outcome:
-    """What a worker does with a row."""
+    """Run a row in a worker."""
     return calculate(_job(payload), row)

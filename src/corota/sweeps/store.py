@@ -1,4 +1,4 @@
-"""Rows of a sweep on disk: one line of JSON each, found again by a digest of what made them."""
+"""Rows of a sweep on disk: one line of JSON each, identified by a digest of their input."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 class Store:
-    """Keeps outcomes in a file, or nowhere.
+    """Stores outcomes in a file, if there is one.
 
-    A row is known again by its parameters, the measures, and the text of the build function or of
-    the deck. A change elsewhere, as in a function that the build function calls, is not noticed.
+    A row is identified by its parameters, the measures, and the text of the build function or of
+    the deck. A change elsewhere, as in a function that the build function calls, is not detected.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Store:
         self._cut = len(self._whole) < len(text)
 
     def find(self, row: Mapping[str, Any]) -> Outcome | None:
-        """Outcome of a row that ended well."""
+        """Outcome of a successful row."""
         if self.path is None:
             return None
         known = self._known.get(self._digest(row))
@@ -103,7 +103,7 @@ class Store:
 
 
 def digest(job: Job) -> str:
-    """Digest of what all rows share."""
+    """Digest of the common data of all rows."""
     from corota import __version__
 
     parts = [__version__]

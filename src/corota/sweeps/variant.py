@@ -33,7 +33,7 @@ class DeckBuild:
 
 @dataclass(frozen=True)
 class Job:
-    """What all rows of a sweep share."""
+    """Common data of all rows of a sweep."""
 
     build: Callable[..., Any]
     measures: Mapping[str, Callable[[Results], float]]
@@ -41,7 +41,7 @@ class Job:
 
 @dataclass
 class Outcome:
-    """What a row gave: values by measure, or why there are none.
+    """Outcome of a row: values by measure, or the error.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Outcome:
 
 
 def calculate(job: Job, row: Mapping[str, Any]) -> Outcome:
-    """Run one row; what goes wrong is part of the outcome."""
+    """Run one row; errors are part of the outcome."""
     outcome, begin = Outcome(), time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -80,7 +80,7 @@ def calculate(job: Job, row: Mapping[str, Any]) -> Outcome:
 
 
 def solved(built: Any) -> Results:
-    """Results of what a build function returned: a model, a model and steps, or results."""
+    """Results from the return value of a build function: a model, a model and steps, or results."""
     from corota.analysis.run import solve
     from corota.model.model import Model
     from corota.results.results import Results
