@@ -1,8 +1,8 @@
-"""Residual and tangent: nanoseconds an element, and the share of a factorisation.
+"""Residual and tangent: nanoseconds an element, and the share of a factorization.
 
 Every element with plain numbers and with the processor's vector instructions, on one thread
 (processor time) and on two (wall time), beside the time that touching the same memory takes
-(zero, then read and write each entry). Then the ratio to the numeric factorisation of the same
+(zero, then read and write each entry). Then the ratio to the numeric factorization of the same
 matrix, both on one thread, in turn. Targets: at most 15 % for Q4I, Q8, OPT and Q4D; two threads
 1.7 times one. Ends with an error if vector instructions bring less than a factor of 1.5 for any
 element: then something on the way was not inlined.
@@ -78,7 +78,7 @@ class Case:
         self.solver.factorize(self.masked)
 
     def prepare(self) -> None:
-        """Assemble, hold the clamp and analyse the pattern."""
+        """Assemble, hold the clamp and analyze the pattern."""
         system = self.system
         self.assemble()
         self.masked = self.values.copy()
@@ -130,7 +130,7 @@ def table_of_elements(n_dofs: float, repeats: int) -> bool:
 
 
 def table_of_ratios(sizes: list[float], repeats: int) -> None:
-    """Print assembly against factorisation, one thread each."""
+    """Print assembly against factorization, one thread each."""
     rows = []
     for n_dofs in sizes:
         for name in sorted(TARGET):

@@ -1,7 +1,7 @@
 """Two builds of Corota side by side in one run: the same values, the same iterations, the time.
 
 ``python -m benchmarks.before_after OLD NEW`` takes two wheels or two source trees, each with its
-own compiled core. Every problem of the catalogue, every example and every deck runs in both, each
+own compiled core. Every problem of the catalog, every example and every deck runs in both, each
 build in a process of its own, and each frame of each analysis is compared: to the bit, and to a
 relative :data:`TOLERANCE`. Then Newton iterations are timed in turn (old, new, old, new, ...).
 ``--quick`` takes a part that lasts about a minute and no times; ``--only`` names some parts.

@@ -109,7 +109,7 @@ class Recorder:
 
 
 def catalogue(name: str) -> list[tuple[str, float]]:
-    """The values of a problem of the catalogue."""
+    """The values of a problem of the catalog."""
     from corota.verification.catalogue import problems
 
     return [(v.quantity, float(v.measured)) for v in problems()[name].measure()]

@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.contact_beside_ccx --write`` takes the first problems of
 :mod:`benchmarks.contact_problems` that CalculiX can be given: static, elastic, without contact of a
-surface with itself and without stabilisation. Both programs get the same nodes, elements,
+surface with itself and without stabilization. Both programs get the same nodes, elements,
 supports, loads and first increments, in a unit in which the body's size is one, and
 St. Venant's law in large rotations. Elements without a counterpart are replaced on both sides:
 ``Q4I`` and ``Q4D`` by ``Q4`` (``CPE4``), ``OPT`` by ``T3`` (``CPE3``). Round tools are polygons

@@ -1,6 +1,6 @@
 """The corpus of small decks in the layouts of pre-processors, with CalculiX's answers.
 
-Run with ``python -m benchmarks.corpus``: it writes ``tests/data/corpus`` anew (needs ``ccx``) and
+Run with ``python -m benchmarks.corpus``: it writes ``tests/data/corpus`` again (needs ``ccx``) and
 prints how many decks are accepted, run and agree. ``--check`` writes nothing.
 """
 

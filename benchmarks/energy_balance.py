@@ -8,7 +8,7 @@ Each analysis of a problem leaves its largest error of the energy account over i
 The worst of a problem is shown, with how many of its analyses are above 1e-3. A problem above 1e-3
 runs again with increments cut to a half and a quarter: the row then shows the errors of the same
 analysis and the order, from the numbers of increments that were made. Names choose problems of the
-catalogue, or examples by their path (``examples/motion/pendulum.py``).
+catalog, or examples by their path (``examples/motion/pendulum.py``).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -2,7 +2,7 @@
 
     python -m benchmarks.free_bodies --count 2000 --seed 1 [--check] [--keep FOLDER]
 
-Each deck runs through the command line in this process. Equilibrium is computed anew from the
+Each deck runs through the command line in this process. Equilibrium is computed again from the
 results that were written: the sums of forces and moments of reactions and loads, and what is left
 at nodes that nothing holds, against the size of all that acts. Who is held is known by construction
 (:mod:`benchmarks.free_body_decks`). With ``--check``, ``corota check`` judges the same decks.

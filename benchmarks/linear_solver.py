@@ -1,4 +1,4 @@
-"""Numeric factorisation and solve of Q4 elasticity matrices by all direct solvers here.
+"""Numeric factorization and solve of Q4 elasticity matrices by all direct solvers here.
 
 Rows are ratios inside one run. The refactorisation is timed: the pattern is known,
 the values are new, as in every Newton iteration.
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 #: Elements along a side: about 400, 10 thousand, 250 thousand and a million equations.
 SIDES = (14, 70, 353, 706)
-#: SuperLU orders anew and fills more: it is left out above this number of equations.
+#: SuperLU orders again and fills more: it is left out above this number of equations.
 SUPERLU_LIMIT = 100_000
 
 

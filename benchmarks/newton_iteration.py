@@ -1,8 +1,8 @@
 """A whole Newton iteration against factorising and solving alone, up to a million equations.
 
-Between two reports of Newton's method lie assembly, boundary conditions, factorisation, solution,
+Between two reports of Newton's method lie assembly, boundary conditions, factorization, solution,
 line search and the judgement of the residual: everything that an iteration costs. Target: at most
-1.3 times factorisation and solution (``Q4I``, 250 thousand and a million).
+1.3 times factorization and solution (``Q4I``, 250 thousand and a million).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

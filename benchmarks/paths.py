@@ -1,7 +1,7 @@
-"""Arc length beside load control, and linear buckling beside one factorisation.
+"""Arc length beside load control, and linear buckling beside one factorization.
 
 An arc-length increment solves for two right-hand sides where load control solves for one;
-everything else is the same work. Buckling needs many solutions with one factorisation.
+everything else is the same work. Buckling needs many solutions with one factorization.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -21,7 +21,7 @@ from corota.analysis.linear.solvers import Multifrontal
 #: Cells along and across a cantilever of 100 x 10: about 250,000 equations.
 SIZES = {"20k": (320, 31), "250k": (1120, 111)}
 INCREMENTS = 10
-#: Targets: time of an arc-length increment over load control's; buckling in factorisations.
+#: Targets: time of an arc-length increment over load control's; buckling in factorizations.
 ARC_TARGET, BUCKLING_TARGET = 1.15, 10.0
 
 
@@ -59,7 +59,7 @@ class Timed(Multifrontal):
 def run(
     model: ct.Model, step: ct.model.steps.Step, threads: int
 ) -> tuple[float, float, ct.Results]:
-    """Time of a run from its first factorisation on, the median one, and the results.
+    """Time of a run from its first factorization on, the median one, and the results.
 
     Numbering, loads, the first assembly and ordering are the same for every analysis.
     """
@@ -102,7 +102,7 @@ def increments(size: str, threads: int, repeats: int) -> list[object]:
 
 
 def buckling(size: str, threads: int, repeats: int) -> list[object]:
-    """Time of the lowest factors over that of a factorisation."""
+    """Time of the lowest factors over that of a factorization."""
     model = strut(*SIZES[size], across=0.0, along=1.0)
     rows = []
     for _ in range(repeats):

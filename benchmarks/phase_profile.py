@@ -6,7 +6,7 @@ the run's own profile is exchanged, so that other programs on the machine do not
 
 * an exponent for each phase, fitted over the four largest sizes;
 * the floor of the assembly: the bytes of the matrix, positions and elements over the bandwidth of
-  a large copy; that of the factorisation: the operations of nested dissection on this mesh over
+  a large copy; that of the factorization: the operations of nested dissection on this mesh over
   the speed of a dense product. Both are measured in the same run.
 
 ``--write`` draws ``benchmarks/images/phases.png`` and prints; ``--element``.

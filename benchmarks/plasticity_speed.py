@@ -1,6 +1,6 @@
 """What plasticity costs: a Newton iteration with half of the points yielding over an elastic one.
 
-A square of N x N cells is stretched so that its left half yields; assembly, factorisation and
+A square of N x N cells is stretched so that its left half yields; assembly, factorization and
 solution of one iteration are timed in turn with the same mesh of elastic material.
 ``--size`` (cells a side; 353 gives 250k dofs), ``--elements``, ``--threads``, ``--repeats``.
 """

@@ -68,7 +68,7 @@ def test_initial_velocity_and_a_load_at_once(card, tmp_path):
     results, text, rows = run(deck, tmp_path)
     exact = exact_chain(lambda t: np.array([0.0, 0.0, 3.0]), 1.0, np.array([0, 0, 0, 0, -1.5, 0.0]))
     last = results.frames[-1]
-    automatic = "DIRECT" not in card  # a per cent of local error
+    automatic = "DIRECT" not in card  # a percent of local error
     np.testing.assert_allclose(last.U[1:, 0], exact[:3], atol=0.04 if automatic else 0.01)
     printed = [line.split() for line in text.splitlines() if line.split()[:1] == ["4"]]
     np.testing.assert_allclose(float(printed[-1][1]), last.U[3, 0], rtol=1e-5)

@@ -44,7 +44,7 @@ def test_chain_modes_masses_and_participation():
 
 def test_complex_modes_of_damping_that_couples_and_overdamps():
     # s^2 M + s C + K: a dashpot to the ground, one between two particles and Rayleigh damping; the
-    # companion matrix by LAPACK. Shapes fulfil the quadratic eigenproblem themselves.
+    # companion matrix by LAPACK. Shapes satisfy the quadratic eigenproblem themselves.
     stiffness, masses = [100.0, 200.0, 50.0], [1.0, 2.0, 0.5]
     k, m, _ = chain_matrices(stiffness, masses)
     c = 0.3 * m + 0.004 * k
@@ -173,7 +173,7 @@ def test_rigid_plate_on_springs_under_a_following_force(push):
 
 
 def test_twelve_modes_within_a_millionth():
-    # Twelve equal particles on equal springs, joined to their neighbours by springs 1e-7 as stiff:
+    # Twelve equal particles on equal springs, joined to their neighbors by springs 1e-7 as stiff:
     # all are found, in order, and their shapes are M-orthonormal.
     n, k, weak = 12, 100.0, 1e-5
     points = [[float(i), 0.0] for i in range(n)] + [[float(i), 1.0] for i in range(n)]

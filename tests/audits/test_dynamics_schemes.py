@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Second audit, time integration: schemes step by step, mechanisms, increments, steps in a row.
 
-References: the schemes written here anew, Lagrange's equations, closed forms, SciPy.
+References: the schemes written here again, Lagrange's equations, closed forms, SciPy.
 """
 
 import math
@@ -463,7 +463,7 @@ def test_error_of_automatic_increments_follows_the_tolerance(scheme):
 @pytest.mark.parametrize(("scheme", "option"), VARIANTS)
 def test_a_motion_cut_into_steps(scheme, option):
     # Three steps under held loads are one: to rounding where the scheme has no memory but u, v
-    # and a; the filter of accelerations starts anew, an error of second order.
+    # and a; the filter of accelerations starts again, an error of second order.
     k, length, m = 60.0, 1.0, 2.0
 
     def run(parts, n):

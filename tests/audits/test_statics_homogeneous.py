@@ -61,7 +61,7 @@ BIG = [
 @pytest.mark.parametrize("strain", ["green_lagrange", "logarithmic"])
 @pytest.mark.parametrize("element", CELL)
 def test_large_elastic_strain_is_cauchy_stress(element: str, strain: str, plane: str) -> None:
-    """Elastic strain of tens of per cent with rotation: closed forms of both hyperelastic laws.
+    """Elastic strain of tens of percent with rotation: closed forms of both hyperelastic laws.
 
     The Hencky law: S = 2 T : dE/dC and Cauchy by the push-forward, thickness stretch exp(E33).
     """

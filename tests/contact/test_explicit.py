@@ -397,7 +397,7 @@ def random_constraints(rng, m, tangents, friction):
 
 
 def holds(problem, z, state):
-    """Whether forces, gaps and slips fulfil Signorini's and Coulomb's conditions."""
+    """Whether forces, gaps and slips satisfy Signorini's and Coulomb's conditions."""
     m, of = problem.m, problem.of
     moved = problem.matrix @ z
     gap, slip = problem.gap + moved[:m], problem.slip + moved[m:]

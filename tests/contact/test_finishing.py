@@ -2,7 +2,7 @@
 """Contact problems that stopped with the defaults run to their end, in balance.
 
 They are a sample of ``python -m benchmarks.contact_torture``; each of these stopped before states
-were chosen from the whole linearised problem. Reactions and contact forces must balance.
+were chosen from the whole linearized problem. Reactions and contact forces must balance.
 """
 
 import pytest
@@ -14,7 +14,7 @@ from corota.results.observer import BaseObserver
 
 #: Numbers of the torture set that stopped before.
 STOPPED = (7, 10, 16)
-#: And numbers that stopped for a cause of their own: a stabilised body whose damping the first
+#: And numbers that stopped for a cause of their own: a stabilized body whose damping the first
 #: correction lacked, a rib seen through the body from behind, an overlap pushed out at once, a
 #: flat punch whose round ends press on facets of which one node lies on the flat.
 CAUSES = (36, 41, 69, 15)

@@ -1,4 +1,4 @@
-"""The linearised equations of contact against differences of what they linearise."""
+"""The linearized equations of contact against differences of what they linearize."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 import numpy as np

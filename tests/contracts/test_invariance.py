@@ -65,7 +65,7 @@ def test_units_axes_and_numbering_do_not_matter(element, local_strain):
 @pytest.mark.parametrize("element", ["Q4I", "Q4D", "Q8"])
 @pytest.mark.filterwarnings("ignore:.*local strain:UserWarning")
 def test_results_are_the_same_bits_for_any_number_of_threads(element):
-    """A whole analysis of several thousand cells: assembly, factorisation, recovery."""
+    """A whole analysis of several thousand cells: assembly, factorization, recovery."""
     answers = []
     for threads in (1, 2, 3, 4, 8):
         mesh = ct.mesh.rectangle(4.0, 2.0, 60, 40, cell(element))

@@ -1,6 +1,6 @@
 """A sample of the random decks of ``python -m benchmarks.free_bodies``.
 
-Equilibrium is computed anew from the written results; who is held is known by construction.
+Equilibrium is computed again from the written results; who is held is known by construction.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -103,7 +103,7 @@ def test_deck_prints_what_calculix_prints(case, tmp_path):
     assert titles(ours) == titles(theirs)
     mine, other = tables(ours), tables(theirs)
     assert [len(row) for row in mine] == [len(row) for row in other]
-    # Displacements, energies of elements, their sums; CalculiX stops at half a per cent.
+    # Displacements, energies of elements, their sums; CalculiX stops at half a percent.
     for k, n in ((4, 1), (2, 3), (1, 3)):
         pair = [
             np.array([row[-1 if k < 4 else 1] for row in rows if len(row) == k])

@@ -15,7 +15,7 @@ THEIRS = json.loads(STORED.read_text(encoding="utf-8"))
 
 @pytest.mark.parametrize("case", CASES)
 def test_frequencies_of_a_preloaded_part_are_those_of_calculix(case: str) -> None:
-    """Of a linear preload to the square of its strain; bent parts to CalculiX's half per cent."""
+    """Of a linear preload to the square of its strain; bent parts to CalculiX's half percent."""
     linear = "linear" in case
     np.testing.assert_allclose(ours(case), THEIRS[case], rtol=1e-3 if linear else 1.2e-4)
     if CASES[case][2] and not linear:

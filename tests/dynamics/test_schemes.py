@@ -45,7 +45,7 @@ def test_energy_momentum_scheme_conserves_energy_and_momenta(element, strain, ma
 @pytest.mark.parametrize("rigid", [False, True])
 @pytest.mark.parametrize("element", ["Q4I", "Q4D", "OPT"])
 def test_a_second_step_of_the_conserving_scheme_goes_on(element, rigid):
-    """Momenta of drilling elements and of constrained nodes are carried, not made anew."""
+    """Momenta of drilling elements and of constrained nodes are carried, not made again."""
     ends = []
     for periods in ([1.0], [0.5, 0.5]):
         model = flyer(element, "green_lagrange")

@@ -95,7 +95,7 @@ def test_inner_walls_of_the_seal_touch(load: Load) -> None:
 
 
 def test_crushed_ring_carries_its_limit_load(load: Load) -> None:
-    """DeRuntz and Hodge's load of the first mechanism, and hardening of a few per cent over it."""
+    """DeRuntz and Hodge's load of the first mechanism, and hardening of a few percent over it."""
     ring = load("contact/crushed_ring.py")
     results = ct.solve(ring.ring(n=30, ny=2), ring.steps(way=1.2)[:1])
     force = -2.0 * np.array(results.history("RF2", at="plate"))

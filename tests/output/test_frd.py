@@ -130,7 +130,7 @@ def test_numbers_are_those_of_calculix(tmp_path: Path) -> None:
     theirs = read_frd(tmp_path / "ccx" / "a.frd")
     assert [f.time for f in mine.frames] == [f.time for f in theirs.frames]
     for a, b in zip(mine.frames, theirs.frames, strict=True):
-        # Two per cent: the quadrilaterals of the two programs differ.
+        # Two percent: the quadrilaterals of the two programs differ.
         assert pytest.approx(b.U, abs=2e-2 * np.abs(b.U).max()) == a.U
         assert pytest.approx(b.RF, abs=2e-2 * np.abs(b.RF).max()) == a.RF
         stress = b.averages["stress"]

@@ -1,4 +1,4 @@
-"""Paths of beams in any unit, and frames under following pressure; limit loads: the catalogue."""
+"""Paths of beams in any unit, and frames under following pressure; limit loads: the catalog."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -39,7 +39,7 @@ def test_limit_points_of_beams_converge_with_the_square_of_their_length() -> Non
 
 
 def test_a_path_goes_on_where_its_limit_point_has_no_inverse() -> None:
-    """An equilibrium within rounding of the limit point: its neighbours locate it."""
+    """An equilibrium within rounding of the limit point: its neighbors locate it."""
     model, node = beam_models.deep_arch(160)
     found = limits(model, node, -124.0)
     assert found == pytest.approx([0.89728913, -0.073055], rel=2e-3)

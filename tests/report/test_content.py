@@ -195,7 +195,7 @@ def test_records_grow_by_whole_lines(job: Path, tmp_path: Path) -> None:
     assert found.iterations == whole.iterations
     assert found.rows == whole.rows
     assert found.end == whole.end
-    # A new run of the job starts anew.
+    # A new run of the job starts again.
     log.unlink()
     log.write_bytes(text[: text.index(b"\n") + 1])
     assert not reader.update().iterations

@@ -110,7 +110,7 @@ def test_a_sudden_load_starts_with_the_acceleration_of_the_equation_of_motion(
 
 
 def test_an_amplitude_of_step_time_ends_for_temperatures_as_for_all_loads(tmp_path: Path) -> None:
-    """Free expansion alpha (T - T0): 0.5 x 100 - 20 stays; CalculiX starts anew from 0."""
+    """Free expansion alpha (T - T0): 0.5 x 100 - 20 stays; CalculiX starts again from 0."""
     steps = "*STEP\n*STATIC\n1., 1.\n*TEMPERATURE, AMPLITUDE=LOCAL\nNALL, 100.\n*END STEP\n"
     found = solve(tmp_path, HELD + steps + "*STEP\n*STATIC\n.4, .4\n*END STEP\n")
     assert [found[k].U[1, 0] for k in (1, 2)] == pytest.approx([30e-5, 30e-5])

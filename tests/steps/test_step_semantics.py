@@ -217,7 +217,7 @@ def test_perturbation_keeps_the_preload(tmp_path: Path) -> None:
     """A strip under tension as a string and a beam: the frequencies grow, by PERTURBATION only.
 
     Expected: Euler-Bernoulli's cantilever under a tension N, lowest mode by Rayleigh's quotient
-    of a fine finite-difference model (1 % of discretisation and shear).
+    of a fine finite-difference model (1 % of discretization and shear).
     """
     mesh = ct.mesh.rectangle(10.0, 0.1, 40, 1, "quad8")
     model = ct.Model(mesh)

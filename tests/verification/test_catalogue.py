@@ -1,4 +1,4 @@
-"""The quick problems of the catalogue, and what the catalogue promises of every problem."""
+"""The quick problems of the catalog, and what the catalog promises of every problem."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

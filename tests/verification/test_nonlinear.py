@@ -44,7 +44,7 @@ def test_roll_up(element):
     ids=["cantilever", "cook"],
 )
 def test_newton_is_quadratic_beside_the_biot_continuum(problem, arguments, size, monkeypatch):
-    """The values are those of the catalogue, from the same run."""
+    """The values are those of the catalog, from the same run."""
     watch, solved = Watch(), problem.solved
     with pytest.warns(UserWarning, match="local strain"):
         results = solved(*arguments, watch, fields=True)

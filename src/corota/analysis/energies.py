@@ -167,7 +167,7 @@ class Energies:
         scalars["energy balance error"] = missing / self._largest if known else 0.0
 
     def _negligible(self) -> float:
-        """Energy of rounding size: of forces, or of strains cancelled by free expansion."""
+        """Energy of rounding size: of forces, or of strains canceled by free expansion."""
         free, scales, length = self.system.free, self.system.scales, self.system.length
         expansion = free.largest(free.start - free.now) * length if free.expands else 0.0
         rounding = scales.nothing * max(scales.moved, NEGLIGIBLE_ENERGY * length)

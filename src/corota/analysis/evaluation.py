@@ -34,7 +34,7 @@ class Evaluation:
     load_stiffness : tuple of ndarray or None
         Triplets (row, column, value) of the derivative of the external force.
     link : LinearizedConstraints
-        The constraints linearised at the state.
+        The constraints linearized at the state.
     added : ndarray, shape (n_dofs,), or None
         Contribution of damping to the diagonal of the tangent, which is not stiffness.
     inertia, damping : ndarray, shape (n_dofs,), or None

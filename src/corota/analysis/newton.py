@@ -124,7 +124,7 @@ class Outcome(Generic[E]):
     sizes : list of float
         Residual before the first iteration and after each.
     negative : int
-        Negative pivots of the last factorisation, -1 if unknown.
+        Negative pivots of the last factorization, -1 if unknown.
     reason : str
         Why it did not converge.
     note : str

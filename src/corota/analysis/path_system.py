@@ -157,7 +157,7 @@ class PathSystem(Protocol):
         ...
 
     def solve_with_last_factor(self, rhs: Floats) -> Floats:
-        """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
+        """All unknowns for forces of shape (n_dofs,), with the last factorization."""
         ...
 
     def ahead(self, at: Any, rate: Floats) -> float:

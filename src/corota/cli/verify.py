@@ -1,4 +1,4 @@
-"""``corota verify``: measure the problems of the catalogue and compare."""
+"""``corota verify``: measure the problems of the catalog and compare."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

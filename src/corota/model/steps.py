@@ -372,7 +372,7 @@ class SteadyState(Step):
     lowest, highest : float
         Range of frequencies [1/time].
     points : int
-        Frequencies between neighbouring eigenfrequencies, ends included.
+        Frequencies between neighboring eigenfrequencies, ends included.
     damping : float or sequence of tuple
         Share of critical damping of every mode, or of ranges of modes (see `ModalDynamic`).
     rayleigh : tuple of float

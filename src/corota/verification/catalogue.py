@@ -1,4 +1,4 @@
-"""The verification catalogue: what a problem is, and the list of all of them."""
+"""The verification catalog: what a problem is, and the list of all of them."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What came of one problem of the catalogue."""
+"""What came of one problem of the catalog."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -237,7 +237,7 @@ class SaddlePointSystem:
         return self._spread(x), x[self.nf :], negative
 
     def correct_with_last_factor(self, force: Floats) -> tuple[Floats, Floats]:
-        """The same for one more force, shape (n_dofs,), with the last factorisation.
+        """The same for one more force, shape (n_dofs,), with the last factorization.
 
         Prescribed dofs and constraints do not change.
         """
@@ -393,7 +393,7 @@ class SaddlePointSystem:
         return out
 
     def _gmres(self, solve: Callable[[Floats], Floats], rest: Triplets, b: Floats) -> Floats | None:
-        """Solution of (M + N) x = b with M factorised and N few entries; None if it stalls."""
+        """Solution of (M + N) x = b with M factorized and N few entries; None if it stalls."""
 
         def apply(v: Floats) -> Floats:
             product = np.zeros(self.size)

@@ -214,7 +214,7 @@ def _derivative(
     """Derivative of the tangent `values` along the response, by entries of the pattern.
 
     Where constraints turn (rigid bodies), the forces in them count too: the residual at the
-    neighbours is that under the perturbed load.
+    neighbors is that under the perturbed load.
     """
     largest_move = _moved(system, response, loads)
     if not np.isfinite(largest_move):
@@ -223,7 +223,7 @@ def _derivative(
     size = DIFFERENCE * system.length / largest_move if largest_move else 1.0
 
     heating = loads.heating if loads.heating.any() else None
-    # Thermal strain is in the internal force of a neighbour already.
+    # Thermal strain is in the internal force of a neighbor already.
     mechanical = loads.external(loads.period, u)[0] - loads.external(0.0, u)[0]
 
     def neighbour(h: float) -> Floats:

@@ -21,7 +21,7 @@ SHARE = 0.3
 
 
 def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
-    """Global index of the worst cell that has localised, and what to say of it.
+    """Global index of the worst cell that has localized, and what to say of it.
 
     A quadrilateral with incompatible modes is stable in a uniform state only while the nominal
     stress rises with the stretch, though a continuum that is held around is so for longer (de

@@ -23,7 +23,7 @@ class EndForces:
     """External forces and reactions at the end of an increment, for every scheme.
 
     Schemes that weigh the equation between both ends have all forces of the end. The
-    energy-momentum scheme has those of the middle: stress and loads are taken anew, inertia and
+    energy-momentum scheme has those of the middle: stress and loads are taken again, inertia and
     damping go on linearly from the two last middles.
 
     Parameters

@@ -1,7 +1,7 @@
 """Ring of perfectly plastic material under inner pressure in plane stress (Nadai).
 
 Radii 100 and 200, E = 210000, nu = 0.3, yield stress 240, plastic up to radius 140. In the plastic
-part the stresses ``s_r = 2/sqrt3 sy cos(w + pi/6)``, ``s_t = 2/sqrt3 sy cos(w - pi/6)`` fulfil the
+part the stresses ``s_r = 2/sqrt3 sy cos(w + pi/6)``, ``s_t = 2/sqrt3 sy cos(w - pi/6)`` satisfy the
 yield condition, and equilibrium gives ``r^2 sin(w) exp(sqrt3 w) = const``; outside Lame's holds.
 """
 

@@ -135,7 +135,7 @@ class PathStepper:
             raise
         finally:
             self.loop.count("iterations", self.follower.iterations)
-            # The factorisation has changed the tangent's held rows in place.
+            # The factorization has changed the tangent's held rows in place.
             system.conditions.end_time = self.factor * period
             try:
                 self.along.restart()

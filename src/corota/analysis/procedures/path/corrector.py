@@ -1,6 +1,6 @@
 """Newton's method with the load factor among the unknowns, and directions along a path.
 
-The bordered system is solved by elimination: one factorisation, two right-hand sides.
+The bordered system is solved by elimination: one factorization, two right-hand sides.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

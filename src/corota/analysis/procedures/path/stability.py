@@ -33,9 +33,9 @@ CRITICAL_POINT_TOLERANCE = 1e-7
 BLUNT, BISECTION_OFFSET = 1e-4, 0.02
 #: Behind a critical point the next one is looked for from this share of the increment on.
 CLEAR = 1e-2
-#: Distances at which a neighbour of a point without inverse is tried.
+#: Distances at which a neighbor of a point without inverse is tried.
 NEARBY = (0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-#: Distance from a point without inverse at which a neighbour stands for it.
+#: Distance from a point without inverse at which a neighbor stands for it.
 BESIDE = 1e-4
 #: Most points that are solved to locate one.
 MOST_TRIALS = 40
@@ -92,7 +92,7 @@ class Critical:
 
 
 def softest_mode(system: PathSystem, start: Floats | None) -> tuple[float, Floats]:
-    """Eigenvalue of the last factorised tangent that is nearest to zero, and its vector.
+    """Eigenvalue of the last factorized tangent that is nearest to zero, and its vector.
 
     Inverse iteration; the rate is the ratio of the two smallest eigenvalues, so that near a
     critical point two or three solutions suffice.
@@ -131,7 +131,7 @@ def softest_mode(system: PathSystem, start: Floats | None) -> tuple[float, Float
 
 
 def has_event(before: Tangent, now: Tangent) -> bool:
-    """Whether a critical point lies between two neighbouring points."""
+    """Whether a critical point lies between two neighboring points."""
     changed = min(before.negative, now.negative) >= 0 and now.negative != before.negative
     return changed or turned(before, now)
 
@@ -153,7 +153,7 @@ def locate(
     Parameters
     ----------
     system : PathSystem
-        Its last factorisation is that of `end`.
+        Its last factorization is that of `end`.
     start, end : Station
         Of the increment; :func:`has_event` holds between them.
     solve : callable
@@ -198,7 +198,7 @@ def locate(
                 sample = now, *((0.0, None) if kink else softest_mode(system, mode))
                 break
             except SingularError:
-                # As near as the arithmetic can tell; a neighbour will do.
+                # As near as the arithmetic can tell; a neighbor will do.
                 if best is not None and abs(near - best[1].share) <= BESIDE:
                     break
         if sample is None:

@@ -101,7 +101,7 @@ class ContactEquations:
         self.cautious = False
         self.flips: list[Ints] = [np.zeros(p.n, np.int64) for p in self.contact_term.pairs]
         self.single = self.sliding = self.corrections = self.pivoted = 0
-        self.pivoting = False  # whether states come from the whole linearised problem
+        self.pivoting = False  # whether states come from the whole linearized problem
         self.least, self.waited = np.inf, 0
         self.stage = ""  # how the last correction was found
         self.relaxing = False  # whether the bodies may move to another equilibrium
@@ -294,7 +294,7 @@ class ContactEquations:
         states: States,
         slip_directions: dict[tuple[int, int], float] | None = None,
     ) -> tuple[Floats, int]:
-        """Solutions of one linearisation, shape (n_dofs + n_multipliers, k)."""
+        """Solutions of one linearization, shape (n_dofs + n_multipliers, k)."""
         self._freeze()
         self.slip_directions = {
             pair.first: pair.slip_direction(terms, q)

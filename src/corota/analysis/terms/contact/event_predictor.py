@@ -118,7 +118,7 @@ def predict_through_events(
 
 
 class EventPath:
-    """A way along directions of the linearised path.
+    """A way along directions of the linearized path.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class Terms:
         ``3 node + component``, -1 for none.
     gap_gradient, slip_gradient : ndarray, shape (m, v)
     parts : tuple of ndarray, shape (k,)
-        Gap and area of each node before neighbours share constraints.
+        Gap and area of each node before neighbors share constraints.
     bare : Terms or None
         Unmodified gaps and areas, where a condition on rates has changed them.
     between : Terms or None

@@ -179,7 +179,7 @@ class ContactPathEquations(ContactEquations):
         return point, now
 
     def solve_with_last_factor(self, rhs: Floats) -> Floats:
-        """All unknowns for forces of shape (n_dofs,), with the last factorisation."""
+        """All unknowns for forces of shape (n_dofs,), with the last factorization."""
         return np.concatenate(self.border.correct_with_last_factor(rhs))
 
     def ahead(self, at: Along, rate: Floats) -> float:

@@ -166,7 +166,7 @@ class Pivoting:
             return None
         return self._listed(wanted)
 
-    # -- the linearised problem -------------------------------------------------------
+    # -- the linearized problem -------------------------------------------------------
 
     def _with(self, base: States, chosen: list[Chosen]) -> Found | None:
         """Solution from one basis."""
