@@ -59,7 +59,7 @@ class Value:
 
     @property
     def error(self) -> float:
-        """Error as `kind` says; not a number where the measured value is none."""
+        """Error of the given `kind`; NaN where the measured value is NaN."""
         difference = self.measured - self.reference
         if self.kind == "relative":
             return abs(difference / self.reference)
@@ -69,7 +69,7 @@ class Value:
 
     @property
     def ok(self) -> bool:
-        """Whether the error is within the tolerance; never for what is not a number."""
+        """Whether the error is within the tolerance; never for NaN."""
         return self.error <= self.tolerance
 
 

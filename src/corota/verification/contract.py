@@ -1,4 +1,4 @@
-"""What every material must keep to, as a check that anyone can run on their own."""
+"""The contract of all materials, as a check that users can run on their own."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -51,7 +51,7 @@ def check_material(
     Raises
     ------
     AssertionError
-        Saying what does not hold, and where.
+        With the violated condition and its place.
     """
     width = 100.0 * step * size
     for seed in range(3):

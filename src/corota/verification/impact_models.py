@@ -29,12 +29,12 @@ YIELD, HARDENING = 60.0, 200.0
 
 @dataclass
 class Impact:
-    """What an impact was like, each figure over its exact value but for the contacts.
+    """Results of an impact, relative to the exact values except for the contacts.
 
     Parameters
     ----------
     contacts : int
-        How often the bar came to touch the wall.
+        Number of contacts of the bar with the wall.
     duration, force, rebound, energy : float
         Time in contact, largest force, velocity of the centre of mass and energy at the end.
     mean_force, shortening : float
@@ -86,7 +86,7 @@ def run_bar(
 ) -> Results:
     """Run the impact; `step` is the increment over the time of a wave through a cell, or 0.
 
-    That contact with mass makes energy is what it is run for, so there is no warning.
+    Contact with mass creates energy, which is the purpose of the run: there is no warning.
     """
     period = 2.6 * LENGTH / WAVE
     dynamic = Dynamic(
@@ -129,7 +129,7 @@ def strike(element: str = "Q4I", scheme: str = "hht", **options: Any) -> Impact:
 
 @dataclass
 class Flight:
-    """What became of the ring; energies over the kinetic energy of the start.
+    """Results of the ring; energies over the initial kinetic energy.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class Flight:
     squash : float
         Height of the body at the end, over that at rest, minus one.
     released : float
-        Time at which the ring leaves the wall for good [time].
+        Time at which the ring finally leaves the wall [time].
     iterations : float
         Newton iterations an increment.
     history : dict of ndarray
@@ -325,13 +325,13 @@ class Budget:
         Energy at the end of the motion of the centre of mass, of the mean spin about it, and the
         rest, kinetic and elastic.
     friction : float
-        What friction took.
+        Frictional dissipation.
     energy_error : float
-        What is missing in the end: taken by scheme and contact, or made up if negative.
+        Energy missing at the end: dissipated by scheme and contact, or created if negative.
     depth : float
         Deepest penetration of a slave node's weighted gap [length].
     contacts : int
-        How often the ring came to touch the wall.
+        Number of contacts of the ring with the wall.
     ratio : float
         Largest ratio of the friction of the wall to its pressure.
     history : dict of ndarray

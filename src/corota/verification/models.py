@@ -1,4 +1,4 @@
-"""What verification problems and tests share: models, loads and measures of plain kind."""
+"""Common models, loads and measures of verification problems and tests."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -69,7 +69,7 @@ def nearest(mesh: Mesh, x: float, y: float) -> int:
 
 
 def run(model: Model, steps: Step | list[Step] | None = None, **keys: Any) -> Results:
-    """Solve with one thread: problems run beside each other, not inside."""
+    """Solve with one thread: problems run in parallel processes."""
     return solve(model, steps, **{"threads": 1, "fields": False, **keys})
 
 

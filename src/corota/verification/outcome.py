@@ -1,4 +1,4 @@
-"""What came of one problem of the catalog."""
+"""Outcome of one problem of the catalog."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Outcome:
-    """What came of one problem.
+    """Outcome of one problem.
 
     Parameters
     ----------

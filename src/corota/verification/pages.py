@@ -1,4 +1,4 @@
-"""Writes a page a problem: description, table, picture, curve and convergence plot."""
+"""Writes one page per problem: description, table, picture, curve and convergence plot."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -24,19 +24,20 @@ DPI = 80.0
 #: Colors of a written picture; contours have few.
 COLORS = 64
 MARKERS = "osD^vP*Xh"
-#: What stands below the list of all pages.
+#: Text below the list of all pages.
 LEFT_OUT = """\
-## Left out
+## Not included
 
 Three-dimensional problems (twisted beam, 45-degree bend, curved hook, right-angle cantilever).
-Problems of which no numbers could be checked: the moving shallow arch, shallow-angle frame and
+Problems without numbers that we could check: the moving shallow arch, shallow-angle frame and
 Lee frame of Le, Battini and Hjiaj; NAFEMS NL1 and NL4, SSNP303; Simo and Armero's panel in plane
-strain, whose hardening we do not have. Howland's strip but for one width. Folding of a body onto
-itself, which has no number to meet (`examples/contact` has a crushed ring and a seal)."""
+strain, whose hardening is not available to us. Howland's strip, except for one width. Folding of a
+body onto itself, for which there are no reference values (`examples/contact` has a crushed ring
+and a seal)."""
 
 
 def prepare(folder: str | os.PathLike[str]) -> Path:
-    """Make the folder of the pages and of their figures."""
+    """Create the folder of the pages and of their figures."""
     target = Path(folder)
     (target / "figures").mkdir(parents=True, exist_ok=True)
     return target
@@ -224,7 +225,7 @@ def _study(study: Study, target: Path, name: str) -> Path:
         if len(sizes) <= 8:
             ax.xaxis.set_minor_locator(NullLocator())
             ax.set_xticks(sizes, [f"{s:g}" for s in sizes])
-        # Less than a decade or two: the ticks between get numbers too.
+        # Less than a decade or two: minor ticks get numbers too.
         ax.yaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.5, 0.6)))
         ax.tick_params(axis="y", which="minor", labelsize=6.5)
         save(figure, path, DPI * 1.15)

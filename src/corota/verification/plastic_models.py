@@ -1,4 +1,4 @@
-"""Models that plasticity is verified and measured on, for any element and mesh."""
+"""Models for verification and benchmarks of plasticity, for any element and mesh."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -36,7 +36,7 @@ def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
-            # That strain gets large, say: it is meant to.
+            # Large strain, for instance, is intended.
             warnings.simplefilter("ignore")
             outcome.values = [_plain(value) for value in problem.measure()]
             outcome.seconds = time.perf_counter() - start
@@ -53,7 +53,7 @@ def measure(name: str, full: bool = False, pages: str = "") -> Outcome:
 
 
 def _plain(value: Value) -> Value:
-    """Value with Python's own numbers, which travel and print alike everywhere."""
+    """Value with Python's own numbers, which pickle and print alike everywhere."""
     return Value(
         value.quantity,
         float(value.reference),
@@ -77,7 +77,7 @@ def run(
     ----------
     chosen : sequence of Problem
     done : callable
-        Told each outcome as it comes.
+        Called with each outcome as it arrives.
     full, pages
         As for :func:`measure`.
     jobs : int
@@ -88,7 +88,7 @@ def run(
     _single_threaded()
 
     def attempt(names: list[str], jobs: int) -> list[str]:
-        """Measure in a pool; the names that a process took down with it."""
+        """Measure in a pool; returns the names lost with a process."""
         lost = []
         with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
             waiting: dict[Future[Outcome], str] = {
@@ -112,7 +112,7 @@ def run(
 
     lost = attempt([p.name for p in sorted(chosen, key=lambda p: -p.seconds)], jobs)
     for name in lost:
-        # One process that ends takes all of a pool with it: the others get another chance.
+        # A process that ends breaks the whole pool: the others are run again.
         if attempt([name], 1):
             outcomes[name] = Outcome(name, error="its process ended early")
             done(outcomes[name])
@@ -126,6 +126,6 @@ def _cores() -> int:
 
 
 def _single_threaded() -> None:
-    """Tell the linear algebra libraries of the processes that will start."""
+    """Limit the linear algebra libraries of new processes to one thread."""
     for name in ("OMP", "OPENBLAS", "MKL", "RAYON"):
         os.environ.setdefault(f"{name}_NUM_THREADS", "1")

@@ -1,7 +1,7 @@
 """Thick ring under inner pressure: Lame's solution, plane stress and plane strain.
 
-Radii 100 and 200, pressure 100, E = 210000, nu = 0.3, thickness 3. Besides the values the order
-of convergence of both edge displacements is measured for every element.
+Radii 100 and 200, pressure 100, E = 210000, nu = 0.3, thickness 3. The values and the order of
+convergence of both edge displacements are measured for every element.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,12 +1,12 @@
-"""Elastic bar against a rigid wall: one contact of the duration 2 L / c, then it flies back.
+"""Elastic bar against a rigid wall: one contact of duration 2 L / c, then rebound.
 
 Length 10, E = 900, unit density and section, nu = 0, speed 0.1: waves run at c = 30, the bar is in
-contact for 0.6667 under the force rho c A v = 3, is 1/30 shorter when the wave reaches its free end
-and leaves with the velocity it came with. Steel (210 GPa, 7850 kg/m^3, 1 m, 1 cm^2, 10 m/s: 386.7
-us, 40.6 kN, which is 406 MPa) and the unit bar (2, 0.1) follow by scaling. A contact force that
-acts on nodes with mass creates energy instead and chatters; here it is redistributed. Two hundred
-cells along the bar, increments of half the time that a wave takes through one. The rebound
-stays 0.1 to 0.5 % slow on every mesh: that energy is left in waves.
+contact for 0.6667 under the force rho c A v = 3, is 1/30 shorter when the wave reaches its free
+end, and leaves with its initial velocity. Steel (210 GPa, 7850 kg/m^3, 1 m, 1 cm^2, 10 m/s: 386.7
+us, 40.6 kN, which is 406 MPa) and the unit bar (2, 0.1) follow by scaling. A contact force on nodes
+with mass creates energy and chatters; here the mass of the contact nodes is redistributed. Two
+hundred cells along the bar, increments of half the time that a wave takes through one. The rebound
+stays 0.1 to 0.5 % slow on every mesh: the missing energy remains in waves.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -91,7 +91,7 @@ PROBLEM = Problem(
     source="d'Alembert's waves in a bar: S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, "
     "section 168",
     certainty="analytic",
-    why="1 % with 200 cells, twice that with 100: the fronts of the wave spread over some cells",
+    why="1 % with 200 cells, twice that with 100: the wave fronts spread over several cells",
     measure=measure,
     picture=picture,
     curve=curve,

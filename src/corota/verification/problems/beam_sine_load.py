@@ -2,8 +2,8 @@
 
 Length 10 m, 0.3 m wide, 0.1 m deep, E = 200 GPa, density 700 kg/m^3, 100 N sin(w t) from rest, with
 w = 2 and 30 1/s; the first angular frequency is 48. By Euler and Bernoulli the middle moves by the
-sum over odd n of ``2 F / (rho A L) (sin w t - w / w_n sin w_n t) / (w_n^2 - w^2)``. Measured with
-beam elements and with Q8, by direct integration and by superposition of modes.
+sum over odd n of ``2 F / (rho A L) (sin w t - w / w_n sin w_n t) / (w_n^2 - w^2)``. It is computed
+with beam elements and with Q8, by direct integration and by modal superposition.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,7 @@
-"""Energy of one rectangle in pure bending over the exact one, for aspects from 1 to 16.
+"""Energy of one rectangle in pure bending over the exact one, for aspect ratios from 1 to 16.
 
 Incompatible modes (Q4I) and the optimal triangle pair (OPT) are exact, the drilling quadrilateral
-is 2 to 4 % stiff, the plain bilinear one locks in shear with the square of the aspect.
+is 2 to 4 % too stiff, and the bilinear one locks in shear with the square of the aspect ratio.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -59,7 +59,7 @@ PROBLEM = Problem(
     source="C. A. Felippa, Comput. Methods Appl. Mech. Engrg 192 (2003); Q4 and Q4D by an "
     "independent implementation",
     certainty="computed independently",
-    why="rounding where exact, else the digits of the rows",
+    why="rounding where exact, otherwise the printed digits",
     measure=measure,
     seconds=0.1,
 )

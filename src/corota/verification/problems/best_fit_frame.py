@@ -1,10 +1,10 @@
-"""Simple shear of one rectangle: the frame that fits the nodes best is not the polar rotation.
+"""Simple shear of one rectangle: the best-fit frame is not the polar rotation.
 
 A rectangle of height 1 and length a = 1, 4 or 16 is sheared by u = 0.1 y. The frame that fits its
-nodes in the least-squares sense turns by -atan(0.1 / (a^2 + 1)): that is the polar rotation for the
-square and less for long cells. The strain across it, cos(phi) + 0.1 sin(|phi|) - 1, differs
-between shapes at the second order of the shear; this is what co-rotational elements with a local
-strain that is linear neglect, and why finite-strain patches depend on the shape of cells there.
+nodes in the least-squares sense rotates by -atan(0.1 / (a^2 + 1)): that is the polar rotation for
+the square and less for long cells. The transverse strain, cos(phi) + 0.1 sin(|phi|) - 1, differs
+between shapes to second order in the shear. Co-rotational elements with a linear local strain
+neglect this term; finite-strain patches therefore depend on the shape of the cells.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,10 @@
-"""Cantilever that is whipped by a sine force at its end (T.-N. Le, J.-M. Battini and M. Hjiaj).
+"""Cantilever under a sine force at its end (T.-N. Le, J.-M. Battini and M. Hjiaj).
 
-Length 10 m, section 0.5 m x 0.25 m, E = 210 GPa, nu = 0.3, density 7850 kg/m^3, a force of
-10 MN sin(50 t): the end moves by two thirds of the length. Published curves are not at hand as
-numbers; the reference is our beam element (60 elements, 960 increments, with shear and
-rotary inertia), whose path changes by 0.03 % of the length with 90 and 4800. Scheme of energy and
-momentum; 32 cells along, 2 across.
+Length 10 m, section 0.5 m x 0.25 m, E = 210 GPa, nu = 0.3, density 7850 kg/m^3, a force of 10 MN
+sin(50 t): the end moves by two thirds of the length. The published curves are not available as
+numbers. The reference is our beam element (60 elements, 960 increments, with shear and rotary
+inertia), whose path changes by 0.03 % of the length with 90 elements and 4800 increments.
+Energy-momentum scheme; 32 cells along, 2 across.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,9 +1,10 @@
 """MacNeal and Harder's patch: constant strain on five distorted cells, for every element.
 
-0.24 x 0.12, thickness 0.001, E = 1e6, nu = 0.25; the boundary moves by u = 1e-3 (x + y/2),
-v = 1e-3 (y + x/2), drilling rotations with it. The stresses 4000/3, 4000/3 and 400 must come out
-to rounding everywhere. A second patch is loaded by its edge tractions instead, held at two nodes:
-drilling elements pass it with free rotations because their edge loads hold end moments.
+0.24 x 0.12, thickness 0.001, E = 1e6, nu = 0.25; the boundary has the displacement u = 1e-3 (x +
+y/2), v = 1e-3 (y + x/2) and the corresponding drilling rotations. The stresses must be 4000/3,
+4000/3 and 400 to rounding everywhere. A second patch is loaded by its edge tractions and supported
+at two nodes. Drilling elements pass it with free rotations because their edge loads include end
+moments.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,8 +1,8 @@
-"""Contact patch: two blocks whose meshes do not match pass a uniform pressure on.
+"""Contact patch: two blocks with non-matching meshes transmit a uniform pressure.
 
 2 x 1 below 2 x 0.8, three cells on four, E = 1000, nu = 0.3, a pressure of 5 on top; every pair of
-elements, also turned by 30 degrees. The stress across the interface is the pressure everywhere,
-to rounding, with mortar contact on straight edges.
+elements, also rotated by 30 degrees. With mortar contact on straight edges, the normal stress at
+the interface equals the pressure everywhere, to rounding.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

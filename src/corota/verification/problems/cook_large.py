@@ -1,8 +1,9 @@
-"""Cook's membrane in large displacement, up to 16 of 48, beside its continuum.
+"""Cook's membrane with displacements up to 16 for a length of 48, against the continuum solution.
 
-As the linear problem, with dead forces from 0.05 to 1. The frame of a cell fits its nodes best;
-on the sheared cells of this mesh that differs from the polar rotation by a share of the strain,
-whatever the refinement, so that the two agree to 3e-4 only where strains are small.
+As the linear problem, with dead forces from 0.05 to 1. The frame of a cell is the best fit of its
+nodes; on the sheared cells of this mesh it differs from the polar rotation by a fraction of the
+strain, independent of the refinement. The two solutions therefore agree to 3e-4 only where strains
+are small.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -74,9 +75,9 @@ def curve() -> Curve:
 PROBLEM = Problem(
     title="Cook's membrane in large displacement",
     group="large displacement",
-    source="an independent total-Lagrangian program for that continuum, Q9 32 x 32",
+    source="an independent total-Lagrangian program for the same continuum, Q9 32 x 32",
     certainty="computed independently",
-    why="3e-4 at small strain; elsewhere what the best-fit frame adds on sheared cells",
+    why="3e-4 at small strain; elsewhere the effect of the best-fit frame on sheared cells",
     measure=measure,
     picture=picture,
     curve=curve,

@@ -1,8 +1,8 @@
 """Cook's membrane: a tapered panel, clamped left, under a shear force on its right side.
 
-Corners (0, 0), (48, 44), (48, 60), (0, 44), thickness 1, E = 1, nu = 1/3, a force of 1 spread
-evenly. Bending and shear on skew cells: the usual first look at an element. Measured is the
-vertical displacement of (48, 52).
+Corners (0, 0), (48, 44), (48, 60), (0, 44), thickness 1, E = 1, nu = 1/3, a uniformly distributed
+force of 1. It combines bending and shear on skew cells. The value is the vertical displacement of
+(48, 52).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

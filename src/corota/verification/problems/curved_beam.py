@@ -1,7 +1,7 @@
 """MacNeal and Harder's curved beam: a quarter ring, clamped, under unit shear at its free end.
 
 Radii 4.12 and 4.32, thickness 0.1, E = 1e7, nu = 0.25. The book's 0.08734 is 1.4 % off: elasticity
-gives 0.08856553 with a clamp that holds only the middle, thin-beam theory with shear 0.08860200.
+gives 0.08856553 with a clamp at the middle only, thin-beam theory with shear 0.08860200.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -2,9 +2,9 @@
 
 R = 100, EI = 1e6, depth 1, nu = 0. The classical problem of J. F. DaDeppo and R. Schmidt; the
 well-known 905.28 belongs to a coarse mesh. Curved full-integration elements lock in membrane
-action: with 60 cells around Q8 gives 925, with 120 it gives 900, hence 240 here. Measured
-are the limit load, the displacement there and the second limit load. Past it the
-arch crosses its own foot, where nothing is in its way.
+action: with 60 cells around Q8 gives 925, with 120 it gives 900, hence 240 here. The values are the
+limit load, the displacement there and the second limit load. Beyond it the arch passes through its
+own foot, because there is no contact.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,9 +1,9 @@
-"""Diamond frame: a square of four bars stands on a corner and is pulled or pressed across it.
+"""Diamond frame: a square of four bars is loaded in tension or compression along a diagonal.
 
 The loaded corners are hinges, the two others are rigid. By symmetry each bar is a cantilever under
-a dead force of half the load at 45 degrees to it, so that the frame is exact by the integrals of
-the inextensible elastica. Bars of length 1 with EI = 1 and an EA of 1e6; loads up to P L^2 / EI =
-10 and both signs. Half of the frame is computed with beams, and with Q8 as a solid of depth 0.01.
+a dead force of half the load at 45 degrees; the integrals of the inextensible elastica are the
+exact solution. Bars of length 1 with EI = 1 and an EA of 1e6; loads up to P L^2 / EI = 10 and both
+signs. Half of the frame is computed with beams, and with Q8 as a solid of depth 0.01.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

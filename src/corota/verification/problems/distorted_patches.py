@@ -1,8 +1,9 @@
 """Constant strain on twenty random meshes for every element, in plane stress and plane strain.
 
-A rectangle 3 x 2 of 3 x 3 cells whose inner nodes are shifted by up to 0.3 of a side, turned by
-another angle each time; its boundary (with drilling rotations) is moved by a random linear field.
-Displacements inside and the stress at every point must be those of the field.
+A rectangle 3 x 2 of 3 x 3 cells whose inner nodes are shifted by up to 0.3 of a side, rotated by a
+different angle each time; a random linear field prescribes the displacements (and drilling
+rotations) of its boundary. Displacements inside and the stress at every point must be those of the
+field.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,8 @@
 """Deep double-notched bar in plane strain tension, perfectly plastic: the limit load.
 
 ``(2 + pi) / sqrt(3)`` times the yield stress on the ligament (Prandtl). Standard full-integration
-elements lock and never reach a limit; those here do not. E = 206900, nu = 0.29, yield stress 450.
+elements lock and never reach a limit; those used here do not. E = 206900, nu = 0.29, yield stress
+450.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,8 +1,8 @@
-"""Elastica: a slender cantilever under a dead force across its axis at the end.
+"""Elastica: a slender cantilever under a transverse dead force at its end.
 
-Length 10, depth 0.1, nu = 0, so that the planar solid is nearly the inextensible elastica; loads
-up to P L^2 / EI = 20, where the end points along the force. Measured are the deflection and the
-shortening of the end over the length, for every element of bending quality.
+Length 10, depth 0.1, nu = 0, so that the planar solid is nearly the inextensible elastica; loads up
+to P L^2 / EI = 20, where the end points along the force. The values are deflection and shortening
+of the end over the length, for every element that is suitable for bending.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,8 +1,8 @@
 """NAFEMS LE1: a quarter of an elliptic membrane under outward pressure on its outer edge.
 
-Inner ellipse (x/2)^2 + y^2 = 1, outer one (x/3.25)^2 + (y/2.75)^2 = 1 [m], thickness 0.1 m,
-E = 210 GPa, nu = 0.3, a pressure of 10 MPa outwards on the outer edge, symmetry on both straight
-sides. Measured is the stress in y at D (2, 0), where the inner edge meets the x axis.
+Inner ellipse (x/2)^2 + y^2 = 1, outer one (x/3.25)^2 + (y/2.75)^2 = 1 [m], thickness 0.1 m, E = 210
+GPa, nu = 0.3, a pressure of 10 MPa outwards on the outer edge, symmetry on both straight sides. The
+value is the stress in y at D (2, 0), where the inner edge meets the x axis.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -101,7 +101,7 @@ PROBLEM = Problem(
     source="NAFEMS, The Standard NAFEMS Benchmarks, LE1: 92.7 MPa",
     certainty="published",
     why="half a percent on the stated mesh, where stresses at an edge are extrapolated from the "
-    "points inside; a whole one for Q4D, whose stresses come from above and more slowly",
+    "points inside; one percent for Q4D, whose stresses converge from above and more slowly",
     measure=measure,
     picture=picture,
     study=study,

@@ -1,8 +1,9 @@
-"""Hertz: two equal steel cylinders of radius 10 on each other, plane strain.
+"""Hertz: two equal steel cylinders of radius 10 in contact, plane strain.
 
-E = 210000, nu = 0.3, a force of 500 a unit of thickness: half width 0.1660929162, peak pressure
-1916.456725. A quarter of either disc, with meshes that do not match; the contact is a sixtieth of
-the radius wide, small beside the bodies as Hertz wants it. Geometrically linear.
+E = 210000, nu = 0.3, a force of 500 per unit thickness: half width 0.1660929162, peak pressure
+1916.456725. A quarter of either disc, with meshes that do not match; the contact width is a
+sixtieth of the radius, small compared with the bodies as Hertz's theory assumes. Geometrically
+linear.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -97,7 +98,7 @@ PROBLEM = Problem(
     group="contact",
     source="H. Hertz (1882)",
     certainty="analytic",
-    why="about nine cells touch; pressures at nodes alternate about the ellipse",
+    why="about nine cells are in contact; pressures at nodes alternate about the ellipse",
     measure=measure,
     picture=picture,
     curve=curve,

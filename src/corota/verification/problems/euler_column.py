@@ -1,8 +1,8 @@
-"""Euler's column: buckling load, higher modes, bifurcation on the path and what follows.
+"""Euler's column: buckling load, higher modes, bifurcation on the path and post-buckling.
 
 A cantilever column 100 x 2 with E = 1000, nu = 0. The buckling load with shear is Engesser's; the
-second and third are 9 and 25 times the first. The path bifurcates there and, off to one side,
-follows the elastica under a load along its axis.
+second and third are 9 and 25 times the first. The path bifurcates there; its branch follows the
+elastica under an axial load.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

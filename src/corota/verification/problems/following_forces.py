@@ -1,12 +1,12 @@
-"""Columns under forces that follow them: critical loads and the kind of instability.
+"""Columns under follower forces: critical loads and the kind of instability.
 
-Beck's column carries a force at its end that stays tangential, Leipholz' column a tangential force
-spread over its length, Ziegler's pendulum (two rigid bars on torsion springs, masses 2 and 1) one
-at its end. None of these forces has a potential: two frequencies meet and become complex (flutter),
-while statics sees no other equilibrium. Under a dead force the first column diverges. The critical
-loads are bracketed by halving; loads are in units of E I / L^2, E I / L^3 and k / L. A little equal
-damping in both joints lowers Ziegler's load (his paradox). The curves are those of Beck's
-column; m is its mass per length.
+Beck's column carries a tangential force at its end, Leipholz' column a tangential force distributed
+over its length, and Ziegler's pendulum (two rigid bars on torsion springs, masses 2 and 1) one at
+its end. None of these forces has a potential: two frequencies coalesce and become complex
+(flutter), although there is no other static equilibrium. Under a dead force the first column
+diverges. The critical loads are bracketed by halving; loads are in units of E I / L^2, E I / L^3
+and k / L. Small equal damping in both joints lowers Ziegler's load (his paradox). The curves are
+those of Beck's column; m is its mass per length.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

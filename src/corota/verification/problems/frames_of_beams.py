@@ -1,8 +1,8 @@
 """Frames of beams: Lee's frame, Williams' toggle, a deep arch and von Mises' truss.
 
-The same frames as the solids, of straight two-node beams (60 a leg or half span, 240 over the
-arch), by arc length with default settings; von Mises' truss of two bars. The beams are as flexible
-in shear and as extensible as the exact ones: only the chords of the elements are in the way.
+The frames of the solid models with straight two-node beams (60 per leg or half span, 240 over the
+arch), by arc length with default settings; von Mises' truss of two bars. The beams have the exact
+shear flexibility and extensibility; the only error is that of the chords of the elements.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

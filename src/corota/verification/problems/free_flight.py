@@ -1,9 +1,9 @@
-"""A flexible block that spins and flies: momenta and energy over a hundred increments.
+"""A flexible block in free flight with spin: momenta and energy over a hundred increments.
 
-4 x 1, E = 10000, nu = 0.3, unit density, spinning at 1 while it moves at 0.3; nothing holds it.
-With the energy-momentum scheme linear momentum, angular momentum and the balance of energy stay to
-rounding, for every element, local strain and mass; energy goes to and fro between motion and
-strain. The trapezoidal rule loses angular momentum, as it must.
+4 x 1, E = 10000, nu = 0.3, unit density, spinning at 1 and moving at 0.3 without supports. The
+energy-momentum scheme conserves linear momentum, angular momentum and energy to rounding, for every
+element, local strain and mass, while energy is exchanged between motion and strain. The trapezoidal
+rule loses angular momentum, as expected.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,10 @@
-"""Free flexible rod (Simo and Vu-Quoc): what is exact whatever its flexibility.
+"""Free flexible rod (Simo and Vu-Quoc): results that do not depend on its flexibility.
 
-A rod from (6, 0) to (0, 8), mass 1 a unit of length, EA = 10000, EI = 100, is pushed at its lower
-end by a force of 8 along x and a moment of 80 for 2.5 units of time and then flies, bending. Its
-centre moves as x = 3 + 0.4 t^2, then 5.5 + 2 (t - 2.5), and y = 4; its momentum ends at 20 and then
-angular momentum and energy stay. A planar strip has not the rotary inertia of the published
-beam, so shapes are not compared.
+A rod from (6, 0) to (0, 8), mass 1 per unit length, EA = 10000, EI = 100, is loaded at its lower
+end by a force of 8 along x and a moment of 80 for 2.5 units of time, and then flies freely with
+bending vibrations. Its center moves as x = 3 + 0.4 t^2, then 5.5 + 2 (t - 2.5), and y = 4. Its
+momentum reaches 20; then angular momentum and energy are constant. A planar strip does not have the
+rotary inertia of the published beam, so shapes are not compared.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,10 @@
-"""A block on a slope of 30 degrees sticks or slides as Coulomb's law says.
+"""A block on a slope of 30 degrees sticks or slides according to Coulomb's law.
 
 1 x 0.4, E = 10000, nu = 0.3, unit density, gravity 10, on a rigid line. With a friction of 0.58,
-above tan 30 = 0.5774, it rests: the slope carries its weight and nothing across. With 0.57 no
-static equilibrium exists, and the step says that friction does not hold the body; let go in motion
-with 0 and 0.3 it slides down with g (sin 30 - mu cos 30). A block under
-pressure that is dragged over another needs the friction times the pressure.
+above tan 30 = 0.5774, it rests: the reaction of the slope equals its weight. With 0.57 no static
+equilibrium exists, and the step reports that friction does not hold the body. Released in a dynamic
+step with 0 and 0.3, it slides with the acceleration g (sin 30 - mu cos 30). Dragging a block under
+pressure over another one takes the friction coefficient times the pressure.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

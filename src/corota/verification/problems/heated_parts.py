@@ -1,9 +1,9 @@
-"""Heated parts: a free plate, a held one, a strip of two metals and a column that buckles.
+"""Heated parts: a free plate, a constrained one, a bimetal strip and a column that buckles.
 
-A free plate expands by alpha T without stress; one that is held along x has the stress -E alpha T
-(plane strain: over 1 - nu). A strip 20 x 0.5 of two layers with alpha = 1e-5 and 2e-5, 200 degrees
-warmer, bends to the circle of Timoshenko's curvature 3 (a2 - a1) T / (2 h) in large displacement.
-A column between fixed hinges buckles at alpha T = pi^2 I / (A L^2).
+A free plate expands by alpha T without stress; one constrained along x has the stress -E alpha T
+(plane strain: over 1 - nu). A strip 20 x 0.5 of two layers with alpha = 1e-5 and 2e-5, heated by
+200 degrees, bends to a circle with Timoshenko's curvature 3 (a2 - a1) T / (2 h), with large
+displacement. A column between fixed hinges buckles at alpha T = pi^2 I / (A L^2).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -138,7 +138,7 @@ PROBLEM = Problem(
     source="S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, chapter 13; S. Timoshenko, "
     "J. Opt. Soc. Am. 11 (1925)",
     certainty="analytic",
-    why="rounding; of the strip its ends and the cells, of the column shear and shortening",
+    why="rounding; for the strip its ends and the mesh, for the column shear and shortening",
     measure=measure,
     picture=picture,
     curve=curve,

@@ -1,10 +1,10 @@
 """Hertz: a cylinder of radius 8 on a rigid plane, in plane strain and in plane stress.
 
-E = 200, nu = 0.3, a force of 10 a unit of thickness; a quarter of the disc, geometrically linear.
+E = 200, nu = 0.3, a force of 10 per unit thickness; a quarter of the disc, geometrically linear.
 Plane strain: half width 0.6807783738, peak pressure 9.351351289; plane stress, whose contact
 modulus has no 1 - nu^2: 0.7136496465 and 8.920620581. The largest shear stress, 0.3002831 of the
 peak pressure, lies at a depth of 0.7861514 half widths below the middle. Between two plates, which
-come near to the middle by F / (pi E*) (2 ln(4 R / a) - 1) each, the force must be the same.
+approach the middle by F / (pi E*) (2 ln(4 R / a) - 1) each, the force must be the same.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -132,8 +132,8 @@ PROBLEM = Problem(
     group="contact",
     source="H. Hertz (1882); K. L. Johnson, Contact Mechanics (1985), chapter 4",
     certainty="analytic",
-    why="Hertz has a half space: the quarter disc takes 2.5 % off the shear stress below, on finer "
-    "meshes too; stresses at nodes are averages",
+    why="Hertz assumes a half space: in the quarter disc the shear stress below is 2.5 % lower, "
+    "also on finer meshes; stresses at nodes are averages",
     measure=measure,
     picture=picture,
     curve=curve,

@@ -1,10 +1,10 @@
-"""Ironing: a round elastic die is pressed into a softer block and drawn across it.
+"""Ironing: a round elastic die is pressed into a softer block and moved across it.
 
 Block 9 x 3, E = 1; die of radius 1.5, E = 10, nu = 0.3, plane strain, logarithmic strain; 0.3 down,
-then 4 across, over many cells. No formula exists for the forces; known is that without friction
-nothing resists the way across (each place is like the next), that with friction 0.3 slip happens at
-0.3 of the pressure exactly, that both bodies balance, and that the work goes into strain and
-friction.
+then 4 across, over many cells. There is no formula for the forces. Without friction there is no
+resistance to the sliding (all positions are equivalent); with friction 0.3, slip occurs at exactly
+0.3 of the pressure; both bodies are in equilibrium; and the work equals strain energy and
+frictional dissipation.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

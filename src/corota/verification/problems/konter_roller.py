@@ -1,10 +1,10 @@
 """Konter's cylinder roller on a block against Hertz's line contact.
 
-A roller of radius 50, E = 210000, pressed by 35000 a thickness of one on a block of aluminium, 200
+A roller of radius 50, E = 210000, pressed by 35000 per unit thickness on a block of aluminium, 200
 wide and high, E = 70000, nu = 0.3 both, plane strain; a quarter of the roller on half of the block,
 geometrically linear. Hertz: half width 6.214627867, peak pressure 3585.362231. The same in plane
-stress, whose contact modulus has no 1 - nu^2. Pressures at the nodes of linear cells
-alternate by a few percent about the ellipse; its half width is taken from the second moment.
+stress, whose contact modulus has no 1 - nu^2. Pressures at the nodes of linear cells alternate by a
+few percent about the ellipse; its half width is taken from the second moment.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,7 @@
 """Lee's frame: two legs of 120 that snap through and back under a force on the beam.
 
 E = 720, legs 2 deep and 3 wide, hinged at both ends on their center lines, the force 24 from the
-corner, nu = 0.3. Here it is a solid of Q8; the reference is the exact Timoshenko beam. Measured
+corner, nu = 0.3. Here it is a solid of Q8; the reference is the exact Timoshenko beam. The values
 are both limit loads and the displacements there, by arc length with default settings.
 """
 
@@ -72,7 +72,7 @@ PROBLEM = Problem(
     source="S. L. Lee, F. S. Manuel, E. C. Rossow, J. Engng Mech. Div. ASCE 94 (1968); values from "
     "the differential equations of the extensible, shear-flexible beam to seven digits",
     certainty="computed independently",
-    why="a solid corner is no point: 2 % between solid and beam",
+    why="the solid corner has a finite size: 2 % between solid and beam",
     measure=measure,
     picture=picture,
     curve=curve,

@@ -1,11 +1,11 @@
-"""Perfectly plastic cantilevers in plane stress, moved at their tips: up to and at the limit load.
+"""Perfectly plastic cantilevers in plane stress: prescribed tip displacement up to the limit load.
 
-Beam theory collapses at ``sy t h^2 / (4 L)``, where a plastic hinge stands at the clamp. One of
-10 x 1 (E = 1000, nu = 0.3, yield stress 1) is driven to collapse: the clamp holds the section
-across, so that its hinge carries more than the beam's, at most 2 / sqrt 3 times as much. A slender
-one of 6 x 0.5 (yield stress 10, limit 0.1041667) moves by 0.65, where Prager and Hodge's formula
-``(5 - (3 + r) sqrt(3 - 2 r)) / r^2`` of the load r over the elastic limit gives 0.868 of the
-limit.
+The collapse load of beam theory is ``sy t h^2 / (4 L)``, with a plastic hinge at the clamp. A
+cantilever of 10 x 1 (E = 1000, nu = 0.3, yield stress 1) is loaded to collapse: the clamp
+constrains the section laterally, so that its hinge carries more than that of the beam, at most 2 /
+sqrt 3 times as much. A slender one of 6 x 0.5 (yield stress 10, limit 0.1041667) is displaced by
+0.65, where Prager and Hodge's formula ``(5 - (3 + r) sqrt(3 - 2 r)) / r^2`` of the load r over the
+elastic limit gives 0.868 of the limit.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,10 @@
 """Orders of convergence on manufactured solutions of linear elasticity, for every element.
 
 The complex potentials phi = exp(z), psi = sin(z) are in equilibrium without body force; two sine
-waves need one, so that loads are measured too. A skew region with 4, 8 and 16 elements per side,
-its boundary moved by the solution. The error of the displacement falls with order two for linear
-and three for quadratic elements, that of the gradient with one order less; drilling elements and
-incompatible modes count as linear.
+waves need one, so that loads are tested too. A skew region with 4, 8 and 16 elements per side, with
+the solution prescribed on its boundary. The error of the displacement falls with order two for
+linear and three for quadratic elements, that of the gradient with one order less; drilling elements
+and incompatible modes count as linear.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,7 @@
-"""Newton's method converges quadratically for every element, local strain and following pressure.
+"""Newton's method converges quadratically for every element, local strain and follower pressure.
 
 Cook's membrane under a shear of 0.3 in two increments: the observed order of the last corrections,
-log(e1 / size) / log(e0 / size), is two where e1 = e0^2 / size. A strip under a following pressure,
+log(e1 / size) / log(e0 / size), is two where e1 = e0^2 / size. A strip under a follower pressure,
 whose tangent is not symmetric, is measured too.
 """
 

@@ -1,9 +1,9 @@
-"""Objectivity: forces and stiffness of a strained body turn with it, over more than a turn.
+"""Objectivity: forces and stiffness of a strained body rotate with it, over more than one turn.
 
-A patch of distorted cells is strained at random by a few percent and then turned by multiples of
-60 degrees up to 480, with drilling rotations beyond pi: the internal forces must turn with it, and
-so must the tangent. A second measure turns the unstrained patch by 0 to 720 degrees in steps of 5
-and moves it: no force may arise, over E times the size of a cell.
+A patch of distorted cells is strained at random by a few percent and then rotated by multiples of
+60 degrees up to 480, with drilling rotations beyond pi: the internal forces and the tangent must
+rotate with it. A second measure rotates the unstrained patch by 0 to 720 degrees in steps of 5 and
+translates it: the forces, relative to E times the size of a cell, must vanish.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,10 @@
 """The same mesh in other programs: a cantilever with large rotations, in statics and dynamics.
 
-10 x 1, thickness 0.01, E = 1.2e6, nu = 0.3, plane stress, four cells of Q4 across, the
-local strain `green_lagrange`, which is the total-Lagrangian St. Venant-Kirchhoff solid. A dead
-shear of 4000 a unit of thickness in ten increments; and 1000 (or 2000) at once, unit density, 200
-increments of 0.005 by the trapezoidal rule. Kratos, Akantu, DOLFINx, scikit-fem and FElupe gave the
-first to all digits shown, DOLFINx the second (the others start without the load's acceleration).
+10 x 1, thickness 0.01, E = 1.2e6, nu = 0.3, plane stress, four cells of Q4 across, the local strain
+`green_lagrange`, which is the total-Lagrangian St. Venant-Kirchhoff solid. A dead shear of 4000 per
+unit thickness in ten increments; and 1000 (or 2000) at once, unit density, 200 increments of 0.005
+by the trapezoidal rule. Kratos, Akantu, DOLFINx, scikit-fem and FElupe gave the first to all digits
+shown, DOLFINx the second (the others start without the load's acceleration).
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,8 +1,8 @@
-"""Pendulum: a slender uniform rod released horizontally swings with the period of the rigid one.
+"""Pendulum: a slender uniform rod released from the horizontal has the period of the rigid rod.
 
 Length 1, depth 0.02, g = 9.81, E = 1e7, nu = 0, unit density, pinned at its lower corner. The rigid
 rod of that shape has the period 4 K(m) sqrt(2 R / (3 g)), R being the diagonal and K the complete
-elliptic integral; the energy is followed over the swing. A point mass on a bar of the same length
+elliptic integral; the energy is measured over the swing. A point mass on a bar of the same length
 swings with 4 K(1/2) sqrt(1 / g) = 2.367841948.
 """
 

@@ -1,10 +1,10 @@
-"""Strip with a hole of half its width, pulled beyond yield in plane stress.
+"""Strip with a hole of half its width, plastic tension in plane stress.
 
 A quarter, 10 x 18 with a hole of radius 5, E = 70000, nu = 0.2, yield stress 243. Without hardening
-the load ends at yield stress times ligament: no stress field carries more, and one that is uniform
-on the ligament carries that. With the hardening 2240 and the top moved by 0.3 in large displacement
-the force for a thickness of 0.01 is set beside CalculiX on nearly the same meshes: its elements are
-layers of bricks with another strain.
+the limit load is yield stress times ligament: no stress field carries more, and a uniform stress on
+the ligament carries that. With a hardening of 2240 and the top displaced by 0.3, with large
+displacement, the force for a thickness of 0.01 is compared with CalculiX on nearly the same meshes;
+its elements are layers of bricks with a different strain measure.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,9 +1,9 @@
 """Rectangular bars bent beyond yield: moment, springback and a cantilever's deflection.
 
 Pure bending of a perfectly plastic bar: ``M / M_y = 1.5 - 0.5 (k_y / k)^2`` for curvatures k beyond
-the first yield k_y; taking off the elastic curvature of that moment leaves none. A slender
+the first yield k_y; removing the elastic curvature of that moment leaves zero moment. A slender
 cantilever deflects at P times its elastic limit load by Prager and Hodge's formula. A bar under a
-saw-tooth strain draws the hysteresis loops of isotropic and kinematic hardening.
+saw-tooth strain follows the hysteresis loops of isotropic and kinematic hardening.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,10 @@
-"""Cook's panel beyond yield, plane stress: what elements make of coarse and of fine meshes.
+"""Cook's panel beyond yield, plane stress: elements on coarse and fine meshes.
 
 The panel 48 x 44/16, clamped left, carries a shear of 1.8 on its right edge; E = 70, nu = 1/3,
-yield stress 0.243, linear hardening 0.135 (kN, mm). Measured is the rise of the upper right corner.
-No standard value exists for plane stress: Q9 48 x 48 gives 6.6081, Q8R 64 x 64 6.6102, Q4I 96 x 96
-6.6084, three formulations that meet within 0.03 %. OPT is much too stiff beyond yield on
-coarse meshes (its bending weight is that of the elastic material), and Q4D slow.
+yield stress 0.243, linear hardening 0.135 (kN, mm). The value is the rise of the upper right
+corner. No standard value exists for plane stress: Q9 48 x 48 gives 6.6081, Q8R 64 x 64 6.6102, Q4I
+96 x 96 6.6084, three formulations that agree within 0.03 %. Beyond yield OPT is much too stiff on
+coarse meshes (its bending weight is that of the elastic material), and Q4D converges slowly.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

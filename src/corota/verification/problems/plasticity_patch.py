@@ -1,12 +1,12 @@
 """Plane-strain plasticity patch: a unit cell strained step by step beyond yield, NAFEMS's path.
 
 E = 250 GPa, nu = 0.25, yield stress 5 MPa, no hardening. The strains along x and y grow by 2.5e-5
-twice each, then fall twice each, so that load and flow turn. For a constant strain rate the exact
-deviator turns towards the rate by tan(psi/2) = tan(psi0/2) exp(-2 G |e| / R) with the radius R of
-the yield surface (R. D. Krieg, D. B. Krieg, J. Pressure Vessel Technol. 99, 1977). Patches repeat
-the material's stress: the work of an increment is a convex function with continuous slopes of all
-displacements, internal ones among them, so that the uniform stress is the only answer although
-without hardening the displacements inside are not.
+twice each, then fall twice each, so that the direction of plastic flow changes. For a constant
+strain rate the exact deviator rotates towards the rate by tan(psi/2) = tan(psi0/2) exp(-2 G |e| /
+R) with the radius R of the yield surface (R. D. Krieg, D. B. Krieg, J. Pressure Vessel Technol. 99,
+1977). Patches reproduce the stress of the material: the work of an increment is a convex,
+continuously differentiable function of all displacements, including internal ones. The uniform
+stress is therefore unique, although without hardening the displacements inside are not.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

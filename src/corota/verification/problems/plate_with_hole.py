@@ -1,8 +1,8 @@
 """Infinite plate with a circular hole in tension (Kirsch), and a finite strip (Howland).
 
-Kirsch's plate: a quarter of 4 x 4 hole radii carries the exact tractions of the infinite plate
-on its outer edges; the stress over the applied one is 3 at the side of the hole and -1 at its
-pole. Howland's strip with a hole of half its width: 4.32 of the gross stress by his series; our
+Kirsch's plate: a quarter of 4 x 4 hole radii carries the exact tractions of the infinite plate on
+its outer edges; the ratio of the stress to the applied one is 3 at the side of the hole and -1 at
+its pole. Howland's strip with a hole of half its width: 4.32 of the gross stress by his series; our
 meshes converge to 4.347 with the same order as Kirsch's to 3.
 """
 

@@ -1,9 +1,9 @@
 """Plane-stress J2 return map on a strain path with corners, to eight digits.
 
-E = 200000, nu = 0.3, yield stress 250; the strain (e11, e22, gamma12) goes from rest through
-(.002, 0, 0), (.002, 0, .004), (-.001, .001, .004) back to rest in N equal backward-Euler steps a
-leg, with perfect plasticity and with isotropic slope K and kinematic slope H. The references are
-of an independent return map that agrees with the nested three-dimensional one.
+E = 200000, nu = 0.3, yield stress 250; the strain (e11, e22, gamma12) goes from zero through (.002,
+0, 0), (.002, 0, .004), (-.001, .001, .004) back to zero in N equal backward-Euler steps per leg,
+with perfect plasticity and with isotropic slope K and kinematic slope H. The references are of an
+independent return map that agrees with the nested three-dimensional one.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,9 +1,9 @@
-"""A body that spins and flies rigidly has the kinetic energy of its mass and polar moment.
+"""A body in rigid motion has the kinetic energy of its mass and polar moment of inertia.
 
 A block 3 x 1 of unit density and thickness 0.4 moves at (0.3, -0.4) and spins at 1.7 about the
 origin, on a distorted mesh: ``T = m v_c^2 / 2 + I_c w^2 / 2``, momentum ``m v_c``, angular momentum
-``m (x_c x v_c) + I_c w``, to rounding for the consistent inertia of every element, drilling
-rotations and all.
+``m (x_c x v_c) + I_c w``, to rounding for the consistent inertia of every element, including
+drilling rotations.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,10 +1,9 @@
-"""A ring flies against a rigid wall, elastic or yielding: what becomes of its energy.
+"""A ring, elastic or plastic, hits a rigid wall: balances of energy and momentum.
 
 Outer radius 1, wall 0.1, E = 10000, nu = 0.3, unit density, speed 2 (yielding: yield stress 60,
-hardening 200, speed 1). No formula exists; what is known is that kinetic, strain and plastic
-energy sum to that of the start, that nothing pushes along the wall, that the momentum of the wall
-is the force on it, and that all of this is approached as the increments shrink. Scheme of energy
-and momentum, contact by multipliers.
+hardening 200, speed 1). There is no formula. Kinetic, strain and plastic energy must add up to the
+initial energy, there is no force along the wall, and the impulse of the wall equals the change of
+momentum; the errors vanish with the increments. Energy-momentum scheme, contact by multipliers.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -106,8 +105,7 @@ PROBLEM = Problem(
     group="contact",
     source="balance of energy and momentum",
     certainty="analytic",
-    why="yielding: stresses work along each increment with their values at its end, to first order "
-    "in its size",
+    why="yielding: plastic work uses the stress at the end of the increment, a first-order error",
     measure=measure,
     picture=picture,
     curve=curve,

@@ -1,7 +1,7 @@
 """Roll-up: a cantilever bent to a full circle by the end moment 2 pi EI / L.
 
-Length 10, depth 0.1, nu = 0. With drilling rotations the moment acts on the nodes of the end;
-given are the positions of the end at a quarter, half, three quarters and the whole of the moment.
+Length 10, depth 0.1, nu = 0. With drilling rotations the moment acts on the nodes of the end; the
+values are the positions of the end at a quarter, half, three quarters and all of the moment.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

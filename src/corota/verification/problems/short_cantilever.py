@@ -1,8 +1,8 @@
 """Short cantilever 48 x 12 under a parabolic end shear of 40.
 
-E = 30000, nu = 0.25, thickness 1, fully clamped; drilling rotations are free at the clamp.
-Measured is the work-average of the tip displacement. Beam theory with shear gives 0.355333; the
-clamped plane-stress solution is 0.35605.
+E = 30000, nu = 0.25, thickness 1, fully clamped; drilling rotations are free at the clamp. The
+value is the work-averaged tip displacement. Beam theory with shear gives 0.355333; the clamped
+plane-stress solution is 0.35605.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

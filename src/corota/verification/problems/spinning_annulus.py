@@ -1,4 +1,4 @@
-"""Annulus that spins steadily: displacements and hoop stresses from centrifugal forces.
+"""Annulus in steady spin: displacements and hoop stresses from centrifugal forces.
 
 Radii 0.1 and 0.5 m, E = 70 GPa, nu = 0.3, density 2700 kg/m^3, 200 rad/s, plane stress. The inner
 edge grows by 3.209142857e-5 m and the outer by 4.011428571e-5 m; the hoop stresses there are 22.464

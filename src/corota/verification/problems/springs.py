@@ -1,9 +1,9 @@
-"""Springs: in a row, to the ground, turning, with a curve, and a stiff column on one that turns.
+"""Springs: in series, to the ground, torsional, nonlinear, and a stiff column on a torsion spring.
 
-Two springs in a row that carry the same force; a curve of elongation and force that is followed
-beyond its corner and ends flat; a torsion spring under a moment. A column that is all but rigid
-stands on a torsion spring under a load on its top: it leaves the vertical at P = k / L and follows
-P L sin(phi) = k phi, here with a small moment on its foot.
+Two springs in series with the same force; a nonlinear spring that is loaded beyond the corner of
+its curve, up to the constant part; a torsion spring under a moment. A nearly rigid column stands on
+a torsion spring under a load on its top: it buckles at P = k / L and follows P L sin(phi) = k phi,
+here with a small moment on its foot.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

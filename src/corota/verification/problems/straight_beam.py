@@ -1,8 +1,8 @@
 """MacNeal and Harder's straight beam of six cells, rectangular, trapezoidal and slanted.
 
-Length 6, depth 0.2, thickness 0.1, E = 1e7, nu = 0.3, unit shear at the tip; beam theory with
-shear gives 0.1080936, the book 0.1081. Given is the tip deflection over 0.1081. Trapezoids lock
-every four-node element without rotations, as R. H. MacNeal proved; the table keeps that visible.
+Length 6, depth 0.2, thickness 0.1, E = 1e7, nu = 0.3, unit shear at the tip; beam theory with shear
+gives 0.1080936, the book 0.1081. The value is the tip deflection over 0.1081. Every four-node
+element without rotations locks on trapezoids, as R. H. MacNeal proved; the table shows it.
 Rotations are clamped; triangles have the diagonal from the lower left.
 """
 

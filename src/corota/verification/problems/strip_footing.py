@@ -1,9 +1,9 @@
 """Strip footing on perfectly plastic ground in plane strain: Prandtl's limit (2 + pi) k.
 
 A smooth footing of half width 1 is pressed into ground 5 wide and deep (E = 1000, nu = 0.3, yield
-stress sqrt 3, so that k = 1); small displacements. The mean pressure must not pass
-5.141592654 by more than the mesh allows; full integration without mean dilatation would lock and
-rise for ever.
+stress sqrt 3, so that k = 1); small displacements. The mean pressure must not exceed 5.141592654 by
+more than the mesh error; full integration without mean dilatation would lock, and the pressure
+would rise without limit.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

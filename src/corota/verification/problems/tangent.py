@@ -1,6 +1,6 @@
 """The tangent is the derivative of the internal force, for every element and local strain.
 
-Two distorted cells with random displacements of some percent, turned by a radian; central
+Two distorted cells with random displacements of a few percent, rotated by a radian; central
 differences of the internal force by every degree of freedom, over the largest entry.
 """
 

@@ -1,8 +1,8 @@
 """Thick cantilever under a parabolic dead end shear, up to tip displacements of two thirds.
 
-10 x 1, thickness 1, E = 1200, nu = 0.3, fully clamped. With `linear` local strain fine square
-cells approach the continuum whose energy is (U - I) : C : (U - I) / 2 with the right stretch U,
-not the Saint Venant-Kirchhoff solid; at surface strains of 14 % the two differ visibly.
+10 x 1, thickness 1, E = 1200, nu = 0.3, fully clamped. With `linear` local strain fine square cells
+approach the continuum whose energy is (U - I) : C : (U - I) / 2 with the right stretch U, not the
+Saint Venant-Kirchhoff solid; at surface strains of 14 % the two differ noticeably.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -69,7 +69,7 @@ def study() -> Study:
 PROBLEM = Problem(
     title="Thick cantilever beside its continuum",
     group="large displacement",
-    source="an independent total-Lagrangian program for that continuum, Q9 80 x 8",
+    source="an independent total-Lagrangian program for the same continuum, Q9 80 x 8",
     certainty="computed independently",
     why="the best-fit frame is the polar rotation only to second order in the strain",
     measure=measure,

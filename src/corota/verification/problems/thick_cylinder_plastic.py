@@ -1,8 +1,8 @@
 """Thick cylinder of perfectly plastic material under inner pressure, plane strain.
 
-Radii 100 and 200, E = 210000, yield stress 240. Hill's solution, exact for incompressible
-material, gives pressure and outer displacement for a plastic zone up to radius c; it is met with
-nu = 0.4999, where elements that lock show it. With nu = 0.3 the references are converged values.
+Radii 100 and 200, E = 210000, yield stress 240. Hill's solution, exact for incompressible material,
+gives pressure and outer displacement for a plastic zone up to radius c; it is approached with nu =
+0.4999, where locking elements fail. With nu = 0.3 the references are converged values.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

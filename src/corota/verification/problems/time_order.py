@@ -1,8 +1,8 @@
-"""Order of the time integration schemes on a strip under a load that comes and goes.
+"""Order of the time integration schemes on a strip under a smooth load pulse.
 
-4 x 0.5, E = 10000, nu = 0.3, unit density, clamped left, gravity of 8 times sin^4(pi t): smooth,
-so that no increment meets a mode that it cannot resolve. The displacements at t = 1 with 50, 100
-and 200 increments give the order, which is two for every scheme.
+4 x 0.5, E = 10000, nu = 0.3, unit density, clamped left, gravity of 8 times sin^4(pi t): smooth, so
+that no unresolved mode is excited. The displacements at t = 1 with 50, 100 and 200 increments give
+the order, which is two for every scheme.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

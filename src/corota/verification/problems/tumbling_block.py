@@ -1,9 +1,10 @@
 """Thrown bodies: an L-shaped block that tumbles and a slender rod, after a pulse on one end.
 
-A block of legs 4 x 1 and 1 x 3 and a rod 10 x 0.3 (E = 20000, nu = 0.3, unit density) are pushed
-for half a unit of time at one end and then fly freely, the rod bending. From then on linear
-momentum, angular momentum and energy must stay; with the scheme of energy and momentum they do. The
-HHT scheme loses angular momentum and energy slowly: its rates are given.
+A block of legs 4 x 1 and 1 x 3 and a rod 10 x 0.3 (E = 20000, nu = 0.3, unit density) are loaded
+for half a unit of time at one end and then fly freely, the rod with bending vibrations. From then
+on linear momentum, angular momentum and energy must be constant, as they are with the
+energy-momentum scheme. The HHT scheme loses angular momentum and energy slowly; its rates are
+given.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

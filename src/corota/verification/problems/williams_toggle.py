@@ -1,7 +1,7 @@
 """Williams' toggle: a shallow rigid-jointed roof under a force on its apex.
 
 Half span 12.943 in, rise 0.386 in, bars 0.753 x 0.243 in, E = 1.03e7 psi, clamped; nu = 0.3. Half
-of it is a solid of Q8 by symmetry. Measured are both limit loads and the deflections there.
+of it is a solid of Q8 by symmetry. The values are both limit loads and the deflections there.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

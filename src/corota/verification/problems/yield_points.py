@@ -1,9 +1,9 @@
-"""First yield and limit of plane stress under plain loadings, by von Mises.
+"""First yield and limit in plane stress under simple loadings, by von Mises.
 
-Simple shear yields at sy / sqrt 3, equal tension both ways at sy; tension with no strain across
-reaches 2 sy / sqrt 3. A bar that hardens by K isotropically and H kinematically has the
-slope E (K + H) / (E + K + H), and yields in reverse at the other end of its elastic range. One
-element Q4I under prescribed displacements.
+Simple shear yields at sy / sqrt 3, equal biaxial tension at sy; tension without lateral strain
+reaches 2 sy / sqrt 3. A bar that hardens by K isotropically and H kinematically has the slope E (K
++ H) / (E + K + H), and yields in reverse loading at the other end of its elastic range. One element
+Q4I under prescribed displacements.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

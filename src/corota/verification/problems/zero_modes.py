@@ -1,7 +1,7 @@
-"""Zero-energy modes: three rigid ones and no other, but for the one that Q8R declares.
+"""Zero-energy modes: three rigid ones and no other, except the hourglass mode of Q8R.
 
-Eigenvalues of the stiffness of one skew cell and of two side by side, over the largest. Reduced
-integration leaves Q8R one more mode on a single cell, which two cells cannot share.
+Eigenvalues of the stiffness of one skew cell and of two adjacent cells, relative to the largest.
+With reduced integration, Q8R has one more mode on a single cell, which two cells suppress.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
