@@ -4,8 +4,10 @@
 :mod:`benchmarks.contact_problems`, each with a limit of processor time, and prints the score by
 family. ``--only N`` runs one and shows its message; ``--keep FILE`` keeps a line of JSON for each;
 ``--against FILE`` compares iterations and times with an earlier file. ``--write`` puts the score of
-all that FILE of ``--keep`` holds into docs/contact.md. The exit status is 1 where less than
-``--share`` of the problems finish.
+all that FILE of ``--keep`` holds into docs/contact.md; with ``--count 0`` it does that alone. Where
+a run does not finish, :mod:`benchmarks.contact_reasons` looks in its states for the reason that its
+message names. The exit status is 1 where less than ``--share`` of the problems finish, or any
+other one ends without a right reason.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -27,6 +29,7 @@ import numpy as np
 import corota as ct
 from benchmarks.common import machine, table, write_between
 from benchmarks.contact_problems import problem
+from benchmarks.contact_reasons import reason
 
 #: Every so many problems is run in another unit of length, by this factor, too.
 UNITS, UNIT = 5, 1e-3
@@ -67,6 +70,8 @@ def run(number: int, limit: int, unit: float = 1.0, size: float = 1.0) -> dict[s
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
     out["seconds"] = time.process_time() - begin
+    if out["end"] != "done":
+        out["reason"], out["right"] = reason(given.model, results, out["why"])
     if results is not None and len(results.frames) > 1:
         count = [f.scalars.get("iterations", 0.0) for f in results.frames[1:]]
         out["iterations"], out["increments"] = int(sum(count)), len(count)
@@ -123,6 +128,7 @@ def score(rows: list[dict[str, Any]]) -> str:
                 family,
                 str(len(mine)),
                 f"{100.0 * len(done) / len(mine):.1f}",
+                f"{sum(r.get('right', False) for r in mine)} of {len(mine) - len(done)}",
                 f"{statistics.median(per):.1f}" if per else "",
                 f"{np.percentile(per, 95):.1f}" if per else "",
                 str(sum(r.get("cut-backs", 0) for r in done)),
@@ -134,6 +140,7 @@ def score(rows: list[dict[str, Any]]) -> str:
         "family",
         "problems",
         "finish [%]",
+        "others end with a right reason",
         "iterations",
         "95 %",
         "cut-backs",
@@ -178,9 +185,12 @@ def main() -> int:
                 with args.keep.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(row) + "\n")
             if row["end"] != "done" or not row.get("unit", True):
+                shown = f"{row.get('reason', '')} {'shown' if row.get('right') else 'not shown'}"
                 sys.stdout.write(f"{row['name']}: {row['what']}\n    {row['end']}, {row['why']}\n")
+                sys.stdout.write(f"    reason: {shown}\n" * (row["end"] != "done"))
                 sys.stdout.flush()
-    sys.stdout.write(f"\n{machine()}\n\n{score(rows)}\n")
+    if rows:
+        sys.stdout.write(f"\n{machine()}\n\n{score(rows)}\n")
     units = [r for r in rows if "unit" in r]
     if units:
         same = sum(r["unit"] for r in units)
@@ -210,7 +220,8 @@ def main() -> int:
                 f"of {len(both)} that finished before: time {time_ratio:.2f}, iterations "
                 f"{work:.2f} of those before (median)\n"
             )
-    return int(sum(r["end"] == "done" for r in rows) < args.share * len(rows))
+    few = sum(r["end"] == "done" for r in rows) < args.share * len(rows)
+    return int(few or any(r["end"] != "done" and not r["right"] for r in rows))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import numpy as np
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, explained
+from corota.analysis.terms.contact.corners import sunk_corner
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
@@ -260,10 +261,10 @@ class StaticStepper(NewtonStepper):
             if outcome.converged:
                 control.size = max(target - control.time, control.step.smallest_increment)
                 return Attempt(target, outcome, contact)
-        return (
-            "; relaxation from the last converged state found no equilibrium nearby: the bodies "
-            "snap or fold; use Dynamic to follow that"
-        )
+        said = "; relaxation from the last converged state found no equilibrium nearby"
+        if sunk_corner(system.contact_term):
+            return said  # the message has the reason
+        return f"{said}: the bodies snap or fold; use Dynamic to follow that"
 
     def go_along_path(self) -> bool:
         """Continue by arc length from where load control stalls; False where that does not help.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.smoothing import blunt_turns
+from corota.analysis.terms.contact.smoothing import blunt_turns, sharp_corners
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -48,8 +48,17 @@ def fillet_note(pair: Pair) -> str:
 
 
 def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
-    """A remark on round masters whose edges are too coarse, or ''."""
-    if pair.master is None or pair.tied or getattr(pair.item, "smooth", True):
+    """A remark on masters with sharp corners, or round ones with too coarse edges, or ''."""
+    if pair.master is None or pair.tied:
+        return ""
+    if sharp := sharp_corners(points, pair.master.nodes[:, :2]):
+        named = ", ".join(str(labels[k]) for k in sharp[:3]) + ", ..." * (len(sharp) > 3)
+        return (
+            f"contact pair {pair.item.name!r}: the master has sharp corners (node {named}). Only "
+            "slave nodes have constraints, so a corner that presses alone sinks in between them "
+            "and wedges: where the other body meets a corner, make this surface the slave"
+        )
+    if getattr(pair.item, "smooth", True):
         return ""
     turns = blunt_turns(points, pair.master)
     node, turn = max(turns.items(), key=lambda item: item[1], default=(-1, 0.0))

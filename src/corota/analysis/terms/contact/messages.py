@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.contact.corners import sunk_corner
+
 if TYPE_CHECKING:
     from corota.analysis.terms.contact.problem import ContactEvaluation, ContactProblem
 
@@ -53,7 +55,7 @@ def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
             f"; {problem.pivoted} iterations chose the states of all contact nodes together "
             "(by pivoting), which did not converge either"
         )
-    return said
+    return said + sunk_corner(problem.contact_term)
 
 
 __all__ = ["explained"]

@@ -89,10 +89,23 @@ def blunt_turns(points: Floats, master: Surface) -> dict[int, float]:
     return out
 
 
+def sharp_corners(x: Floats, edges: Ints) -> list[int]:
+    """Nodes at which a boundary with the body on its left turns left by more than `CORNER`."""
+    after = dict(edges.tolist())
+    out = []
+    for a, b in edges.tolist():
+        if b not in after:
+            continue
+        (ax, ay), (bx, by) = x[b] - x[a], x[after[b]] - x[b]
+        if math.atan2(ax * by - ay * bx, ax * bx + ay * by) > CORNER:
+            out.append(b)
+    return out
+
+
 def _sides(row: list[int]) -> list[tuple[int, int]]:
     """Straight sides between the nodes of an edge."""
     a, b, middle = row
     return [(a, b)] if middle < 0 else [(a, middle), (middle, b)]
 
 
-__all__ = ["blunt_turns", "smoothed"]
+__all__ = ["blunt_turns", "sharp_corners", "smoothed"]
