@@ -60,6 +60,21 @@ PHRASES = {
     r"\btouching (?:state|node|area)|taken as touching|counts? as touching": "in contact",
     r"\bhopeless\b": "given up",
     r"is no number\b": "is not a number",
+    r"energy account": "energy balance",
+    r"nothing holds\b": "unconstrained",
+    r"goe?s? round in (?:a circle|circles)": "cycles",
+    r"no place in a checkpoint": "cannot be stored in a checkpoint",
+    r"disk refuses": "writing fails",
+}
+#: Retired phrase of the Python sources and of the pages of the site.
+SOURCES = {
+    r"\banew\b": "again",
+    r"\bask(?:s|ed)? for\b": "request",
+    r"\black(?:s|ed|ing)?\b": "without, missing",
+    r"turn(?:s|ed)? inside out": "inverted",
+    r"\bto and fro\b": "alternating, cycling",
+    r"\blooked (?:for|at)\b": "searched, checked",
+    r"\bknows (?:no|nothing|only)\b": "has no, has only",
 }
 #: Retired phrase of the pages of the site.
 PAGES = {
@@ -119,12 +134,12 @@ def faults(path: Path) -> list[tuple[int, str]]:
     text = (ROOT / path).read_text(encoding="utf-8")
     if path.suffix == ".py":
         found = python_faults(text)
-        return found + (phrase_faults(text) if path.parts[0] == "src" else [])
+        return found + (phrase_faults(text, PHRASES | SOURCES) if path.parts[0] == "src" else [])
     if path.suffix == ".rs":
         return rust_faults(text) + phrase_faults(text)
     found = phrase_faults(text)
     by_hand = path.parts[0] in ("README.md", "docs") and "verification" not in path.parts
-    return found + (phrase_faults(text, PAGES) if by_hand else [])
+    return found + (phrase_faults(text, PAGES | SOURCES) if by_hand else [])
 
 
 def main() -> int:

@@ -51,7 +51,7 @@ def brief(value: Any) -> str:
 
 
 def short(item: Any) -> str:
-    """``Name(field=value, ...)`` of a data class; fields at their defaults are left out."""
+    """``Name(field=value, ...)`` of a data class; fields at their defaults are omitted."""
     shown = []
     for part in fields(item):
         if not part.repr:

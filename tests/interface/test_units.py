@@ -80,7 +80,7 @@ def test_a_comment_that_is_not_understood_is_a_note(tmp_path: Path, comment: str
     path.write_text(f"*HEADING\n{comment}\n" + text.split("\n", 1)[1])
     read = ct.read(path)
     assert not read.unit_system
-    assert any("strip.inp:2: the units of this comment are left out" in n for n in read.notes)
+    assert any("strip.inp:2: the units of this comment are ignored" in n for n in read.notes)
 
 
 def test_units_label_files_and_axes_and_change_no_number(tmp_path: Path) -> None:

@@ -49,14 +49,14 @@ def check_data(model: Model) -> list[Diagnostic]:
 
 
 def _rotations(model: Model) -> list[Diagnostic]:
-    """Rotations that are held in Python where there are none; in decks dofs 1 to 6 are usual."""
+    """Rotations that are supported in Python at nodes without one; decks often have dofs 1 to 6."""
     supports = [*model.supports, *(s for step in model.steps for s in step.supports)]
-    asked = [s for s in supports if s.dof == 2 and s.where is None]
-    if not asked or not model.sections:
+    rotations = [s for s in supports if s.dof == 2 and s.where is None]
+    if not rotations or not model.sections:
         return []
     has = rotating_nodes(model)
     has[reference_nodes(model)] = True
-    idle = [s for s in asked if not has[model.mesh.node_indices(s.nodes)].any()]
+    idle = [s for s in rotations if not has[model.mesh.node_indices(s.nodes)].any()]
     return [Diagnostic("warning", without_rotation(model.mesh, s)) for s in idle]
 
 

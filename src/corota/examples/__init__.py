@@ -20,7 +20,7 @@ __all__ = ["describe", "load", "names", "path"]
 
 
 def names() -> list[str]:
-    """Names that :func:`load` knows.
+    """Names for :func:`load`.
 
     Examples
     --------

@@ -23,7 +23,7 @@ _SCRIPT = '''\
     paraview --script={script}        or Macros > Import new macro
     pvpython {script} picture.png     without a window
 
-The result file is looked for beside this script, so both can be moved together.
+The result file must be in the folder of this script; move both together.
 """
 
 import os

@@ -61,7 +61,7 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
     Sets of the same name are united; node and cell numbers start again from 1. Edges along which
     two meshes are joined lie inside the body now: they leave the edge sets, and where a node set
     holds the nodes of the edge set of its name, as the sides of :func:`rectangle` do, the nodes of
-    such edges leave it too. Sets with nothing left are gone; ``notes`` of the mesh tell it.
+    such edges are removed, too. Empty sets are removed; ``notes`` of the mesh list them.
 
     Parameters
     ----------

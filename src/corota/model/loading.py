@@ -132,7 +132,7 @@ class Loading:
         if total and per_node:
             raise InputError("a force is either total or per_node")
         if not isinstance(where, str):
-            # Of several names only the mesh tells whether they are edges.
+            # Of several names only the mesh determines whether they are edges.
             where = selection.names(where) or self._nodes(where)
         spread = "total" if total else "per node" if per_node else ""
         self._add_force(Force(where, x, y, moment, spread, amplitude))  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Which nodes have a rotation, and what to say where one is held that is none."""
+"""Nodes with a rotation, and the message for a support of a missing one."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -42,7 +42,7 @@ def reference_nodes(model: Model) -> list[int]:
 
 
 def without_rotation(mesh: Mesh, support: Fixed) -> str:
-    """What to say of a rotation that is held where no element has one."""
+    """Message on a supported rotation where no element has one."""
     nodes = mesh.node_indices(support.nodes)
     place = f"node {mesh.node_labels[nodes[0]]}"
     if isinstance(support.nodes, str):

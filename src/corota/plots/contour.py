@@ -221,7 +221,7 @@ def contour(
 def label_bar(
     bar: Any, name: str, per_cell: bool, limits: tuple[float, float], units: Units
 ) -> None:
-    """Name a color bar, tell the smallest and largest value, keep the ticks few."""
+    """Label a color bar with the smallest and largest value and few ticks."""
     from matplotlib.ticker import MaxNLocator
 
     meaning = vf.described(name, units)

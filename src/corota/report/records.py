@@ -189,14 +189,14 @@ class Tail:
         self.path = path
         self._at, self._file = 0, (0, 0)
         #: Whether the last lines are the first ones of a new file.
-        self.anew = True
+        self.restarted = True
 
     def lines(self) -> list[str]:
         """Lines since the last call."""
         try:
             found = self.path.stat()
-            self.anew = (found.st_dev, found.st_ino) != self._file or found.st_size < self._at
-            if self.anew:
+            self.restarted = (found.st_dev, found.st_ino) != self._file or found.st_size < self._at
+            if self.restarted:
                 self._at, self._file = 0, (found.st_dev, found.st_ino)
             with open(self.path, "rb") as file:
                 file.seek(self._at)
@@ -223,7 +223,7 @@ class JobRecords:
     def update(self) -> Records:
         """Read new data since the last call."""
         lines = self._log.lines()
-        if lines and self._log.anew:
+        if lines and self._log.restarted:
             table = self.records.names, self.records.rows
             self.records = Records()
             self.records.names, self.records.rows = table
@@ -233,7 +233,7 @@ class JobRecords:
             except json.JSONDecodeError:
                 continue  # a line that the end of a process cut
         rows = self._table.lines()
-        if rows and self._table.anew:
+        if rows and self._table.restarted:
             self.records.names, self.records.units = without_units(next(csv.reader(rows[:1])))
             self.records.rows = []
             rows = rows[1:]

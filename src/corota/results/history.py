@@ -119,17 +119,17 @@ class History(Brief, NDArrayOperatorsMixin):
         0.075
         """
         times = np.asarray(self.results.times, dtype=np.float64)
-        asked = np.asarray(time, dtype=np.float64)
+        wanted_times = np.asarray(time, dtype=np.float64)
         if len(times) == 0 or (np.diff(times) < 0.0).any():
             raise InputError(f"{self.name}: its increments are in no order of time; take h[i]")
         slack = 1e-9 * max(abs(float(times[0])), abs(float(times[-1])))
-        if not ((asked >= times[0] - slack) & (asked <= times[-1] + slack)).all():
+        if not ((wanted_times >= times[0] - slack) & (wanted_times <= times[-1] + slack)).all():
             raise InputError(
                 f"{self.name} is known from time {times[0]:g} to {times[-1]:g}, not at "
-                f"{brief(asked) if asked.ndim else f'{float(asked):g}'}"
+                f"{brief(wanted_times) if wanted_times.ndim else f'{float(wanted_times):g}'}"
             )
-        found = np.interp(asked, times, self.values)
-        return found if asked.ndim else float(found)
+        found = np.interp(wanted_times, times, self.values)
+        return found if wanted_times.ndim else float(found)
 
     def max(self, axis: None = None, out: None = None) -> float:
         """Largest value, of the frames that have one; the arguments are those of ``np.max``."""

@@ -599,7 +599,7 @@ class Results(Brief):
             Dimensions ``frame``, ``node`` (the user's numbers) and ``component`` (x, y) or
             ``tensor`` (11, 22, 33, 12); coordinates ``time``, ``load_factor``, ``step``,
             ``increment``, ``x``, ``y``; the attribute ``units`` of each variable where the model
-            tells its units.
+            has units.
 
         Raises
         ------

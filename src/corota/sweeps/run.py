@@ -182,7 +182,7 @@ def _spread(
 
 
 def end_with_parent() -> None:
-    """Let this worker end when the process that started it is killed: nobody else tells it."""
+    """Let this worker end when the process that started it is killed; nothing else does."""
     from multiprocessing import parent_process
     from threading import Thread
 

@@ -137,7 +137,7 @@ def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats
         theta, shapes = largest(
             apply, system.solve_with_last_factor, apply(start), wanted, RESIDUAL
         )
-        # A load that would stretch the structure by its own size is no buckling load.
+        # A load that would stretch the structure by its own size is not a buckling load.
         theta = theta[theta * system.length > largest_move]
         if not len(theta):
             raise ModelError(
@@ -175,7 +175,7 @@ def _unknowns(system: System, at: Evaluation, residual: Floats) -> Floats:
 def _perturbation(
     system: System, step: Buckle, number: int, u: Floats
 ) -> tuple[Floats, Floats, Conditions]:
-    """Force, moves of held dofs and loads that perturb the state."""
+    """Force, prescribed displacements and loads that perturb the state."""
     model = system.model
     own = bool(step.loads) or any(s.value != 0.0 for s in step.supports)
     loads = Conditions(system)

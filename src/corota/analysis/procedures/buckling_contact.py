@@ -32,7 +32,7 @@ CORNER = 0.1
 REAL = 1e-6
 #: Unknowns up to which the dense eigenvalue solver is faster.
 DENSE = 300
-#: Factors that are looked for beside the wanted ones, as many of them may be negative.
+#: Additional factors that are computed, because many may be negative.
 BESIDE = 6
 
 
@@ -86,7 +86,7 @@ def factors_with_contact(
         start = apply(np.random.default_rng(11).standard_normal(n))
         operator = LinearOperator((n, n), matvec=lambda v: apply(v.ravel()), dtype=float)
         theta, x = eigs(operator, k=wanted, which="LR", v0=start, ncv=max(3 * wanted, 40))
-    # A load that would stretch the structure by its own size is no buckling load.
+    # A load that would stretch the structure by its own size is not a buckling load.
     real = (np.abs(theta.imag) <= REAL * np.abs(theta)) & (theta.real * system.length > moved)
     order = np.argsort(-theta.real[real])[:count]
     if not len(order):

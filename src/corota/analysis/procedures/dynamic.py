@@ -350,7 +350,7 @@ def _motion(
 
 
 def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Driven:
-    """Motion that the step prescribes at a time, of dependents of held dofs alone too."""
+    """Motion that the step prescribes at a time, also of dependents of constrained dofs only."""
     conditions, constraints = system.conditions, system.constraints
     constrained = conditions.constrained
     v, a = conditions.support_rates(time, dt)

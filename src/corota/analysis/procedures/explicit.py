@@ -36,7 +36,7 @@ BLOW_UP = 10.0
 ROUND_OFF = 1e-12
 #: Unbalanced force at dofs without mass, relative to the largest force, that counts as zero.
 BALANCED = 1e-9
-#: Most frames that are kept of a step unless outputs ask for times.
+#: Largest number of kept frames of a step, unless outputs request times.
 FRAMES = 200
 #: Attributes of the stepper that a checkpoint holds.
 MEMORY = (
@@ -55,7 +55,8 @@ def diagonal(system: System) -> Floats:
 def stable_increment(system: System, u: Floats, mass: Floats) -> float:
     """Largest stable increment, 2 / (largest frequency) [time].
 
-    Only dofs that are free and have mass count: held ones follow their supports, with or without
+    Only dofs that are free and have mass count: constrained ones follow their supports, with or
+    without
     mass. It is infinite if none of those has stiffness.
 
     Raises
@@ -110,7 +111,7 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
     UnsupportedError
         If there are constraints.
     ModelError
-        If the asked increment is not stable; the message gives the stable one. If a free dof
+        If the requested increment is not stable; the message gives the stable one. If a free dof
         with stiffness or load has no mass, or if there is no stiffness to find an increment from.
     ConvergenceError
         If the motion blows up all the same.
@@ -161,7 +162,7 @@ class ExplicitStepper:
         constrained = system.conditions.constrained
         resumes = bool(state.resumes)
         self.stable = np.inf if resumes else stable_increment(system, state.u, mass)
-        # A checkpoint knows the increment.
+        # A checkpoint contains the increment.
         dt = step.period if resumes else self._increment()
         self.n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
         self.dt = dt = step.period / self.n
@@ -211,7 +212,7 @@ class ExplicitStepper:
         loop.show_start(scalars | self.contact.sums())
 
     def _increment(self) -> float:
-        """Increment that was asked for, or a stable one [time]."""
+        """Requested increment, or a stable one [time]."""
         step, stable = self.step, self.stable
         if step.fixed_increments:
             if step.first_increment > stable:

@@ -1,6 +1,6 @@
 """Where Newton's method starts in an increment of a motion.
 
-A body that nothing holds goes on as if it were rigid: its iterations are then the same whether it
+The start for an unconstrained body is its rigid motion: its iterations are then the same whether it
 rests or flies. Other bodies start from where they are.
 """
 
@@ -56,7 +56,7 @@ class FreeFlight:
         self.body = np.unique(part[self.nodes], return_inverse=True)[1]
 
     def guess(self, u: Floats, v: Floats, dt: float) -> Floats:
-        """Displacement after a time at which free bodies go on rigidly, shape (n_dofs,)."""
+        """Displacement after a time, with rigid motion of free bodies, shape (n_dofs,)."""
         if not len(self.nodes):
             return u
         system, body = self.system, self.body

@@ -2,7 +2,7 @@
 
 The tangent of the state is the stiffness, so pre-stress, large displacements, loads that follow
 and closed contact count. A centrifugal load also softens: the frame of reference turns with the
-body. Coriolis forces and damping count where complex modes are asked for.
+body. Coriolis forces and damping are included where complex modes are requested.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -155,7 +155,7 @@ def _scalars(lin: LinearMotion, modes: Modes) -> dict[str, float]:
 def _participation(lin: LinearMotion, shapes: Floats) -> dict[str, float]:
     """Participation of modes in rigid motions of the free dofs, and the mass of these.
 
-    As CalculiX prints them: along x, y and about the origin, what is held stays at rest.
+    As CalculiX prints them: along x, y and about the origin, with constrained dofs at rest.
     """
     system = lin.system
     x = system.model.mesh.points

@@ -140,7 +140,7 @@ class HarmonicStepper:
 def _amplitudes(
     system: System, lin: LinearMotion, step: SteadyState, number: int, frequencies: Floats
 ) -> tuple[Complex, Complex]:
-    """Complex loads and moves of held dofs at each frequency, shapes (k, n_dofs).
+    """Complex loads and prescribed displacements at each frequency, shapes (k, n_dofs).
 
     Amplitudes of loads are tables over the frequency here.
     """

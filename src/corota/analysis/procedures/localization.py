@@ -24,7 +24,7 @@ def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
     """Global index of the worst cell that has localized, and what to say of it.
 
     A quadrilateral with incompatible modes is stable in a uniform state only while the nominal
-    stress rises with the stretch, though a continuum that is held around is so for longer (de
+    stress rises with the stretch, although a constrained continuum is stable for longer (de
     Souza Neto, Peric, Huang & Owen, Commun. Numer. Methods Eng. 11, 1995). Under the logarithmic
     strain that ends in tension where the material hardens by less than its stress.
     """

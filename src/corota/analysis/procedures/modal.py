@@ -226,7 +226,7 @@ def linear_evaluation(
 
 
 def supported(lin: LinearMotion, forces: Floats, external: Floats) -> Evaluation:
-    """An evaluation whose residual is the reaction of the held dofs alone.
+    """An evaluation whose residual is the reaction of the prescribed dofs alone.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ def _tell_lost(system: System, state: State, number: int, start: Floats, kept: F
     if size > 0.0 and lost > LOST * size:
         state.notes.append(
             f"the modes hold all but {lost / size:.0%} of the displacement that step {number} "
-            "starts from: ask for more modes"
+            "starts from: request more modes"
         )
 
 

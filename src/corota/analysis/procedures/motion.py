@@ -1,4 +1,4 @@
-"""A system in motion: what Newton's method sees of an increment of a time scheme.
+"""The equations of an increment of a time scheme, for Newton's method.
 
 It offers the same methods as the static system, with the inertia and the weights of the
 scheme put into residual and tangent; so there is one Newton's method.
@@ -104,7 +104,8 @@ class NewmarkMotion:
             a = carried.copy()
         constrained = driven.constrained
         if constrained.any():
-            # Newton's method moves held dofs in its first correction: until then the rates differ
+            # Newton's method moves prescribed dofs in its first correction: until then the rates
+            # differ
             # by what the tangent takes them for.
             rest = (u - driven.u)[constrained]
             v[constrained] = driven.v[constrained] + self.c_v * rest

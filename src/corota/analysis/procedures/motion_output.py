@@ -24,7 +24,7 @@ class EndForces:
 
     Schemes that weigh the equation between both ends have all forces of the end. The
     energy-momentum scheme has those of the middle: stress and loads are taken again, inertia and
-    damping go on linearly from the two last middles.
+    damping are extrapolated linearly from the last two middles.
 
     Parameters
     ----------

@@ -74,7 +74,7 @@ def start_motion(
     at.link = link.linear()
     # Dependent dofs have their centripetal accelerations besides.
     a = zero + system.predict(at, support_a)[0]
-    # What nodes without mass need for their balance is no acceleration; drilling rotations near
+    # Equilibrium of nodes without mass does not define an acceleration; drilling rotations near
     # them follow it.
     if inertia.massless.any():
         a[(inertia.massless | system.is_rotation) & ~system.conditions.constrained] = 0.0
@@ -133,9 +133,9 @@ def resting(system: System) -> MotionState:
 
 
 def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
-    """Give held dofs the velocity of their motion; returns its acceleration, shape (n_dofs,).
+    """Set the velocity of prescribed dofs; returns their acceleration, shape (n_dofs,).
 
-    Both are looked at over the first increment.
+    Both are evaluated over the first increment.
     """
     assert state.v is not None
     constrained = system.conditions.constrained

@@ -187,9 +187,9 @@ class StaticStepper(NewtonStepper):
             state.notes.append(
                 f"step time {attempt.target:.6g}: from here on the equilibrium is unstable "
                 f"(negative pivots of the tangent: {outcome.negative}): a limit or bifurcation "
-                "point was passed, where a real structure snaps or buckles. "
-                "path=ArcLength() or DisplacementControl(...) locates the point and can switch to "
-                "the other branch; 'stable' in the history tells which frames are stable"
+                "point was passed, where a real structure snaps or buckles. path=ArcLength() or "
+                "DisplacementControl(...) locates the point and can switch to the other branch; "
+                "'stable' in the history marks the stable frames"
             )
         state.negative = outcome.negative
         attempts = control.attempt

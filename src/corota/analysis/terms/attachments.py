@@ -1,4 +1,4 @@
-"""Point masses and dashpots: what hangs on nodes and acts in motion only."""
+"""Point masses and dashpots: attached to nodes, acting in dynamics only."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -4,7 +4,7 @@ Without an amplitude a static load or support moves linearly from what the last 
 to its new value; with one it is the value times the amplitude. What a step does not mention
 stays (``OP=MOD``): an amplitude of total time runs on, one of step time ends with its step and
 leaves its last value. With ``OP=NEW`` loads of that kind go back to zero, over a static step
-and at once in motion. A support that is released leaves its reaction as a force that fades out
+and at once in dynamics. A support that is released leaves its reaction as a force that fades out
 over the step.
 """
 
@@ -88,7 +88,7 @@ class Conditions(Term):
         self.system = system
         self.constrained = np.zeros(n, bool)
         self.fixed: Ints = np.zeros(0, np.int64)
-        #: External forces that do not follow the displacement, by the times asked for last and
+        #: External forces that do not follow the displacement, by the last requested times and
         #: whether others do.
         self._known: dict[tuple[float, bool], Floats] = {}
         self.support = LoadHistory(n)

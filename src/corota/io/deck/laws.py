@@ -34,7 +34,7 @@ class DeckLaw:
     per_row : int
         Constants on a data line.
     optional : int
-        Constants at the end that may be left out; they are zero.
+        Optional constants at the end; they default to zero.
     follows_temperature : bool
         Whether constants for several temperatures are read.
     writes : tuple of types of Material, optional

@@ -73,7 +73,7 @@ def shown(text: str) -> str:
 
 
 def clipped(text: str, most: int = 300) -> str:
-    """Text of a message with its middle left out if it is long."""
+    """Text of a message, with its middle omitted if it is long."""
     return text if len(text) <= most else f"{text[: most // 2]} ... {text[-most // 3 :]}"
 
 

@@ -100,7 +100,7 @@ def _name_units(model: Model, lexer: Lexer) -> None:
     try:
         model.unit_system = Units.of(*filter(None, re.split(r"[,;\s]+", text)), where=where)
     except InputError as error:
-        model.notes.append(f"{where}: the units of this comment are left out: {error.message}")
+        model.notes.append(f"{where}: the units of this comment are ignored: {error.message}")
 
 
 def _open_ends(deck: Deck) -> None:

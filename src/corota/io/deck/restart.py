@@ -39,7 +39,7 @@ def with_earlier_steps(
     Raises
     ------
     FileError
-        If there is no such checkpoint, or the earlier deck is not there as it was.
+        If there is no such checkpoint, or the earlier deck is missing or changed.
     """
     for own in cards:
         if own.keyword == "STEP":

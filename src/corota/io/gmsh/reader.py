@@ -174,7 +174,7 @@ def _line_sets(mesh: Mesh, parsed: Parsed, lines: list[tuple[Ints, Ints]]) -> No
             old = mesh.edge_sets.get(name, np.zeros((0, 2), np.int64))
             mesh.edge_sets[name] = np.unique(np.concatenate([old, mine[on_cell]]), axis=0)
     if lost:
-        mesh.notes.append(f"{lost} line elements of named curves lie on no cell and are left out")
+        mesh.notes.append(f"{lost} line elements of named curves lie on no cell and are ignored")
 
 
 def _add(table: dict[str, Ints], name: str, values: Ints) -> None:
@@ -190,7 +190,7 @@ def _compact(mesh: Mesh, used: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Me
     new = np.full(mesh.n_nodes, -1)
     new[used] = np.arange(int(used.sum()))
     cells = [Cells(c.kind, new[c.nodes], c.labels) for c in mesh.cells]
-    notes = [*mesh.notes, f"{int((~used).sum())} nodes without a cell are left out"]
+    notes = [*mesh.notes, f"{int((~used).sum())} nodes without a cell are ignored"]
     sets = {name: new[nodes][new[nodes] >= 0] for name, nodes in mesh.node_sets.items()}
     return Mesh(
         mesh.points[used],

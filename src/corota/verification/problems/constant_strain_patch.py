@@ -62,7 +62,7 @@ def moved(element: str) -> Results:
 
 
 def pulled(element: str) -> Results:
-    """The patch under its edge tractions, held against rigid motion only."""
+    """The patch under its edge tractions, supported against rigid motion only."""
     model = _model(element)
     mesh, edges = model.mesh, model.mesh.boundary_edges()
     ends = np.array([mesh.points[list(nodes)[:2]].mean(axis=0) for nodes in mesh.edge_nodes(edges)])

@@ -43,7 +43,7 @@ def column(element: str, nx: int) -> Model:
 
 
 def modes(model: Model, damped: bool = False) -> Modes:
-    """Modes of the loaded state; instabilities are what is looked for."""
+    """Modes of the loaded state, for the search of instabilities."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return run(model, [Static(), Frequency(modes=2, complex_modes=damped)]).modes[-1]

@@ -63,7 +63,7 @@ def measure() -> Iterator[Value]:
         ):
             yield Value(f"drift of the {name}, {text}", 0.0, value, bound, "absolute")
     exchange = float(np.ptp(column(solved("Q4I"), "kinetic energy")))
-    yield Value("energy that goes to and fro, Q4I", 1e-5, exchange, 0.0, "at least")
+    yield Value("energy exchanged between motion and strain, Q4I", 1e-5, exchange, 0.0, "at least")
     lost = drift(solved("Q4I", scheme="newmark"))[1]
     yield Value("angular momentum that the trapezoidal rule loses", 1e-6, lost, 0.0, "at least")
 

@@ -65,7 +65,7 @@ def path_step(
     Returns
     -------
     CriticalPoint or None
-        The limit point at which the path was asked to end.
+        The limit point at which the path ends, if requested.
 
     Raises
     ------
@@ -135,7 +135,7 @@ class PathStepper:
             raise
         finally:
             self.loop.count("iterations", self.follower.iterations)
-            # The factorization has changed the tangent's held rows in place.
+            # The factorization has changed the tangent's prescribed rows in place.
             system.conditions.end_time = self.factor * period
             try:
                 self.along.restart()

@@ -3,7 +3,8 @@
 At a simple point the branch leaves along the mode, to either side. At a multiple one the null
 space has several modes, and the branches leave along some of their combinations: the solutions of
 the branching equations in the null space. They are found as such: from directions all around the
-null space the full equations are solved with a small amplitude held along each, and those that
+null space the full equations are solved with a small prescribed amplitude along each, and those
+that
 lead to the same branch count once.
 
 Source: R. Seydel, *Practical Bifurcation and Stability Analysis* (2010), ch. 5; M. Golubitsky,
@@ -62,12 +63,12 @@ class Branch:
 
 
 def switch(tracer: PathTracer, critical: Critical) -> Increment:
-    """Leave along a branch: its amplitude is held, load and shape adapt.
+    """Leave along a branch: its amplitude is prescribed, load and shape adapt.
 
     Raises
     ------
     PathStalled
-        If no branch can be entered, or the one that was asked for does not exist.
+        If no branch can be entered, or the requested one does not exist.
     """
     wanted = tracer.plan.branch
     found: list[Branch] = []
@@ -119,7 +120,7 @@ def _null_space(tracer: PathTracer, critical: Critical, count: int) -> list[Floa
     try:
         tangent_at(system, tracer.base)
     except SingularError:
-        # As near as the arithmetic can tell: a neighbor's factorization will do.
+        # As near as arithmetic permits: a neighbor's factorization is sufficient.
         tangent_at(system, critical.after.point)
     n, counted = system.n_dofs, system.counted
     x = np.random.default_rng(7).standard_normal((n, count))

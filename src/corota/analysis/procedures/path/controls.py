@@ -1,4 +1,4 @@
-"""What is held while an increment of a path is solved: an arc, a displacement, a load.
+"""Controls of an increment of a path: an arc, a displacement, a load.
 
 A control closes the equations of equilibrium, whose unknowns are displacements and load
 factor: with the corrections ``a`` (of the residual) and ``b`` (of a unit of load factor) it

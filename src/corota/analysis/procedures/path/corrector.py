@@ -72,7 +72,7 @@ def correct(
     base : Point
         Where the increment starts.
     guess : Point
-        Meets the control, with held dofs where its load factor puts them.
+        Satisfies the control, with prescribed dofs at the values of its load factor.
     period : float
         Step time of load factor one [time].
     control : Control
@@ -179,7 +179,7 @@ def tangent_at(
     if metric is None:
         metric = Metric(system.counted, float(np.sqrt(product(x, x, system.counted))))
         if metric.length <= STILL * system.length:
-            # Nothing moves under the load, as in a bar that is held and heated.
+            # Nothing moves under the load, as in a fixed and heated bar.
             metric.length = system.length
     size = metric.size(x, 1.0)
     return Tangent(x / size, 1.0 / size, negative), metric

@@ -1,9 +1,9 @@
-"""In which sense a path goes on behind a point, where it may have a kink.
+"""Orientation of a path behind a point, where it may have a kink.
 
 A smooth path turns little over an increment: its direction is the one nearest to the chord.
 Where contact closes, opens or begins to slip the direction jumps, by any angle. The chord is
-then a sum of the directions before and behind, and what changed its state tells which way leads
-on. At a corner of a nonlinear spring the sum alone tells.
+then a sum of the directions before and behind, and the state changes determine which way leads
+on. At a corner of a nonlinear spring the sum alone determines it.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-#: Cosine from which two directions tell the sense of each other.
+#: Cosine from which two directions determine each other's orientation.
 MIN_COSINE = 0.5
 
 

@@ -1,4 +1,4 @@
-"""What a path is asked for, and what it gives back: plan, ends, increments."""
+"""Input and output of a path: plan, ends, increments."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Increment:
     ----------
     point : Point
     tangent : Tangent
-        Direction in which the path goes on.
+        Direction in which the path continues.
     iterations, attempts : int
     size : float
         Length of the increment, in units of the path.

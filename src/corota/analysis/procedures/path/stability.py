@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
 #: A critical point is located to this share of the increment that holds it.
 CRITICAL_POINT_TOLERANCE = 1e-7
-#: A kink to this share, looked for beside where it is expected by one of the bracket.
+#: A kink to this fraction, searched next to its expected position by a fraction of the bracket.
 BLUNT, BISECTION_OFFSET = 1e-4, 0.02
-#: Behind a critical point the next one is looked for from this share of the increment on.
+#: Behind a critical point the search for the next one starts at this fraction of the increment.
 CLEAR = 1e-2
 #: Distances at which a neighbor of a point without inverse is tried.
 NEARBY = (0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
@@ -71,7 +71,7 @@ class Critical:
     after : Station
         The nearest point that was solved behind it.
     kind : {"limit", "bifurcation", "kink"}
-        A kink is no critical point: the tangent jumps there, and the load factor goes on.
+        A kink is not a critical point: the tangent jumps there, and the load factor continues.
     mode : ndarray, shape (n,)
         Null direction of the tangent (the softest, where it jumps), its largest component 1.
     projection : float
@@ -79,7 +79,7 @@ class Critical:
     negative : tuple of int
         Negative pivots before and behind.
     branches : list of ndarray, shape (n,)
-        Directions in which branches leave, once they were looked for.
+        Directions of the branches, once they are computed.
     """
 
     point: Point
@@ -194,11 +194,11 @@ def locate(
                 now = solve(near)
                 if now is None:
                     break
-                # Where the tangent jumps, no mode tells how far it is.
+                # Where the tangent jumps, no mode gives the distance.
                 sample = now, *((0.0, None) if kink else softest_mode(system, mode))
                 break
             except SingularError:
-                # As near as the arithmetic can tell; a neighbor will do.
+                # As near as arithmetic permits; a neighbor is sufficient.
                 if best is not None and abs(near - best[1].share) <= BESIDE:
                     break
         if sample is None:

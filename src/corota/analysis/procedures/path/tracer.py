@@ -261,7 +261,7 @@ class PathTracer(ABC):
         return size
 
     def _wanted(self) -> float:
-        """Size of the next increment: what displacement control asks for, or the arc's."""
+        """Size of the next increment: that of displacement control, or the arc's."""
         row = self.plan.row
         if row is None:
             return self.size
@@ -424,7 +424,7 @@ class PathTracer(ABC):
         return found
 
     def _go_on_behind(self, critical: Critical, end: Station, size: float) -> None:
-        """Aim at the end of the increment that held the point: the tangent here is singular."""
+        """Aim at the end of the increment with the point: the tangent here is singular."""
         point, after = critical.point, critical.after
         du, df = end.point.u - point.u, end.point.factor - point.factor
         left = self.metric.size(du, df)
@@ -437,7 +437,7 @@ class PathTracer(ABC):
             self.guess, self.tangent = None, end.tangent
 
     def _still(self, moved: float) -> bool:
-        """Whether a displacement is rounding: what is held all round only takes up load."""
+        """Whether a displacement is rounding: a fully constrained body only takes load."""
         return moved <= STILL * self.system.length
 
     def _resize(self, size: float, iterations: int, turn: float) -> None:
@@ -476,7 +476,7 @@ class PathTracer(ABC):
         """Solver for points inside an increment, and where two directions cross in it.
 
         The way is measured by displacements or, with a kink, across it: along the mean of the
-        directions before and behind, on which both go on.
+        directions before and behind, along which both increase.
         """
         metric, old, new = self.metric, self.tangent, end.tangent
         du, df = end.point.u - self.base.u, end.point.factor - self.base.factor

@@ -47,7 +47,7 @@ class Approach:
     Attributes
     ----------
     meets : bool
-        Whether the increment that was asked for last ends behind a first touch.
+        Whether the last requested increment ends after a first contact.
     limited : bool
         Whether it was shortened.
     """

@@ -86,7 +86,7 @@ def _leaving(
             break
         other = table[tied, k] / column[tied]
         tied = tied[other <= other.min() + TIE * max(1.0, float(np.abs(other).max()))]
-    # Of rows that rounding cannot tell apart the one with the largest pivot.
+    # Of rows that are equal to rounding, the one with the largest pivot.
     return int(tied[np.argmax(column[tied])])
 
 

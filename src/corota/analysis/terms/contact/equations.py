@@ -699,7 +699,7 @@ class ContactEquations:
 
     @property
     def presses(self) -> bool:
-        """Whether any contact bears a pressure, above rounding, at the end of the increment."""
+        """Whether any contact has a pressure above rounding at the end of the increment."""
         assert self.contact_state is not None
         none = self.system.scales.nothing
         return any(
@@ -743,8 +743,8 @@ class ContactEquations:
                 continue  # a facet between two nodes that are closed as well
             notes.append(
                 f"contact pair {pair.name!r}: the constraint at node "
-                f"{self.contact_term.label(pair, constraint)} is redundant "
-                "(supports, ties or other pairs impose it already) and was left out"
+                f"{self.contact_term.label(pair, constraint)} is redundant (supports, ties or "
+                "other pairs impose it already) and was dropped"
             )
         self.contact_term.told |= self.border.dropped
         return notes

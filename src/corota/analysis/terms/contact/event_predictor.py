@@ -171,7 +171,7 @@ class EventPath:
         return True
 
     def turn(self, metric: Metric, where: tuple[int, int], before: int, state: int) -> bool:
-        """Take the direction of the states, in the sense in which one change goes on."""
+        """Take the direction of the states, oriented so that one change continues."""
         path = self.path
         try:
             x, negative = path.rate_with(

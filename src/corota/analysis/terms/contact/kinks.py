@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 HALVINGS = 44
 #: Share of a difference of contact forces that must be a jump.
 JUMP = 0.25
-#: Width in which the kink is looked for again, in distances between the sides it was found from.
+#: Width in which the kink is searched again, in distances between its sides.
 WIDTH = 4.0
 #: And before, nearby, in distances that the last correction was to go.
 NEAR = (0.2, 3.0)
@@ -53,7 +53,7 @@ class Kink:
     jump : ndarray, shape (n_dofs,)
         Contact force of the far side less that of the near one.
     width : float
-        Distance in which it is looked for [length].
+        Search distance [length].
     distance : float
         From the displacement judged last to the kink [length].
     share : float

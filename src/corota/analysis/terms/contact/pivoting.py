@@ -400,7 +400,8 @@ def pivoted(
     pairs = list(problem._pairs(at.contact_state))
     first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
     starts = [first] if problem.last is None else [problem.last, first]
-    # With all that is closed sticking, what holds by friction is held and the matrix symmetric.
+    # With all closed constraints sticking, bodies held by friction are constrained and the matrix
+    # is symmetric.
     bases = [[np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in b] for b in starts]
     bases += [[s.copy() for s in b] for b in starts]
     for base in bases:

@@ -104,7 +104,7 @@ class MeshBuilder:
     side : ndarray of int, shape (n_cells,)
         Side of the deck's quadrilateral that is one node, -1 for none.
     line_nodes : list of ndarray of int
-        Nodes of each line element that is no truss.
+        Nodes of each line element that is not a truss.
     twin : ndarray of int, shape (n_cells,)
         Second half of a beam of three nodes, -1 for others.
     """

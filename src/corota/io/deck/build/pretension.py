@@ -3,7 +3,7 @@
 The elements of the surface get nodes of their own on it; the old ones stay with the other side, as
 in CalculiX. With n the normal out of these elements and s the displacement of the node in its
 first direction, u(near) - u(far) = s n at every pair of nodes: a force on the node is the tension
-of the bolt, and a held node locks it.
+of the bolt, and a fixed node locks it.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -385,7 +385,7 @@ class Sets:
         return edges
 
     def _edges_of_lines(self, lines: Ints) -> Ints:
-        """Cell edges on line elements; a line without a cell is left out."""
+        """Cell edges on line elements; a line without a cell is ignored."""
         edges = self.mesh.edges_between([self.line_nodes[i][:2] for i in lines])
         return np.asarray(edges[edges[:, 0] >= 0])
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from corota.model.materials import Material
     from corota.model.model import Model
 
-#: Shear areas as shares of the area (Cowper 1966, Poisson's ratio left out).
+#: Shear areas as fractions of the area (Cowper 1966, without Poisson's ratio).
 RECTANGLE, CIRCLE, TUBE = 5.0 / 6.0, 0.9, 0.5
 #: Degrees of freedom of decks in the plane, and their index here.
 PLANAR = {1: 0, 2: 1, 6: 2}

@@ -23,7 +23,7 @@ PER_LINE = 10
 def write_deck_mesh(mesh: Mesh, path: Path, title: str = "") -> None:
     """Write nodes, elements, sets and surfaces; sections and steps are the user's to add.
 
-    Line and point cells are left out. Blanks and commas in set names become ``_``.
+    Line and point cells are omitted. Blanks and commas in set names become ``_``.
 
     Parameters
     ----------
