@@ -1,9 +1,9 @@
-"""A bistable beam pushed by a rigid probe, from which it snaps away to its second shape.
+"""A bistable beam is pushed by a rigid probe and snaps to its second shape.
 
 Cosine beam: span 100, height 4, depth 1, width 5 (E 2000, nu 0.3; N, mm, s, t), clamped at both
-ends; a round probe comes down on its middle by 7 in a tenth of a second. Half of the beam is
-computed, so it cannot escape sideways, as the double beams of switches cannot. For slender beams
-the greatest force is 740 E I h / L^3, the force vanishes after 4 h / 3, and the second shape is
+ends; a round probe moves down by 7 on its middle in a tenth of a second. Half of the beam is
+computed, so it cannot tilt, like the double beams of switches. For slender beams
+the largest force is 740 E I h / L^3, the force vanishes after 4 h / 3, and the second shape is
 1.99 h below the first (J. Qiu, J. Lang, A. Slocum, J. Microelectromech. Syst. 13 (2004)).
 """
 

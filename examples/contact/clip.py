@@ -1,8 +1,8 @@
 """A snap-fit clip is pushed past a rigid catch and pulled out again, with friction and yielding.
 
 A polymer arm (E 2300, nu 0.38, yield stress 45, hardening 150; N, mm), 2 high and 4 thick, with a
-hook that stands 2 above it. The catch is a rigid bar with round corners. The root moves by 9 to
-the right and back; its force is what a hand feels.
+hook of height 2. The catch is a rigid bar with round corners. The root moves by 9 to
+the right and back; its reaction is the insertion force.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

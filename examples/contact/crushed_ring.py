@@ -1,4 +1,4 @@
-"""A steel ring crushed between two rigid plates until it is a peanut, and relieved.
+"""A steel ring crushed between two rigid plates, and unloaded.
 
 Mean radius 9.5, wall 1 (E 210000, nu 0.3, yield stress 300, hardening 1000; N, mm; plane strain).
 Half of it is computed. Limit load of a rigid-plastic ring: 4 My / R with the plastic moment

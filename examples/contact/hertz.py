@@ -2,8 +2,8 @@
 
 Quarter of a disc, radius 8, E 200, nu 0.3, force 10 per unit thickness. Theory: H. Hertz, J. reine
 angew. Math. 92 (1881); the half width is sqrt(4 F R / (pi E*)) with E* = E in plane stress and
-E / (1 - nu^2) in plane strain, the greatest pressure 2 F / (pi a). One geometrically linear
-increment, as the theory.
+E / (1 - nu^2) in plane strain, the largest pressure 2 F / (pi a). One geometrically linear
+increment, as in the theory.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

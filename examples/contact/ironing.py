@@ -1,7 +1,7 @@
-"""Ironing: a round elastic die is pressed into a soft block and drawn across it.
+"""Ironing: a round elastic die is pressed into a soft block and moved across it.
 
 Block 9 x 3, E 1; die of radius 1.5 with its lower arc on the block, E 10, nu 0.3, plane strain. The
-die goes down by 0.3 and then 4 to the right, over many elements of the block; forces at its top.
+die moves down by 0.3 and then 4 to the right, over many elements of the block; forces at its top.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,8 +1,8 @@
-"""A rubber tube pressed into a groove by a round rib until its inner walls touch each other.
+"""A rubber tube pressed into a groove by a round rib until its inner walls are in contact.
 
 Outer radius 4, wall 0.8 (E 5, nu 0.45; N, mm; plane strain), in a groove with round corners, under
-a rigid rib of radius 1.5 that comes down by 6.8. Half of it is computed; the inner surface touches
-itself.
+a rigid rib of radius 1.5 that moves down by 6.8. Half of it is computed; the inner surface has
+self-contact.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

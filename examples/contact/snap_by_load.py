@@ -2,7 +2,8 @@
 
 The beam of ``bistable_beam.py``: its load rises to a limit point, falls while the beam snaps
 through, and rises again where the beam meets a stop. Elastic, with friction, and of a metal that
-yields (yield stress 5, hardening 100). Marks are runs in which the probe is held instead: the same
+yields (yield stress 5, hardening 100). Marks are runs with prescribed displacement of the probe:
+the same
 curve, up to where the elastic forces of both agree to the solver's tolerance.
 """
 

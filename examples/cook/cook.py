@@ -2,7 +2,7 @@
 
 A tapered panel clamped at its left edge under a uniform shear at the right one (48 x 44/16,
 E = 1, nu = 1/3, thickness 1). The linear tip displacement converges to 23.966 (Q9, 100 x 100
-elements); the table shows what each element makes of coarse meshes.
+elements); the table shows each element on coarse meshes.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,7 @@
-"""Bars and strips under cycles: the Bauschinger effect and ratchetting.
+"""Bars and strips under load cycles: the Bauschinger effect and ratcheting.
 
 A steel strip (E 206000, nu 0.3, yield stress 250 and two back-stresses, 60000/400 and 4000/10)
-is pulled between unequal stresses: each cycle leaves a little more strain (ratchetting). With
+is cycled between unequal stresses: each cycle leaves additional strain (ratcheting). With
 linear kinematic hardening the loops close instead.
 """
 

@@ -3,7 +3,7 @@
 A block of PEEK, 36 x 7 x 10 mm, necked to 1 mm by two notches of radius 6 (mm, N, MPa). Beam
 theory with the height varying along the hinge (J. M. Paros and L. Weisbord, *How to design flexure
 hinges*, Machine Design 37, 1965) gives the rotation for comparison: bending without shear
-force, so the moment is the same everywhere and large rotations change nothing.
+force, so the moment is uniform and large rotations have no effect.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -2,7 +2,7 @@
 
 Each column ends in a base plate: a rigid body of its foot and of the plate's edge below, whose
 reference node is the foot, so that force and moment of the beam go into the drilling elements. The
-sway is printed beside that of the same frame on a rigid base, and what holds the plate.
+sway is printed with that of the same frame on a rigid base, and the reactions of the plate.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

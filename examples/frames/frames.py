@@ -1,7 +1,7 @@
-"""Lee's frame, Williams' toggle, a deep arch and a column: paths of solids beside exact beams.
+"""Lee's frame, Williams' toggle, a deep arch and a column: paths of solids against exact beams.
 
 Each is a solid of quadratic elements; the exact values are those of extensible, shear-flexible
-beams, from their differential equations. Nothing is tuned: every path takes default settings.
+beams, from their differential equations. Every path uses default settings.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -2,7 +2,7 @@
 
 The part is cut in one piece from a 5 mm plate of polyamide (mm, N, MPa). A pin pulls the shaft
 back by 3.3 mm; the two jaws turn on their leaf hinges by 18 degrees until they almost meet. The
-strain stays below three percent, the rotation does not stay small.
+strain stays below three percent, but the rotation is large.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

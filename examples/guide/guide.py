@@ -2,7 +2,7 @@
 
 The leaves are strips of drilling quadrilaterals. The stage is a rigid body; its reference node
 stands in the middle between the leaf ends, where the driving force and the spring act. While
-it moves across by d it comes down by nearly 3 d^2 / (5 L), and hardly turns.
+it moves sideways by d it moves down by nearly 3 d^2 / (5 L), and hardly rotates.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,7 @@
-"""An elastic bar hits a rigid wall: one contact of the duration 2 L / c, then it flies back.
+"""An elastic bar hits a rigid wall: one contact of duration 2 L / c, then rebound.
 
 The exact solution: the bar is compressed with the force rho c A v for the time 2 L / c that the
-wave takes to the free end and back, and leaves with the velocity it came with. A time scheme
+wave takes to the free end and back, and leaves with its initial velocity. A time scheme
 whose contact force acts on nodes with mass creates energy instead, and chatters; here other nodes
 of the elements carry the mass of the contact nodes.
 """

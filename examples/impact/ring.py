@@ -1,7 +1,7 @@
-"""A ring flies against a rigid wall, elastic or yielding, with the energy that goes where.
+"""A ring, elastic or plastic, hits a rigid wall; its energies over time.
 
 Four elements, the consistent inertia, the energy-momentum scheme and contact by Lagrange
-multipliers. What the balance lacks in the end is what scheme and contact made up.
+multipliers. The final energy-balance error is due to scheme and contact.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

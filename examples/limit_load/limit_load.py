@@ -1,8 +1,8 @@
-"""A cantilever to its limit load, and what is left after unloading.
+"""A cantilever up to its limit load, and the residual state after unloading.
 
 A perfectly plastic strip 10 x 1 (E 1000, nu 0.3, yield stress 1, thickness 1) is bent by its tip.
-Beam theory collapses at ``1 / (4 * 10)``, where the plastic hinge has formed at the clamp. The tip
-is moved, not loaded, so that the peak needs no special control; then it is let go.
+The collapse load of beam theory is ``1 / (4 * 10)``, with a plastic hinge at the clamp. The tip
+is displaced, not loaded, so that the peak needs no special control; then it is released.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

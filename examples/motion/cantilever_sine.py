@@ -1,4 +1,4 @@
-"""A cantilever under a sine load at its tip, with each element and a time step that is halved.
+"""A cantilever under a sine load at its tip, with each element and two time steps.
 
 The problem that T.-N. Le, J.-M. Battini and M. Hjiaj computed with beams (Comput. Methods Appl.
 Mech. Engrg 200 (2011)): length 10 m, section 0.5 m by 0.25 m, E = 210 GPa, density 7850 kg/m^3,

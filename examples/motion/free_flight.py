@@ -1,7 +1,8 @@
-"""Free flight: a flexible rod that is thrown spinning, and an L-shaped block that tumbles.
+"""Free flight: a spinning flexible rod, and a tumbling L-shaped block.
 
-Nothing holds the bodies. A pulse acts on a corner for a while; from then on linear momentum,
-angular momentum and energy must stay, whatever the body does.
+The bodies are unconstrained. A pulse acts on a corner for a short time; from then on linear
+momentum,
+angular momentum and energy must be constant.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,9 +1,9 @@
-"""A flexible pendulum swings over ten periods; its energy is followed all the way.
+"""A flexible pendulum over ten periods, with its energy.
 
-A rod of length 1 hangs on a pin at its lower corner and is let go horizontally. Its centre is
+A rod of length 1 hangs on a pin at its lower corner and is released horizontally. Its center is
 then a little above the pin, by the angle e = atan(depth / length). As a rigid body with the
 diagonal R it has the period 4 K(m) sqrt(2 R / (3 g)), where K is the complete elliptic integral
-of parameter m = sin^2((pi / 2 + e) / 2); the flexible one comes close.
+of parameter m = sin^2((pi / 2 + e) / 2); that of the flexible one is close.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,7 +1,7 @@
-"""A fly rod that whips, and an elastoplastic frame under a pulse.
+"""A whipping fly rod, and an elastoplastic frame under a pulse.
 
-The rod is turned at its grip by a prescribed rotation of its end and whips over; the frame is
-hit by a short pulse on its beam, yields and keeps swinging about a new position of rest.
+The rod is driven by a prescribed rotation at its grip; the frame is
+loaded by a short pulse on its beam, yields and vibrates about a new equilibrium position.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

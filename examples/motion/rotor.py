@@ -1,6 +1,6 @@
 """Stresses and frequencies of a spinning annulus.
 
-A disc with a hole turns steadily. With radii a and b and s = rho omega^2 the stresses of plane
+A disc with a hole rotates steadily. With radii a and b and s = rho omega^2 the stresses of plane
 stress are
 
     sigma_r = s (3 + nu) / 8 (a^2 + b^2 - a^2 b^2 / r^2 - r^2),
@@ -8,7 +8,7 @@ stress are
 
 see S. Timoshenko and J. N. Goodier, Theory of Elasticity, section 32. A quarter under the
 centrifugal load gives them in a static step. The whole disc starts from that state, free and with
-the velocity of the spin, and keeps it while it turns: the initial state of a transient.
+the velocity of the spin, and keeps it during the rotation: the initial state of a transient.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,9 +1,9 @@
-"""A strip with a hole, pulled far beyond yield.
+"""A strip with a hole under large plastic strain.
 
 Quarter of an aluminium strip 20 x 36 with a hole of radius 5 (E 70000, nu 0.2, yield stress 243,
 linear hardening 2240; N, mm), thickness 1. The top is moved by a sixth of the strip's half height:
-the ligament flows, necks and thins. The local strain is logarithmic, so that the strains may be
-large. Increments follow the plastic strain, one tuning knob less.
+the ligament yields, necks and thins. The local strain is logarithmic, so that the strains may be
+large. The plastic strain controls the increments.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -1,4 +1,4 @@
-"""Cook's panel beyond yield: what the four kinds of element make of coarse meshes.
+"""Cook's panel beyond yield with four kinds of elements on coarse meshes.
 
 The tapered panel 48 x 44/16, clamped left, carries a shear force of 1.8 on its right edge
 (E 70, nu 1/3, yield stress 0.243, linear hardening 0.135; kN, mm, plane stress).

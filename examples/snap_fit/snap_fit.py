@@ -1,8 +1,8 @@
-"""A snap-fit clip that is deflected too far: it yields, springs back, and keeps a set.
+"""A snap-fit clip that is deflected too far: it yields and springs back with a permanent set.
 
 A tapered arm, 15 long, 2.4 high at its root and 1.2 at its hook, polymer (E 2300, nu 0.38, yield
-stress 45, hardening 150; N, mm), is pushed down by 2 as it slides over a catch and let go. The
-first push stays elastic, the second one of 4 yields at the root.
+stress 45, hardening 150; N, mm), is deflected by 2 as it slides over a catch, and released. The
+first deflection is elastic, the second one of 4 yields at the root.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

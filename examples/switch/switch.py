@@ -1,13 +1,13 @@
-"""A bistable switch: two cosine flexures that carry a shuttle snap from one side to the other.
+"""A bistable switch: two cosine flexures with a shuttle snap from one side to the other.
 
 The part is cut from one sheet: a stiff frame (here: clamps), two parallel curved flexures and
-a shuttle that keeps the middle from turning. Pushed at the shuttle it snaps through and stays;
-the path tells the push that switches it, the pull that switches it back, the other position
-of rest and its stability.
+a shuttle that prevents rotation of the middle. Pushed at the shuttle it snaps through and stays;
+the path gives the push that switches it, the pull that switches it back, the second equilibrium
+position and its stability.
 
 The estimates are those of J. Qiu, J. H. Lang and A. H. Slocum, "A curved-beam bistable
 mechanism", J. Microelectromech. Syst. 13 (2004) 137-146: for a clamped cosine beam of span l,
-rise h and depth t with h/t well above 2.31, whose middle does not turn, the largest push is
+rise h and depth t with h/t well above 2.31, whose middle does not rotate, the largest push is
 about 740 E I h / l^3, the largest pull back half of it, and the travel 1.99 h.
 """
 

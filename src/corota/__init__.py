@@ -1,6 +1,6 @@
 """Corota: co-rotational planar finite elements.
 
-Names are imported when first used, so that ``corota --version`` need not wait for numerics.
+Names are imported at first use, so that ``corota --version`` does not load the numerics.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -67,7 +67,7 @@ if TYPE_CHECKING:
     from corota.sweeps import Sweep, grid, sample, sweep
 
 
-#: Module of each public name; a module stands for itself.
+#: Module of each public name; a module is its own entry.
 _HOMES = {
     "__version__": "_core",  # that of Cargo.toml
     "Amplitude": "model.loads",

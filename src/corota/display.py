@@ -1,4 +1,4 @@
-"""How objects show themselves: one short line as text, a picture and a table in a notebook."""
+"""Representations of objects: one short line as text, a picture and a table in a notebook."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 #: Longest text of a value within another, and of a whole object [characters].
 LONGEST_VALUE, LONGEST = 60, 1500
-#: Numbers of an array, and members of a list, that are shown one by one.
+#: Largest number of array entries and list members that are shown individually.
 FEW = 6
-#: Cells above which no picture of a mesh is made unasked.
+#: Number of cells above which no picture of a mesh is made by default.
 CELLS_DRAWN = 100_000
 
 

@@ -1,4 +1,4 @@
-"""Typed errors: each names the object, the place and the way out."""
+"""Typed errors: each names the object, the place and the remedy."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """Where in the input something was said: file, line and column (both from 1)."""
+    """A place in the input: file, line and column (both from 1)."""
 
     file: str
     line: int
@@ -26,7 +26,7 @@ class Location:
 
 
 class CorotaError(Exception):
-    """Root of all errors that Corota raises on purpose.
+    """Base class of all errors that Corota raises.
 
     ``exit_code`` is what the command line returns for it.
     """
@@ -65,9 +65,9 @@ def number(value: object, what: str, where: Location | None = None) -> float:
     Parameters
     ----------
     value : object
-        What the user gave.
+        The given value.
     what : str
-        What it is, at the head of the message.
+        Its name, at the start of the message.
     where : Location, optional
 
     Raises
@@ -86,13 +86,13 @@ def number(value: object, what: str, where: Location | None = None) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding about an input: severity, place, card, text and the way out."""
+    """One finding about an input: severity, place, card, text and remedy."""
 
     severity: str  # "error" | "warning" | "note"
     message: str
     where: Location | None = None
     keyword: str = ""
-    text: str = ""  # the offending line as it stands in the file
+    text: str = ""  # the offending line of the file
     hint: str = ""
 
     def __str__(self) -> str:
@@ -120,13 +120,13 @@ class DeckError(InputError):
 
 
 class ModelError(InputError):
-    """Well-formed input that does not make a model that can be solved."""
+    """Well-formed input of a model that cannot be solved."""
 
     exit_code = 3
 
 
 class UnsupportedError(InputError):
-    """Something known that this version does not do, and what to use instead."""
+    """A known feature that this version does not support, with an alternative."""
 
 
 class SingularError(CorotaError):
@@ -154,7 +154,7 @@ class SingularError(CorotaError):
 
 
 class ConvergenceError(CorotaError):
-    """An increment could not be converged; what converged before is kept.
+    """An increment did not converge; converged results are kept.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Names that a user gives: the one that is meant, or the nearest valid one in the error."""
+"""Names given by users: the matching name, or the nearest valid one in the error."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from corota.errors import Location
 
-#: Most names that a message lists.
+#: Largest number of names in a message.
 MOST_LISTED = 20
 
 
@@ -33,14 +33,14 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def listed(known: Iterable[str]) -> str:
-    """Names one after the other, cut where they are too many."""
+    """A list of names, truncated if there are too many."""
     names = list(known)
     more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
     return ", ".join(names[:MOST_LISTED]) + more if names else "none"
 
 
 def match(word: str, known: Iterable[str]) -> str | None:
-    """The known name that is written this way, or this way in other letters' case.
+    """The known name that matches, exactly or regardless of case.
 
     Raises
     ------
@@ -62,10 +62,10 @@ def choose(value: object, known: Iterable[str], what: str, where: Location | Non
     Parameters
     ----------
     value : object
-        What the user gave.
+        The given value.
     known : iterable of str
     what : str
-        What it names, such as ``"element"``.
+        The kind of name, such as ``"element"``.
     where : Location, optional
 
     Raises

@@ -1,7 +1,7 @@
-"""Models to start from; they come with the wheel and need no file and no network.
+"""Example models, included in the wheel; they need no file and no network.
 
 ``ct.examples.load("gripper")`` gives a model with its steps; ``corota demo gripper`` runs it.
-Change what you get: each is a plain :class:`corota.Model`.
+Each is a plain :class:`corota.Model` that can be changed.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -32,7 +32,7 @@ def names() -> list[str]:
 
 
 def describe(name: str) -> str:
-    """What an example shows, in one line.
+    """Description of an example in one line.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def load(name: str) -> Model:
 
 
 def path(file: str) -> Path:
-    """Path of a file that comes with the examples: ``"gripper.msh"``, a mesh of Gmsh.
+    """Path of a file of the examples: ``"gripper.msh"``, a mesh of Gmsh.
 
     Raises
     ------

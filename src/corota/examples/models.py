@@ -1,4 +1,4 @@
-"""The models of the examples that come with the wheel."""
+"""The models of the built-in examples."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def gripper() -> Model:
-    """A compliant gripper, cut from one plate, whose pin is pulled until the jaws nearly meet."""
+    """A compliant gripper, cut from one plate; its pin is pulled until the jaws nearly meet."""
     model = Model(meshes.read(Path(__file__).with_name("gripper.msh")), name="gripper")
     model.section(element="Q4I", material=Elastic(E=1600.0, nu=0.35), thickness=5.0)
     model.fix("bolts")
