@@ -179,7 +179,10 @@ def test_pin_and_tie_of_two_beams(tmp_path: Path, type_: str, turns: bool) -> No
         (cantilever("B21", RECT.replace("RECT", "CIRC") + "1.\n"), "radius in Abaqus"),
         (springs("SPRING1", "1, 2", "*SPRING, ELSET=s\n7\n10.\n"), "1 to 6"),
         (springs("SPRING1", "1, 2", "*SPRING, ELSET=s\n1\n"), "stiffness"),
-        (springs("SPRINGA", "1, 1, 2", "*SPRING, ELSET=s, NONLINEAR\n1., 2.\n2., 1.\n"), "increasing"),
+        (
+            springs("SPRINGA", "1, 1, 2", "*SPRING, ELSET=s, NONLINEAR\n1., 2.\n2., 1.\n"),
+            "increasing",
+        ),
     ],
 )
 def test_faults_are_named(tmp_path: Path, text: str, said: str) -> None:
