@@ -7,6 +7,7 @@ use crate::base::small::{Blocks, Mat, Nodal};
 use crate::elements::line::Resultants;
 use crate::elements::shapes;
 use crate::kinematics::integrate::{self, History, Local, Section};
+use crate::kinematics::per_point::PerPoint;
 
 /// Quadrature point with the shape functions there, computed once per block.
 #[derive(Clone, Debug)]
@@ -142,6 +143,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         _x: &Nodal<T, N, 2>,
         _q: &Nodal<T, N, M>,
         _section: &Section<N>,
+        _own: &PerPoint<'_>,
         _memory: &[f64],
     ) -> T {
         T::zero()
@@ -151,6 +153,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         _x: &Nodal<f64, N, 2>,
         _q: &Nodal<f64, N, M>,
         _section: &Section<N>,
+        _own: &PerPoint<'_>,
         _initial: f64,
     ) -> Resultants {
         Resultants::default()

@@ -6,6 +6,7 @@ use super::element::{Element, Full, Grad, Point, Sample};
 use crate::base::Real;
 use crate::base::small::{Blocks, Nodal};
 use crate::kinematics::integrate::{History, Local, Section};
+use crate::kinematics::per_point::PerPoint;
 
 /// Resultants of a line element and what they store.
 #[derive(Clone, Debug, Default)]
@@ -88,8 +89,9 @@ fn stretch<T: Real, const M: usize>(t: [T; 2]) -> Row<T, 2, M> {
 }
 
 /// Young's and shear modulus of an isotropic law in plane stress.
-fn moduli<const N: usize>(section: &Section<N>) -> (f64, f64) {
-    let m = section.law.moduli();
+#[inline(always)]
+fn moduli<T: Real, const N: usize>(section: &Section<N>, own: &PerPoint<'_>) -> (f64, f64) {
+    let m = own.law::<T, N>(0, section).moduli();
     (m[0][0] - m[0][1] * m[0][1] / m[1][1], m[2][2])
 }
 
@@ -156,7 +158,8 @@ impl Element<2, 2, 0> for Truss {
     ) {
         let (t, length) = axis(x);
         let row = stretch::<T, 2>(t);
-        let k = T::real(moduli(section).0 * section.profile[0]) / length;
+        let k =
+            T::real(moduli::<T, 2>(section, &history.per_point).0 * section.profile[0]) / length;
         let e = apply(&row, q) - length * history.initial_strain(0, 0);
         add(out, &row, k * e, &[(k, &row)], tangent);
     }
@@ -164,12 +167,13 @@ impl Element<2, 2, 0> for Truss {
         x: &Nodal<f64, 2, 2>,
         q: &Nodal<f64, 2, 2>,
         section: &Section<2>,
+        own: &PerPoint<'_>,
         initial: f64,
     ) -> Resultants {
         let (t, length) = axis(x);
         let strain = apply(&stretch::<f64, 2>(t), q) / length;
         let elastic = strain - initial;
-        let stress = moduli(section).0 * elastic;
+        let stress = moduli::<f64, 2>(section, own).0 * elastic;
         let area = section.profile[0];
         let energy = 0.5 * stress * elastic * area * length;
         Resultants { outputs: [stress * area, 0.0, 0.0, 0.0], stress, strain, axis: t, energy }
@@ -199,8 +203,8 @@ fn bendings<T: Real>(t: [T; 2], length: T) -> [Row<T, 2, 3>; 2] {
 
 /// Stiffness of both end rotations: diagonal and coupling.
 #[inline(always)]
-fn bending_stiffness<T: Real>(section: &Section<2>, length: T) -> [T; 2] {
-    let (e, g) = moduli(section);
+fn bending_stiffness<T: Real>(section: &Section<2>, own: &PerPoint<'_>, length: T) -> [T; 2] {
+    let (e, g) = moduli::<T, 2>(section, own);
     let [_, inertia, shear] = section.profile;
     let compliance = if shear > 0.0 { 12.0 * e * inertia / (g * shear) } else { 0.0 };
     let phi = T::real(compliance) / (length * length);
@@ -226,11 +230,12 @@ impl Element<2, 3, 0> for Beam {
     ) {
         let (t, length) = axis(x);
         let row = stretch::<T, 3>(t);
-        let k = T::real(moduli(section).0 * section.profile[0]) / length;
+        let k =
+            T::real(moduli::<T, 2>(section, &history.per_point).0 * section.profile[0]) / length;
         let e = apply(&row, q) - length * history.initial_strain(0, 0);
         add(out, &row, k * e, &[(k, &row)], tangent);
         let [r, s] = bendings(t, length);
-        let [d, c] = bending_stiffness(section, length);
+        let [d, c] = bending_stiffness(section, &history.per_point, length);
         let turn = [apply(&r, q), apply(&s, q)];
         add(out, &r, d.fma(turn[0], c * turn[1]), &[(d, &r), (c, &s)], tangent);
         add(out, &s, c.fma(turn[0], d * turn[1]), &[(c, &r), (d, &s)], tangent);
@@ -239,14 +244,15 @@ impl Element<2, 3, 0> for Beam {
         x: &Nodal<f64, 2, 2>,
         q: &Nodal<f64, 2, 3>,
         section: &Section<2>,
+        own: &PerPoint<'_>,
         initial: f64,
     ) -> Resultants {
         let (t, length) = axis(x);
         let strain = apply(&stretch::<f64, 3>(t), q) / length;
         let elastic = strain - initial;
-        let stress = moduli(section).0 * elastic;
+        let stress = moduli::<f64, 2>(section, own).0 * elastic;
         let [r, s] = bendings(t, length);
-        let [d, c] = bending_stiffness(section, length);
+        let [d, c] = bending_stiffness(section, own, length);
         let turn = [apply(&r, q), apply(&s, q)];
         // Moments that act on the ends; the inner one at the first end is its opposite.
         let end = [d * turn[0] + c * turn[1], c * turn[0] + d * turn[1]];
@@ -349,6 +355,7 @@ impl Element<2, 2, 0> for Spring {
         x: &Nodal<f64, 2, 2>,
         q: &Nodal<f64, 2, 2>,
         section: &Section<2>,
+        _: &PerPoint<'_>,
         _: f64,
     ) -> Resultants {
         let t = axis(x).0;
@@ -426,6 +433,7 @@ macro_rules! dof_spring {
                 _: &Nodal<f64, $n, 2>,
                 q: &Nodal<f64, $n, $m>,
                 section: &Section<$n>,
+                _: &PerPoint<'_>,
                 _: f64,
             ) -> Resultants {
                 spring_resultants(section, apply(&Self::row::<f64>(section), q))

@@ -9,6 +9,7 @@ use crate::base::Real;
 use crate::base::small::Nodal;
 use crate::kinematics::hourglass;
 use crate::kinematics::integrate::{History, Local, Section};
+use crate::kinematics::per_point::PerPoint;
 
 #[derive(Clone, Copy)]
 pub struct Q4r;
@@ -53,8 +54,9 @@ impl Element<4, 2, 0> for Q4r {
         x: &Nodal<T, 4, 2>,
         q: &Nodal<T, 4, 2>,
         section: &Section<4>,
+        own: &PerPoint<'_>,
         memory: &[f64],
     ) -> T {
-        hourglass::energy(x, q, section, memory)
+        hourglass::energy(x, q, section, own, memory)
     }
 }

@@ -9,10 +9,12 @@
 //! Beyond yield the stiffness is that of the tangent at the point at the end of the increment
 //! before, relative to the elastic one, and the hourglass stress is integrated by increments.
 //! Memory: for each axis what is lost of the stiffness, then for each axis the stress at zero
-//! strain.
+//! strain over the elastic stiffness: a strain, which stays where the stiffness follows the
+//! temperature.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::integrate::{History, Local, Section, pass};
+use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Mat, Nodal, inverse2};
 use crate::elements::{Element, shapes};
@@ -35,7 +37,7 @@ struct Hourglass<T> {
 
 impl<T: Real> Hourglass<T> {
     #[inline(always)]
-    fn new(x: &Nodal<T, 4, 2>, thickness: f64) -> Self {
+    fn new(x: &Nodal<T, 4, 2>, thickness: T) -> Self {
         const SIGN: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
         let dn = shapes::square_linear([0.0, 0.0]).1;
         let j = shapes::jacobian(x, &dn);
@@ -60,7 +62,7 @@ impl<T: Real> Hourglass<T> {
             along[axis] = [t[0] * r, t[1] * r];
             direction[axis] = [t[0] * t[0] * r, t[1] * t[1] * r, t[0] * t[1] * r];
         }
-        Self { gamma, along, direction, weight: det.scale(4.0 / 3.0 * thickness) }
+        Self { gamma, along, direction, weight: det.scale(4.0 / 3.0) * thickness }
     }
 
     #[inline(always)]
@@ -103,8 +105,12 @@ fn quadratic<T: Real>(c: &Mat<T, 3>, s: &[T; 3]) -> T {
 
 /// Elastic uniaxial stiffness along each axis.
 #[inline(always)]
-fn elastic<T: Real, const N: usize>(h: &Hourglass<T>, section: &Section<N>) -> [T; 2] {
-    let (c, det) = adjugate(&section.law.moduli());
+fn elastic<T: Real, const N: usize>(
+    h: &Hourglass<T>,
+    section: &Section<N>,
+    own: &PerPoint<'_>,
+) -> [T; 2] {
+    let (c, det) = adjugate(&own.law::<T, N>(0, section).moduli());
     let mut compliance = [[T::zero(); 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -129,9 +135,10 @@ pub fn local_into<E, T: Real>(
 {
     let sums = pass::<E, T, 4, 2, 0>(x, q, &[], section, history, Some(&mut *out), tangent);
     out.failed = sums.failed;
-    let h = Hourglass::new(x, section.thickness);
+    let own = history.per_point;
+    let h = Hourglass::new(x, own.thickness(0, section));
     let strain = h.strain(q);
-    let modulus = elastic(&h, section);
+    let modulus = elastic(&h, section, &own);
     let mut stiffness = modulus;
     let mut stress = [modulus[0] * strain[0], modulus[1] * strain[1]];
     if section.law.n_state() > 0 {
@@ -140,15 +147,16 @@ pub fn local_into<E, T: Real>(
         for axis in 0..2 {
             let kept = T::one() - memory.get::<T>(axis);
             stiffness[axis] = kept * modulus[axis];
-            stress[axis] = stiffness[axis].fma(strain[axis], memory.get(2 + axis));
+            let past: T = memory.get(2 + axis);
+            stress[axis] = stiffness[axis].fma(strain[axis], modulus[axis] * past);
             let slope = det / quadratic(&c, &h.direction[axis]);
             // Not a number where the tangent has lost more than one rank.
             let known = T::zero().lt(slope);
             let share = T::select(known, slope / modulus[axis], T::real(LEAST));
             let lost = T::one() - share.min(T::one()).max(T::real(LEAST));
             memory.set(axis, lost);
-            let next = (T::one() - lost) * modulus[axis];
-            memory.set(2 + axis, stress[axis] - next * strain[axis]);
+            let next = (T::one() - lost) * strain[axis];
+            memory.set(2 + axis, stress[axis] / modulus[axis] - next);
         }
     }
     for axis in 0..2 {
@@ -179,15 +187,16 @@ pub fn energy<T: Real>(
     x: &Nodal<T, 4, 2>,
     q: &Nodal<T, 4, 2>,
     section: &Section<4>,
+    own: &PerPoint<'_>,
     memory: &[f64],
 ) -> T {
-    let h = Hourglass::new(x, section.thickness);
-    let (strain, modulus) = (h.strain(q), elastic(&h, section));
+    let h = Hourglass::new(x, own.thickness(0, section));
+    let (strain, modulus) = (h.strain(q), elastic(&h, section, own));
     let mut sum = T::zero();
     for axis in 0..2 {
         let mut stress = modulus[axis] * strain[axis];
         if !memory.is_empty() {
-            stress = stress.fma(T::real(1.0 - memory[axis]), T::real(memory[2 + axis]));
+            stress = stress.fma(T::real(1.0 - memory[axis]), modulus[axis].scale(memory[2 + axis]));
         }
         sum = (stress * stress / modulus[axis]).fma(h.weight.scale(0.5), sum);
     }

@@ -45,7 +45,7 @@ impl MassKind {
     }
 }
 
-/// Matrix of the kinetic energy in nodes and edge bulges, times density and thickness.
+/// Matrix of the kinetic energy in nodes and edge bulges.
 pub struct Mass<T, const N: usize> {
     /// Node with node, node with edge, edge with edge.
     pub nn: [[T; N]; N],
@@ -58,11 +58,12 @@ pub struct Mass<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Mass<T, N> {
+    /// `rho_t` gives the mass per area (of line elements, per length) at a point.
     #[inline(always)]
     pub fn new<E, const M: usize, const A: usize>(
         x: &Nodal<T, N, 2>,
         points: &[Point<N>],
-        rho_t: f64,
+        rho_t: impl Fn(&Point<N>) -> f64,
         kind: MassKind,
     ) -> Self
     where
@@ -77,7 +78,7 @@ impl<T: Real, const N: usize> Mass<T, N> {
             s: [[o; 2]; N],
         };
         for p in points {
-            let w = E::measure(x, p).scale(rho_t);
+            let w = E::measure(x, p).scale(rho_t(p));
             let sides = if M == 3 { E::sides(p.xi) } else { [0.0; N] };
             for a in 0..N {
                 for b in 0..N {

@@ -6,6 +6,7 @@ use super::about_mean::AboutMean;
 use super::dilatation::Dilatation;
 use super::local_strain::LocalStrain;
 use super::modes::{condense, relax};
+use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
 use crate::elements::{Element, Operator, Point, Sample};
@@ -57,6 +58,7 @@ pub struct History<'a> {
     /// empty where there is none.
     pub initial: &'a [f64],
     pub stride: usize,
+    pub per_point: PerPoint<'a>,
 }
 
 impl History<'_> {
@@ -94,7 +96,7 @@ impl History<'_> {
         if self.initial.is_empty() {
             return size;
         }
-        let softness = 1.0 / section.law.moduli()[0][0];
+        let softness = 1.0 / self.per_point.law::<T, N>(0, section).moduli()[0][0];
         for p in 0..section.points.len() {
             for row in 0..3 {
                 size = size.max(self.initial_strain::<T>(p, row).abs());
@@ -222,8 +224,10 @@ where
         failed: T::none(),
     };
     let members = section.law.n_state();
-    let stiff = if A > 0 { LEAST_PIVOT * section.law.moduli()[2][2] } else { 0.0 };
-    let prepared = E::prepare(x, section.parameter);
+    let own = history.per_point;
+    let parameter = own.parameter::<T, N>(section);
+    let stiff = if A > 0 { LEAST_PIVOT * own.law::<T, N>(0, section).moduli()[2][2] } else { 0.0 };
+    let prepared = E::prepare(x, parameter);
     let mut bar = section
         .mean_dilatation
         .then(|| Dilatation::<T, N, M>::new::<E, A>(x, q, &prepared, section));
@@ -236,7 +240,7 @@ where
     let mut to_mean = [[o; 4]; INTERNAL];
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
-        let w = s.weight.scale(section.thickness);
+        let w = s.weight * own.thickness::<T, N>(p, section);
         let mut h = gradient(&s, q, alpha);
         if let Some(bar) = &bar {
             bar.apply(&mut h);
@@ -246,7 +250,8 @@ where
             None => section.strain.strain(&h),
         };
         let strain = history.elastic(p, strain);
-        let mut answer = section.law.update(strain, &mut history.point(p, members));
+        let law = own.law::<T, N>(p, section);
+        let mut answer = law.update(strain, &mut history.point(p, members));
         if !history.initial.is_empty() {
             let pressure = history.spherical::<T, N>(p, section);
             answer.stress[0] += pressure;
@@ -280,7 +285,7 @@ where
         if let Some(bar) = &mut bar {
             bar.split_stress(&mut stress);
         }
-        let gamma = if E::Op::<T>::DRILL { w.scale(section.parameter) } else { o };
+        let gamma = if E::Op::<T>::DRILL { w.scale(parameter) } else { o };
         let mut drill = o;
         if E::Op::<T>::DRILL {
             drill = s.op.drill(q);
@@ -492,15 +497,17 @@ where
         }
     }
     let members = section.law.n_state();
-    let prepared = E::prepare(x, section.parameter);
+    let own = history.per_point;
+    let parameter = own.parameter::<f64, N>(section);
+    let prepared = E::prepare(x, parameter);
     let bar = section
         .mean_dilatation
         .then(|| Dilatation::<f64, N, M>::new::<E, A>(x, q, &prepared, section));
     let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
-    let mut energy = E::stabilization(x, q, section, &[]);
+    let mut energy = E::stabilization(x, q, section, &own, &[]);
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
-        let w = s.weight * section.thickness;
+        let w = s.weight * own.thickness::<f64, N>(p, section);
         let mut h = gradient(&s, q, &alpha);
         if let Some(bar) = &bar {
             bar.apply(&mut h);
@@ -511,9 +518,10 @@ where
         };
         let strain = history.elastic(p, strain);
         let mut state = history.point(p, members);
-        let stress = section.law.update(strain, &mut state).stress;
+        let law = own.law::<f64, N>(p, section);
+        let stress = law.update(strain, &mut state).stress;
         let values: Vec<f64> = (0..members).map(|m| state.new[m * state.stride]).collect();
-        energy += w * section.law.energy(strain, stress, &values);
+        energy += w * law.energy(strain, stress, &values);
         if E::Op::<f64>::DRILL {
             let mut drill = s.op.drill(q);
             for m in 0..A {
@@ -521,7 +529,7 @@ where
                     drill += mode_drill(&s.modes[m], i) * alpha[m][i];
                 }
             }
-            energy += 0.5 * w * section.parameter * drill * drill;
+            energy += 0.5 * w * parameter * drill * drill;
         }
     }
     energy

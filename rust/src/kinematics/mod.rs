@@ -12,3 +12,4 @@ pub mod inertia;
 pub mod integrate;
 pub mod local_strain;
 mod modes;
+pub mod per_point;

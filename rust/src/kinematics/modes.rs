@@ -81,7 +81,7 @@ where
     }
     // What is held and heated, or has come back to its shape after flow, has no displacement
     // to measure the modes with: the elastic strain of its stress does.
-    let softness = 1.0 / section.law.moduli()[0][0];
+    let softness = 1.0 / history.per_point.law::<T, N>(0, section).moduli()[0][0];
     size = size.max(extent * history.largest::<T, N>(section));
     let (mut tolerance, mut radius) = (T::zero(), T::zero());
     let mut base = *alpha;

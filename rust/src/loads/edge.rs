@@ -23,7 +23,8 @@ pub struct Edge {
     pub nodes: [u32; 3],
     /// 2 or 3.
     pub n_nodes: usize,
-    pub thickness: f64,
+    /// Thickness of the nodes.
+    pub thickness: [f64; 3],
     pub alpha_b: f64,
     /// Undeformed positions of the nodes.
     pub x: [[f64; 2]; 3],
@@ -45,6 +46,16 @@ impl Edge {
     /// The undeformed edge.
     pub fn undeformed(&self) -> Place {
         Place { x: self.x, differ: 0.0 }
+    }
+
+    /// Thickness where the shape functions are `n`.
+    fn thickness(&self, n: &[f64; 3]) -> f64 {
+        (0..self.n_nodes).map(|a| n[a] * self.thickness[a]).sum()
+    }
+
+    /// That of the middle of a straight edge; by it a bulge weighs, which is symmetric to it.
+    fn middle(&self) -> f64 {
+        0.5 * (self.thickness[0] + self.thickness[1])
     }
 
     fn length(&self) -> f64 {
@@ -75,14 +86,14 @@ pub fn traction(edge: &Edge, at: &Place, t: [f64; 2]) -> (EdgeForce, EdgeStiffne
     let mut k = EdgeStiffness::default();
     for (w, n, dn) in samples(edge.n_nodes) {
         let d = tangent(&edge.x, &dn);
-        let dl = w * edge.thickness * (d[0] * d[0] + d[1] * d[1]).sqrt();
+        let dl = w * edge.thickness(&n) * (d[0] * d[0] + d[1] * d[1]).sqrt();
         for a in 0..edge.n_nodes {
             f[a][0] += n[a] * t[0] * dl;
             f[a][1] += n[a] * t[1] * dl;
         }
     }
     if edge.alpha_b > 0.0 {
-        let c = edge.alpha_b * edge.thickness * edge.length().powi(2) / 12.0;
+        let c = edge.alpha_b * edge.middle() * edge.length().powi(2) / 12.0;
         let (l, unit, normal) = frame(&at.x);
         let (along, across) =
             (c * (t[0] * unit[0] + t[1] * unit[1]), c * (t[0] * normal[0] + t[1] * normal[1]));
@@ -106,7 +117,7 @@ pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
     let mut k = EdgeStiffness::default();
     for (w, n, dn) in samples(edge.n_nodes) {
         let d = tangent(&at.x, &dn);
-        let s = w * edge.thickness * p;
+        let s = w * edge.thickness(&n) * p;
         // Inward normal times length: the tangent turned to the left.
         for a in 0..edge.n_nodes {
             f[a][0] -= s * n[a] * d[1];
@@ -118,7 +129,7 @@ pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
         }
     }
     if edge.alpha_b > 0.0 {
-        let c = edge.alpha_b * edge.thickness * edge.length() * p / 12.0;
+        let c = edge.alpha_b * edge.middle() * edge.length() * p / 12.0;
         let (l, unit, normal) = frame(&at.x);
         let mut second = [[0.0; 2]; 2];
         for i in 0..2 {

@@ -19,6 +19,14 @@ macro_rules! laws {
             /// Names of all materials.
             pub const NAMES: &'static [&'static str] = &[$($name::NAME),+];
 
+            /// [`Material::EXAMPLES`] of the material of that name.
+            pub fn examples(name: &str) -> &'static [&'static [f64]] {
+                $(if name == $name::NAME {
+                    return $name::EXAMPLES;
+                })+
+                &[]
+            }
+
             /// Build the material of that name.
             pub fn new(name: &str, parameters: &[f64], plane: Plane) -> Result<Self, String> {
                 $(if name == $name::NAME {

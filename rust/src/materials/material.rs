@@ -51,6 +51,9 @@ pub struct TensorOutput {
 /// A material law in the plane.
 pub trait Material: Sized {
     const NAME: &'static str;
+    /// Parameters that tests try the law with: first all that it can have, for strains of some
+    /// tenths; then cases with a symmetric tangent, for strains of some hundredths.
+    const EXAMPLES: &'static [&'static [f64]];
 
     /// Build from numbers in the order that the law's file documents.
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String>;

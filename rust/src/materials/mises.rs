@@ -240,6 +240,15 @@ impl Mises {
 
 impl Material for Mises {
     const NAME: &'static str = "mises";
+    const EXAMPLES: &'static [&'static [f64]] = &[
+        // a back-stress with recall, hardening of Voce
+        &[1000.0, 0.3, 1.0, 50.0, 2.0, 2.0, 80.0, 20.0, 5.0, 100.0],
+        // perfectly plastic; linear isotropic and kinematic; Voce; table
+        &[7.0, 0.3, 0.0, 0.0, 0.05, 0.0],
+        &[7.0, 0.3, 1.0, 0.8, 0.0, 0.0, 0.05, 0.4],
+        &[7.0, 0.3, 0.0, 2.0, 0.05, 0.03, 40.0, 0.1],
+        &[7.0, 0.3, 0.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
+    ];
 
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
         let &[young, nu, count, ref rest @ ..] = parameters else {

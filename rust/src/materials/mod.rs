@@ -1,6 +1,7 @@
 //! Material laws: one file each, values in and values out.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod by_temperature;
 pub mod elastic;
 pub mod hardening;
 pub mod law;

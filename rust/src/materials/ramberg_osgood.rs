@@ -105,6 +105,13 @@ impl RambergOsgood {
 
 impl Material for RambergOsgood {
     const NAME: &'static str = "ramberg_osgood";
+    const EXAMPLES: &'static [&'static [f64]] = &[
+        &[1000.0, 0.3, 100.0, 2.0, 0.5],
+        // the usual offset; auxetic; nearly perfectly plastic
+        &[7.0, 0.3, 0.05, 5.0, 3.0 / 7.0],
+        &[7.0, -0.4, 0.05, 5.0, 2.0],
+        &[7.0, 0.49, 0.05, 40.0, 0.002],
+    ];
 
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
         let &[young, nu, yield_stress, exponent, offset] = parameters else {

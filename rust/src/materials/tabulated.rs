@@ -24,6 +24,10 @@ const PLASTIC: usize = 15;
 
 impl Material for Tabulated {
     const NAME: &'static str = "given";
+    const EXAMPLES: &'static [&'static [f64]] = &[
+        &[1100.0, 330.0, 0.0, 330.0, 1100.0, 0.0, 0.0, 0.0, 385.0],
+        &[9.0, 2.0, 0.5, 2.0, 6.0, -0.4, 0.5, -0.4, 3.0],
+    ];
 
     fn new(parameters: &[f64], _: Plane) -> Result<Self, String> {
         let &[a, b, c, d, e, f, g, h, i] = parameters else {

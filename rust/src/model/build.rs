@@ -9,6 +9,7 @@ use crate::elements::Element;
 use crate::for_each_element;
 use crate::kinematics::integrate::Section;
 use crate::kinematics::local_strain::LocalStrain;
+use crate::materials::by_temperature::LawTable;
 use crate::materials::{Law, Plane};
 use std::sync::Arc;
 
@@ -21,11 +22,17 @@ pub struct BlockInput {
     pub plane: Plane,
     pub local_strain: String,
     pub thickness: f64,
+    /// Thickness of the nodes, element by element; empty where it is the same everywhere.
+    pub nodal_thickness: Vec<f64>,
     /// Section numbers of line elements.
     pub profile: [f64; 3],
     /// Pairs of elongation and force of nonlinear springs.
     pub table: Vec<[f64; 2]>,
     pub rho: f64,
+    /// Density of the nodes, element by element; empty where it is the same everywhere.
+    pub nodal_density: Vec<f64>,
+    /// Temperatures, rising, and the parameters of the law there; empty for a law without.
+    pub by_temperature: Vec<(f64, Vec<f64>)>,
     pub options: Options,
     /// Node indices, element by element.
     pub nodes: Vec<u32>,
@@ -100,10 +107,29 @@ pub fn build(
             mean_dilatation: input.options.mean_dilatation,
             finite: true,
         };
+        for nodal in [&input.nodal_thickness, &input.nodal_density] {
+            if !nodal.is_empty() && nodal.len() != input.nodes.len() {
+                return Err("values of the nodes do not fit the elements".into());
+            }
+        }
+        let table = match input.by_temperature.as_slice() {
+            [] => None,
+            rows => Some(LawTable::new(&input.law, input.plane, rows)?),
+        };
         let shape = section.points.iter().flat_map(|p| p.n).collect();
         let mass_points = E::points(&E::mass_rule());
         let linear = section.linearised();
-        let shared = BlockData { block: index, section, linear, rho: input.rho, mass_points };
+        let shared = BlockData {
+            block: index,
+            section,
+            linear,
+            rho: input.rho,
+            table,
+            weighted: input.options.beta0.is_some(),
+            nodal_thickness: input.nodal_thickness.clone(),
+            nodal_density: input.nodal_density.clone(),
+            mass_points,
+        };
         let shared = Arc::new(shared);
         let nodes: Vec<[u32; N]> = input.nodes.as_chunks::<N>().0.to_vec();
         let order = locality::order(x, &input.nodes, N, CHUNK);

@@ -10,6 +10,8 @@ use crate::elements::Element;
 use crate::kinematics::corotation::Frame;
 use crate::kinematics::inertia::MassKind;
 use crate::kinematics::integrate::{History, Local, Section};
+use crate::kinematics::per_point::{PerPoint, PointLaws};
+use crate::materials::by_temperature::LawTable;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -17,6 +19,8 @@ use std::sync::Arc;
 pub const CHUNK: usize = 512;
 /// Histories are padded so that every batch can load whole lanes.
 const PAD: usize = MAX_LANES;
+/// Parts of the state of a chunk.
+pub const PARTS: usize = 5;
 
 /// What an evaluation needs besides the elements.
 #[derive(Clone, Copy)]
@@ -41,6 +45,14 @@ pub struct Shared<const N: usize> {
     pub linear: Section<N>,
     /// Mass per volume; 0 if none was given.
     pub rho: f64,
+    /// The law by temperature, if it depends on it.
+    pub table: Option<LawTable>,
+    /// Whether the section's parameter is given and does not follow the law.
+    pub weighted: bool,
+    /// Thickness and density of the nodes of all elements of the block, `[n, N]`; empty where those
+    /// of the section hold.
+    pub nodal_thickness: Vec<f64>,
+    pub nodal_density: Vec<f64>,
     pub mass_points: Vec<crate::elements::Point<N>>,
 }
 
@@ -91,6 +103,8 @@ pub trait Chunk: Send + Sync {
     );
     /// Set the initial strains from those of the block, `[n, p, 4]`.
     fn set_initial(&mut self, values: &[f64]);
+    /// Let the law follow temperatures of the block, `[n, p]`.
+    fn set_temperatures(&mut self, values: &[f64]) -> Result<(), String>;
     /// Let other nodes of the elements carry the mass of these, given by node; empty for none.
     fn set_massless(&mut self, massless: &[bool]);
     /// Factors on the masses of the elements of the block; empty for one.
@@ -111,10 +125,10 @@ pub trait Chunk: Send + Sync {
     fn nodes(&self) -> Vec<u32>;
     /// Committed history, for tests.
     fn history(&self) -> (&[f64], &[f64]);
-    /// Committed history, internal modes, carried velocities and initial strains.
-    fn state(&self) -> [&[f64]; 4];
+    /// Committed history, internal modes, carried velocities, initial strains and temperatures.
+    fn state(&self) -> [&[f64]; PARTS];
     /// Take such a state; `false` if it does not fit.
-    fn restore(&mut self, state: [&[f64]; 4]) -> bool;
+    fn restore(&mut self, state: [&[f64]; PARTS]) -> bool;
 }
 
 pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
@@ -140,6 +154,14 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     pub(super) massless: Vec<[bool; N]>,
     /// Factor on the mass of each element; empty for one.
     pub(super) mass_factors: Vec<f64>,
+    /// Thickness by point, `[p]` strided; empty where that of the section holds.
+    pub(super) thickness: Vec<f64>,
+    /// Thickness and density of the nodes of each element; empty likewise.
+    pub(super) nodal_thickness: Vec<[f64; N]>,
+    pub(super) nodal_density: Vec<[f64; N]>,
+    /// Temperatures by element and point, and the laws there; none where the law has no table.
+    temperatures: Vec<f64>,
+    pub(super) laws: Option<PointLaws>,
     element: PhantomData<E>,
 }
 
@@ -170,6 +192,25 @@ where
                 }
             }
         }
+        let of_nodes = |all: &[f64]| -> Vec<[f64; N]> {
+            let rows = all.as_chunks::<N>().0;
+            if rows.is_empty() {
+                return Vec::new();
+            }
+            elements.iter().map(|&e| rows[e as usize]).collect()
+        };
+        let nodal_thickness = of_nodes(&shared.nodal_thickness);
+        let mut thickness = Vec::new();
+        if !nodal_thickness.is_empty() {
+            // Lanes past the end have one too.
+            thickness.resize(section.points.len() * stride, section.thickness);
+            for (e, nodal) in nodal_thickness.iter().enumerate() {
+                for (p, point) in section.points.iter().enumerate() {
+                    let here = point.n.iter().zip(nodal).map(|(n, t)| n * t);
+                    thickness[p * stride + e] = here.sum();
+                }
+            }
+        }
         Self {
             shared: shared.clone(),
             elements: elements.to_vec(),
@@ -186,6 +227,11 @@ where
             initial: Vec::new(),
             massless: Vec::new(),
             mass_factors: Vec::new(),
+            thickness,
+            nodal_thickness,
+            nodal_density: of_nodes(&shared.nodal_density),
+            temperatures: Vec::new(),
+            laws: None,
             element: PhantomData,
         }
     }
@@ -197,6 +243,23 @@ where
 
     pub(super) fn stride(&self) -> usize {
         self.stride
+    }
+
+    /// What the element `e` of the chunk has of its own.
+    pub(super) fn per_point(&self, e: usize) -> PerPoint<'_> {
+        PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride)
+    }
+
+    /// Laws at the temperatures that are stored.
+    fn temper(&mut self) -> Result<(), String> {
+        let shared = self.shared.clone();
+        let Some(table) = &shared.table else { return Ok(()) };
+        let of = |moduli: &crate::base::small::Mat<f64, 3>| {
+            if shared.weighted { shared.section.parameter } else { E::parameter(moduli) }
+        };
+        let n_points = shared.section.points.len();
+        self.laws = Some(PointLaws::new(table, &self.temperatures, n_points, of)?);
+        Ok(())
     }
 
     /// Reference positions and displacements of the batch that starts at `first`; lanes past
@@ -254,6 +317,7 @@ where
                 alpha: &mut self.alpha[e.min(2 * A * self.stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride: self.stride,
+                per_point: PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride),
             };
             let mut answer = Local::zero();
             E::law_into(
@@ -385,7 +449,9 @@ where
 {
     fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
         self.begin_trial();
-        dispatch(context.lanes, Assemble { chunk: self, context, sink })
+        // Elements with laws of their own are evaluated one by one.
+        let lanes = if self.laws.is_some() { Lanes::Scalar } else { context.lanes };
+        dispatch(lanes, Assemble { chunk: self, context, sink })
     }
     fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields) {
         super::recover::chunk(self, context, out);
@@ -452,6 +518,14 @@ where
             }
         }
     }
+    fn set_temperatures(&mut self, values: &[f64]) -> Result<(), String> {
+        let n_points = self.shared.section.points.len();
+        self.temperatures.clear();
+        for &e in &self.elements {
+            self.temperatures.extend_from_slice(&values[e as usize * n_points..][..n_points]);
+        }
+        self.temper()
+    }
     fn commit(&mut self) {
         if !self.evaluated {
             return;
@@ -501,15 +575,18 @@ where
     fn history(&self) -> (&[f64], &[f64]) {
         (&self.old, &self.alpha_old)
     }
-    fn state(&self) -> [&[f64]; 4] {
-        [&self.old, &self.alpha_old, &self.rates_old, &self.initial]
+    fn state(&self) -> [&[f64]; PARTS] {
+        [&self.old, &self.alpha_old, &self.rates_old, &self.initial, &self.temperatures]
     }
-    fn restore(&mut self, [old, alpha, rates, initial]: [&[f64]; 4]) -> bool {
-        let most = 4 * self.shared.section.points.len() * self.stride;
+    fn restore(&mut self, [old, alpha, rates, initial, heat]: [&[f64]; PARTS]) -> bool {
+        let n_points = self.shared.section.points.len();
+        let most = 4 * n_points * self.stride;
+        let wanted = if self.shared.table.is_some() { n_points * self.nodes.len() } else { 0 };
         let fits = old.len() == self.old.len()
             && alpha.len() == self.alpha_old.len()
             && rates.len() == self.rates_old.len()
-            && (initial.is_empty() || initial.len() == most);
+            && (initial.is_empty() || initial.len() == most)
+            && heat.len() == wanted;
         if !fits {
             return false;
         }
@@ -523,7 +600,8 @@ where
             kept.copy_from_slice(rates);
         }
         self.initial = initial.to_vec();
+        self.temperatures = heat.to_vec();
         self.evaluated = false;
-        true
+        self.temper().is_ok()
     }
 }

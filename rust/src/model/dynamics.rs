@@ -4,10 +4,11 @@
 use super::chunk::{ChunkOf, Context};
 use super::scatter::Sink;
 use crate::base::small::{Nodal, symmetric_times};
-use crate::elements::Element;
+use crate::elements::{Element, Point};
 use crate::kinematics::conserving::{self, Step};
 use crate::kinematics::inertia::{Mass, MassKind, Spin, bulge_rates, consistent};
 use crate::kinematics::integrate::History;
+use crate::kinematics::per_point::PerPoint;
 use crate::loads::body::{self, Field};
 
 /// State of motion, and what is wanted of the inertia.
@@ -65,7 +66,16 @@ where
 
     fn mass(&self, e: usize, x: &Nodal<f64, N, 2>, kind: MassKind) -> Mass<f64, N> {
         let s = &self.shared;
-        let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, s.rho * s.section.thickness, kind);
+        let at = |p: &Point<N>, nodal: &[f64; N]| -> f64 {
+            p.n.iter().zip(nodal).map(|(n, v)| n * v).sum()
+        };
+        let rho_t = |p: &Point<N>| {
+            let thickness =
+                self.nodal_thickness.get(e).map_or(s.section.thickness, |nodal| at(p, nodal));
+            let rho = self.nodal_density.get(e).map_or(s.rho, |nodal| at(p, nodal));
+            rho * thickness
+        };
+        let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, rho_t, kind);
         if E::LINE && M == 3 && s.section.thickness > 0.0 {
             mass.turn_with(s.section.profile[1] / s.section.thickness);
         }
@@ -168,6 +178,7 @@ where
                 alpha: &mut self.alpha[e.min(2 * A * stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride,
+                per_point: PerPoint::of(&self.thickness, self.laws.as_ref(), e, stride),
             };
             let step = Step {
                 u0: &u0,

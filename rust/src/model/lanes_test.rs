@@ -15,9 +15,6 @@ const ELEMENTS: usize = 13;
 /// A nonlinear spring: pairs of elongation and force.
 const TABLE: [[f64; 2]; 3] = [[-0.2, -0.1], [0.0, 0.05], [0.3, 0.4]];
 
-/// Moduli of the material whose answer comes from outside, by rows.
-const GIVEN: [f64; 9] = [1100.0, 330.0, 0.0, 330.0, 1100.0, 0.0, 0.0, 0.0, 385.0];
-
 /// What is given for each point: the moduli, a little different each time.
 fn given(points: usize) -> Vec<f64> {
     let mut random = Random(3);
@@ -25,24 +22,11 @@ fn given(points: usize) -> Vec<f64> {
     for _ in 0..points {
         let factor = 1.0 + 0.2 * random.next();
         let mut state = [0.0; crate::materials::tabulated::MEMBERS];
-        let [a, b, c, _, d, e, _, _, f] = GIVEN;
+        let &[a, b, c, _, d, e, _, _, f] = Law::examples("given")[0] else { unreachable!() };
         state[6..12].copy_from_slice(&[a, b, c, d, e, f].map(|m| m * factor));
         values.extend(state);
     }
     values
-}
-
-/// Parameters for each law; a new law adds its line here.
-fn parameters(law: &str) -> Vec<f64> {
-    match law {
-        "elastic" => vec![1000.0, 0.3],
-        "orthotropic" => vec![1000.0, 300.0, 200.0, 0.25, 0.2, 0.3, 150.0, 0.4],
-        // One back-stress with recall, hardening of Voce.
-        "mises" => vec![1000.0, 0.3, 1.0, 50.0, 2.0, 2.0, 80.0, 20.0, 5.0, 100.0],
-        "ramberg_osgood" => vec![1000.0, 0.3, 100.0, 2.0, 0.5],
-        "given" => GIVEN.to_vec(),
-        _ => panic!("give the law {law} parameters for this test"),
-    }
 }
 
 /// Numbers in (-1, 1) that are the same each time (a linear congruence).
@@ -118,13 +102,20 @@ fn case(facts: &Facts, law: &str, strain: &str, nlgeom: bool) -> Case {
     let input = BlockInput {
         element: facts.name.into(),
         law: law.into(),
-        parameters: parameters(law),
+        parameters: Law::examples(law)[0].to_vec(),
         plane: Plane::Stress,
         local_strain: strain.into(),
         thickness: 0.7,
+        nodal_thickness: if strain == "logarithmic" {
+            x.iter().map(|p| 0.7 + 0.2 * p[0]).collect()
+        } else {
+            Vec::new()
+        },
         profile: [0.7, 0.1, 0.4],
         table: if strain == "logarithmic" { TABLE.to_vec() } else { Vec::new() },
         rho: 1.0,
+        nodal_density: Vec::new(),
+        by_temperature: Vec::new(),
         options: Options::default(),
         nodes: (0..x.len() as u32).collect(),
     };
@@ -139,6 +130,10 @@ impl Case {
         problem.set_lanes(lanes);
         if self.input.law == "given" {
             problem.give(0, &given(ELEMENTS * problem.blocks[0].facts.n_points)).unwrap();
+        }
+        if !self.input.by_temperature.is_empty() {
+            let points = ELEMENTS * problem.blocks[0].facts.n_points;
+            problem.set_temperatures(0, &vec![150.0; points]).unwrap();
         }
         let values = 4 * ELEMENTS * problem.blocks[0].facts.n_points;
         // As large as the strain of first yield; more is too much for the histories that follow.
@@ -228,6 +223,34 @@ fn every_failed_lane_is_named() {
                 .expect_err("mirrored elements fail");
             let named: Vec<usize> = failed.0.iter().map(|f| f.1).collect();
             assert_eq!(named, turned_inside_out, "{} {lanes:?}", facts.name);
+        }
+    }
+}
+
+/// Half of Young's modulus, or of the first of the moduli.
+fn softened(law: &str) -> Vec<f64> {
+    let mut numbers = Law::examples(law)[0].to_vec();
+    numbers[0] *= 0.5;
+    numbers
+}
+
+#[test]
+fn a_law_between_two_temperatures_is_the_law_with_the_parameters_between() {
+    for facts in registry::facts() {
+        for law in Law::NAMES {
+            for strain in LocalStrain::NAMES {
+                let mut wanted = case(&facts, law, strain, true);
+                let mut found = case(&facts, law, strain, true);
+                let (cold, hot) = (found.input.parameters.clone(), softened(law));
+                let at = |a: &f64, b: &f64| a + 0.25 * (b - a);
+                wanted.input.parameters = cold.iter().zip(&hot).map(|(a, b)| at(a, b)).collect();
+                // What the block has without temperatures does not matter.
+                found.input.by_temperature = vec![(100.0, cold), (300.0, hot)];
+                let (wanted, failed) = wanted.run(Lanes::Scalar, true);
+                let (found, also) = found.run(Lanes::Best, true);
+                assert_eq!(failed, also, "{} {law} {strain}", facts.name);
+                assert!(found == wanted, "{} {law} {strain}", facts.name);
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::build::{Block, BlockInput, build, colour};
-use super::chunk::{Chunk, Context};
+use super::chunk::{Chunk, Context, PARTS};
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::fixed_dofs::FixedDofs;
@@ -300,6 +300,18 @@ impl Problem {
         Ok(())
     }
 
+    /// Let the law of a block follow temperatures, `[n, p]`.
+    pub fn set_temperatures(&mut self, block: usize, values: &[f64]) -> Result<(), String> {
+        let b = self.blocks.get(block).ok_or_else(|| format!("no block {block}"))?;
+        if values.len() != b.facts.n_points * b.n_elements {
+            return Err("temperatures do not fit the block".into());
+        }
+        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+            chunk.set_temperatures(values)?;
+        }
+        Ok(())
+    }
+
     /// Let other nodes of their elements carry the mass of these, given by node; empty for none.
     pub fn set_massless(&mut self, massless: &[bool]) -> Result<(), String> {
         if !massless.is_empty() && massless.len() != self.x.len() {
@@ -346,12 +358,12 @@ impl Problem {
     pub fn restore(&mut self, values: &[f64], lengths: &[u64]) -> Result<(), String> {
         let wrong = || "the state does not fit the problem".to_string();
         let chunks: Vec<_> = self.colours.iter_mut().flatten().collect();
-        if lengths.len() != 4 * chunks.len() {
+        if lengths.len() != PARTS * chunks.len() {
             return Err(wrong());
         }
         let mut rest = values;
-        for (chunk, own) in chunks.into_iter().zip(lengths.as_chunks::<4>().0) {
-            let mut parts: [&[f64]; 4] = [&[]; 4];
+        for (chunk, own) in chunks.into_iter().zip(lengths.as_chunks::<PARTS>().0) {
+            let mut parts: [&[f64]; PARTS] = [&[]; PARTS];
             for (part, &length) in parts.iter_mut().zip(own) {
                 let length = usize::try_from(length).map_err(|_| wrong())?;
                 (*part, rest) = rest.split_at_checked(length).ok_or_else(wrong)?;

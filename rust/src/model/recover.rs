@@ -140,6 +140,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         let (x, u) = chunk.gather::<f64>(e, context);
         let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
         let stride = chunk.stride();
+        let own = chunk.per_point(e);
         let rows = 4 * n_points;
         let initial: Vec<f64> = match chunk.initial_from(e) {
             [] => Vec::new(),
@@ -147,7 +148,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         };
         if E::LINE {
             let axial = initial.first().copied().unwrap_or(0.0);
-            let found = E::resultants(&x, &frame.q, section, axial);
+            let found = E::resultants(&x, &frame.q, section, &own, axial);
             if let Some(heat) = out.heat.get_mut(4 * e) {
                 *heat = found.stress;
             }
@@ -189,6 +190,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 alpha: &mut alpha,
                 initial: &initial,
                 stride: 1,
+                per_point: own,
             };
             let _ = local::<E, f64, N, M, A>(&x, &frame.q, section, &mut history, false);
         }
@@ -196,13 +198,16 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         for m in 0..A {
             modes[m] = [alpha[2 * m], alpha[2 * m + 1]];
         }
-        let prepared = E::prepare(&x, section.parameter);
+        let parameter = own.parameter::<f64, N>(section);
+        let prepared = E::prepare(&x, parameter);
         let bar = section
             .mean_dilatation
             .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
         for (p, point) in section.points.iter().enumerate() {
+            let (law, thickness) =
+                (own.law::<f64, N>(p, section), own.thickness::<f64, N>(p, section));
             let s = E::sample(&x, &prepared, point);
             let mut h = gradient(&s, &frame.q, &modes);
             if let Some(bar) = &bar {
@@ -219,19 +224,19 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             let range = p * members..(p + 1) * members;
             let mut state =
                 PointState { old: &old[range.clone()], new: &mut new[range.clone()], stride: 1 };
-            let mut stress = section.law.update(strain, &mut state).stress;
+            let mut stress = law.update(strain, &mut state).stress;
             let state = &new[range];
-            let (mut strain_zz, mut stress_zz) = section.law.out_of_plane(strain, stress, state);
+            let (mut strain_zz, mut stress_zz) = law.out_of_plane(strain, stress, state);
             let normal = stress_zz;
-            let mut energy = section.law.energy(strain, stress, state);
+            let mut energy = law.energy(strain, stress, state);
             match section.plane {
                 Plane::Stress => strain_zz += offset(3),
                 Plane::Strain => {
-                    energy += section.law.initial_energy(stress, stress_zz, offset(3));
+                    energy += law.initial_energy(stress, stress_zz, offset(3));
                     stress_zz += offset(3);
                 }
             }
-            let own = stress;
+            let own_stress = stress;
             if section.plane == Plane::Strain && section.law.spherical() {
                 stress[0] += offset(3);
                 stress[1] += offset(3);
@@ -242,8 +247,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 }
                 if section.plane == Plane::Strain && !heat.is_empty() {
                     // The energy is quadratic in the initial stress.
-                    let [up, down] =
-                        [1.0, -1.0].map(|s| section.law.initial_energy(own, normal, s));
+                    let [up, down] = [1.0, -1.0].map(|s| law.initial_energy(own_stress, normal, s));
                     heat[3] = 0.5 * (down - up) - (up + down) * offset(3);
                 }
             }
@@ -265,15 +269,13 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             let row = [e_global[0], e_global[1], strain_zz, 2.0 * e_global[2]];
             out.strain[4 * at..4 * at + 4].copy_from_slice(&row);
             out.energy[at] = energy;
-            out.volume[at] = s.weight * section.thickness;
+            out.volume[at] = s.weight * thickness;
             for (i, values) in out.outputs.iter_mut().enumerate() {
-                values[at] = section.law.output(i, own, state);
+                values[at] = law.output(i, own_stress, state);
             }
-            out.thickness[at] = section.thickness * stretch;
-            for (i, (kind, values)) in
-                section.law.tensors().iter().zip(&mut out.tensors).enumerate()
-            {
-                let [xx, yy, zz, xy] = section.law.tensor(i, state);
+            out.thickness[at] = thickness * stretch;
+            for (i, (kind, values)) in law.tensors().iter().zip(&mut out.tensors).enumerate() {
+                let [xx, yy, zz, xy] = law.tensor(i, state);
                 let shear = if kind.engineering { 0.5 } else { 1.0 };
                 let t = turn([xx, yy, shear * xy], frame.cos, frame.sin);
                 values[4 * at..4 * at + 4].copy_from_slice(&[t[0], t[1], zz, t[2] / shear]);
@@ -286,11 +288,11 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 for m in 0..A {
                     drill += 0.5 * (s.modes[m][0] * modes[m][1] - s.modes[m][1] * modes[m][0]);
                 }
-                let gamma = section.parameter * section.thickness * s.weight;
+                let gamma = parameter * thickness * s.weight;
                 out.penalty[e] += 0.5 * gamma * drill * drill;
             }
         }
-        out.penalty[e] += E::stabilization(&x, &frame.q, section, &new[memory..]);
+        out.penalty[e] += E::stabilization(&x, &frame.q, section, &own, &new[memory..]);
         out.rotation[e] = frame.angle();
     }
 }
@@ -314,7 +316,7 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
         for m in 0..A {
             modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];
         }
-        let prepared = E::prepare(&x, section.parameter);
+        let prepared = E::prepare(&x, chunk.per_point(e).parameter::<f64, N>(section));
         let bar = section
             .mean_dilatation
             .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));

@@ -27,9 +27,12 @@ fn sheet(n: usize, shuffled: bool) -> Problem {
         plane: Plane::Stress,
         local_strain: "green_lagrange".into(),
         thickness: 1.0,
+        nodal_thickness: Vec::new(),
         profile: [0.0; 3],
         table: Vec::new(),
         rho: 1.0,
+        nodal_density: Vec::new(),
+        by_temperature: Vec::new(),
         options: Options::default(),
         nodes: (0..n * n).flat_map(cell).collect(),
     };

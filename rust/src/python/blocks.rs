@@ -8,6 +8,17 @@ use pyo3::types::{PyDict, PyList};
 
 use super::problem::value_error;
 
+/// Numbers that a block may have; none where it has not.
+fn numbers(block: &Bound<'_, PyDict>, key: &str) -> PyResult<Vec<f64>> {
+    match block.get_item(key)? {
+        Some(v) => {
+            let v: PyReadonlyArray1<'_, f64> = v.extract()?;
+            Ok(v.as_slice()?.to_vec())
+        }
+        None => Ok(Vec::new()),
+    }
+}
+
 /// Blocks as `Problem` describes them.
 pub fn block_inputs(blocks: &Bound<'_, PyList>) -> PyResult<Vec<BlockInput>> {
     let mut inputs = Vec::new();
@@ -34,6 +45,12 @@ pub fn block_inputs(blocks: &Bound<'_, PyList>) -> PyResult<Vec<BlockInput>> {
                 None => Vec::new(),
             },
             rho: get("rho")?.extract()?,
+            nodal_thickness: numbers(d, "nodal_thickness")?,
+            nodal_density: numbers(d, "nodal_density")?,
+            by_temperature: match d.get_item("by_temperature")? {
+                Some(v) => v.extract()?,
+                None => Vec::new(),
+            },
             options: Options {
                 mean_dilatation: match d.get_item("mean_dilatation")? {
                     Some(v) => v.extract()?,

@@ -16,7 +16,8 @@ type Answer<'py> = (
 /// Loaded edges, all with the same kind of load.
 ///
 /// EdgeLoads(points, nodes, thickness, alpha_b): ``points`` (n_nodes, 2) undeformed; ``nodes``
-/// (n, 3) uint32, the third repeated from the first where the edge is straight.
+/// (n, 3) uint32, the third repeated from the first where the edge is straight; ``thickness`` (n, 3)
+/// of these nodes.
 #[pyclass(name = "EdgeLoads")]
 pub struct PyEdgeLoads {
     edges: Vec<Edge>,
@@ -28,10 +29,10 @@ impl PyEdgeLoads {
     fn new(
         points: PyReadonlyArray2<'_, f64>,
         nodes: PyReadonlyArray2<'_, u32>,
-        thickness: PyReadonlyArray1<'_, f64>,
+        thickness: PyReadonlyArray2<'_, f64>,
         alpha_b: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<Self> {
-        let (t, b) = (thickness.as_slice()?, alpha_b.as_slice()?);
+        let (t, b) = (thickness.as_slice()?.as_chunks::<3>().0, alpha_b.as_slice()?);
         let points = points.as_slice()?.as_chunks::<2>().0;
         let rows = nodes.as_slice()?.as_chunks::<3>().0;
         let edges = rows.iter().zip(t).zip(b).map(|((&nodes, &thickness), &alpha_b)| {

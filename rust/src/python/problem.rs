@@ -39,7 +39,9 @@ impl PyProblem {
     ///
     /// ``points`` (n, 2); ``blocks`` a list of dicts with element, law, parameters, plane,
     /// local_strain, thickness, rho, nodes (flat uint32), and
-    /// where wanted profile (3 numbers), table (pairs), mean_dilatation (bool) and beta0 (float or None); ``extra_dofs`` (n,) uint8 or empty.
+    /// where wanted profile (3 numbers), table (pairs), mean_dilatation (bool), beta0 (float or None),
+    /// nodal_thickness and nodal_density (flat as nodes) and by_temperature (pairs of a temperature
+    /// and parameters; see ``set_temperatures``); ``extra_dofs`` (n,) uint8 or empty.
     #[new]
     fn new(
         points: PyReadonlyArray2<'_, f64>,
@@ -230,6 +232,15 @@ impl PyProblem {
     /// elements the first row is the axial strain. Empty for none.
     fn set_initial(&mut self, block: usize, values: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         self.inner.set_initial(block, values.as_slice()?).map_err(value_error)
+    }
+
+    /// Let the law of a block follow temperatures by element and point, shape (n, p) flat.
+    fn set_temperatures(
+        &mut self,
+        block: usize,
+        values: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        self.inner.set_temperatures(block, values.as_slice()?).map_err(value_error)
     }
 
     /// Let other nodes of their elements carry the mass of these, flags by node; empty for none.

@@ -8,6 +8,7 @@ use corota::elements::Element;
 use corota::kinematics::corotation::Frame;
 use corota::kinematics::integrate::{History, Section, local};
 use corota::kinematics::local_strain::LocalStrain;
+use corota::kinematics::per_point::PerPoint;
 use corota::materials::{Law, Plane};
 
 /// Small random generator (`SplitMix64`), so that failures repeat.
@@ -180,8 +181,14 @@ where
     let frame = Frame::new(&x, u, nlgeom);
     let state = section.points.len() * section.law.n_state() + E::MEMORY;
     let (old, mut new, mut alpha) = (vec![0.0; state], vec![0.0; state], vec![0.0; 2 * A]);
-    let mut history =
-        History { old: &old, new: &mut new, alpha: &mut alpha, initial: &[], stride: 1 };
+    let mut history = History {
+        old: &old,
+        new: &mut new,
+        alpha: &mut alpha,
+        initial: &[],
+        stride: 1,
+        per_point: PerPoint::default(),
+    };
     let answer = local::<E, T, N, M, A>(&x, &frame.q, section, &mut history, true);
     let mut stiffness = answer.stiffness;
     let force = frame.force(&answer.force);

@@ -12,7 +12,7 @@ fn edges(random: &mut Random) -> [Edge; 4] {
     [(2, 0.0), (2, 1.0), (2, 1.5), (3, 0.0)].map(|(n_nodes, alpha_b)| Edge {
         nodes: [0, 1, 2],
         n_nodes,
-        thickness: THICKNESS,
+        thickness: [THICKNESS; 3],
         alpha_b,
         x: positions(n_nodes, random),
     })

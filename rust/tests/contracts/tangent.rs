@@ -9,6 +9,7 @@ use corota::elements::{Element, Operator};
 use corota::for_each_planar_element;
 use corota::kinematics::integrate::{Section, gradient};
 use corota::kinematics::local_strain::LocalStrain;
+use corota::kinematics::per_point::PerPoint;
 use corota::materials::Plane;
 
 const EXACT: f64 = 1e-10;
@@ -126,7 +127,7 @@ where
         let x = x.map(|p| p.map(Dual::<D>::real));
         let prepared = E::prepare(&x, section.parameter);
         let moduli = section.law.moduli();
-        let mut total = E::stabilization(&x, &dual.frame.q, section, &[]);
+        let mut total = E::stabilization(&x, &dual.frame.q, section, &PerPoint::default(), &[]);
         let mean = (E::ABOUT_MEAN && section.strain != LocalStrain::Linear)
             .then(|| E::mean(&x, &prepared).gradient(&dual.frame.q));
         for point in &section.points {
