@@ -24,7 +24,8 @@ REFERENCE = {
     "InitialTemperature InitialStress PointMass Dashpot",
     "Steps": "Static Dynamic Frequency Buckle ModalDynamic SteadyState ArcLength "
     "DisplacementControl",
-    "Materials": "Elastic Orthotropic Expansion Mises Voce RambergOsgood UserMaterial",
+    "Materials": "Elastic Orthotropic Expansion Mises Voce RambergOsgood MaterialTable "
+    "UserMaterial",
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
         Temperature,
     )
     from corota.model.local_strain import LOCAL_STRAINS
+    from corota.model.material_table import MaterialTable
     from corota.model.materials import Elastic, Expansion, Orthotropic
     from corota.model.model import Findings, Model
     from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Modes
@@ -120,6 +121,7 @@ _HOMES = {
     "PointMass": "model.attachments",
     "PressureLaw": "model.contact",
     "ResourceError": "errors",
+    "MaterialTable": "model.material_table",
     "RambergOsgood": "model.ramberg_osgood",
     "Results": "results.results",
     "RigidCurve": "model.contact",
@@ -184,6 +186,7 @@ __all__ = [
     "Iteration",
     "JobFiles",
     "LocalAxes",
+    "MaterialTable",
     "Mesh",
     "Mises",
     "ModalDynamic",

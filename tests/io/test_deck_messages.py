@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 from decks import DECK, faults, read
 
@@ -88,14 +87,14 @@ def test_nodal_thickness_replaces_that_of_the_section(tmp_path: Path) -> None:
     thick = DECK.replace("MATERIAL=steel\n2.", "MATERIAL=steel\n4.")
     expected = ct.solve(read(tmp_path, thick)).frames[-1].U
     assert ct.solve(model).frames[-1].U == pytest.approx(expected, rel=1e-12)  # noqa: SIM300
-    # One element each: 2 where nothing is said, the mean of its corners elsewhere.
+    # Of nodes that are not named it is that of the section.
     some = read(tmp_path, text.replace("nall, 4.", "3, 4.\n6, 4."))
-    sizes = {
-        float(s.thickness): np.asarray(some.mesh.cell_labels[s.cells]).tolist()
-        for s in some.sections
+    nodal = some.sections[0].nodal_thickness
+    assert nodal is not None
+    labels = some.mesh.node_labels
+    assert dict(zip(labels.tolist(), nodal.tolist(), strict=True)) == {
+        label: 4.0 if label in (3, 6) else 2.0 for label in labels.tolist()
     }
-    assert sizes == {2.0: [1], 3.0: [2]}
-    assert any("mean of its corners" in note for note in some.notes)
     assert any(
         "must be > 0" in d.message for d in faults(tmp_path, text.replace("nall, 4.", "3, 0."))
     )

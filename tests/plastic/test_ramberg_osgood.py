@@ -273,7 +273,7 @@ def test_deck_is_written_and_read(tmp_path: Path) -> None:
         ("1000., 0.3, 0.002, 5.", "the offset is missing"),
         ("1000., 0.3, 0.002, 0.5, 0.6", "the exponent must be >= 1"),
         ("1000., 0.3, 0., 5., 0.6", "the yield stress must be a positive number"),
-        ("1000., 0.3, 2., 5., 0.6, 20.\n900., 0.3, 2., 5., 0.6, 90.", "may depend on temperature"),
+        ("1000., 0.3, 2., 5., 0.6, 20.\n900., 0.3, 2., 5., 0.6, 20.", "20 is given twice"),
         ("1000., 0.3, 2., 5., 0.6\n*ELASTIC\n1000., 0.3", "already has constants"),
         ("1000., 0.3, 2., 5., 0.6\n*PLASTIC\n2., 0.", "needs isotropic constants in *ELASTIC"),
         ("", "a data line is missing: Young's modulus"),

@@ -11,6 +11,7 @@ import numpy as np
 from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.model import elements
+from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from corota.model.sections import Section
 
     Ints = NDArray[np.int64]
+    Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -30,10 +32,19 @@ class BlockOfCells:
     nodes: Ints  # (n, k)
 
 
-def core_input(block: BlockOfCells) -> dict[str, Any]:
-    """The block in the format of the core."""
+def core_input(block: BlockOfCells, temperature: Floats | None = None) -> dict[str, Any]:
+    """The block in the format of the core; masses need the initial temperatures of the nodes."""
     section, material = block.section, block.section.material
+    own: dict[str, Any] = {}
+    if section.nodal_thickness is not None:
+        own["nodal_thickness"] = section.thickness_at(block.nodes).ravel()
+    if isinstance(material, MaterialTable):
+        own["by_temperature"] = material.rows_of_parameters(section.orientation)
+        if temperature is not None and material.density_varies:
+            # The mass of a body does not change with its temperature.
+            own["nodal_density"] = material.densities(temperature[block.nodes]).ravel()
     return {
+        **own,
         "element": section.element,
         "law": material.law,
         "parameters": material.parameters(section.orientation),
@@ -137,6 +148,7 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
         raise ModelError(f"node {label} has coordinates that are not finite: ({x}, {y})")
     for block in blocks:
         facts = elements.find(block.section.element)
+        _check_thickness(model, block)
         if facts.line:
             _check_line(model, block, facts.turns)
             continue
@@ -154,6 +166,25 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
                 block.section.where,
             )
         _check_middles(model, block)
+
+
+def _check_thickness(model: Model, block: BlockOfCells) -> None:
+    """Refuse thicknesses by node that do not fit the mesh or are no thickness."""
+    section, labels = block.section, model.mesh.node_labels
+    nodal = section.nodal_thickness
+    if nodal is None:
+        return
+    if len(nodal) != model.mesh.n_nodes:
+        raise ModelError(
+            f"{len(nodal)} thicknesses for {model.mesh.n_nodes} nodes of the mesh", section.where
+        )
+    own = section.thickness_at(block.nodes)
+    bad = np.argwhere(~(np.isfinite(own) & (own > 0.0)))
+    if len(bad):
+        node = block.nodes[tuple(bad[0])]
+        raise ModelError(
+            f"the thickness of node {labels[node]} must be > 0, not {nodal[node]:g}", section.where
+        )
 
 
 def _check_middles(model: Model, block: BlockOfCells) -> None:

@@ -274,16 +274,16 @@ class DistributedLoads:
         return [int(block.nodes[row, a]) for a in local], b
 
     def _edges(self, faces: Ints) -> tuple[Ints, Floats, Floats]:
-        """Nodes (the third is the first on straight edges), thickness and bulge of edges."""
+        """Nodes (the third is the first on straight edges), their thickness, bulge of edges."""
         nodes, thickness, alpha = [], [], []
         for cell, side in faces.tolist():
             ends, b = self._ends(cell, side)
             section = self.system.blocks[b].section
             nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
-            thickness.append(section.thickness)
+            thickness.append(section.thickness_at(np.array(nodes[-1])))
             alpha.append(elements.find(section.element).alpha_b)
         table = np.asarray(nodes, np.int64).reshape(-1, 3)
-        return table, np.asarray(thickness, np.float64), np.asarray(alpha, np.float64)
+        return table, np.array(thickness).reshape(-1, 3), np.asarray(alpha, np.float64)
 
     def _core(self, faces: Ints) -> tuple[_core.EdgeLoads, bool]:
         """The core's edges, and whether some of them bulge with rotations."""
@@ -298,13 +298,15 @@ class DistributedLoads:
         for cell, side in faces.tolist():
             ends, b = self._ends(cell, side)
             x = self.system.model.mesh.points[ends]
+            thickness = self.system.blocks[b].section.thickness_at(np.array(ends))
             if len(ends) == 2:
-                length = float(np.hypot(*(x[1] - x[0])))
-            else:
-                r = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
-                d = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
-                length = float(np.hypot(d[:, 0], d[:, 1]) @ np.array([5.0, 8.0, 5.0]) / 9.0)
-            area += length * self.system.blocks[b].section.thickness
+                area += float(np.hypot(*(x[1] - x[0]))) * float(thickness.mean())
+                continue
+            r = np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
+            d = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
+            shape = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
+            weight = np.array([5.0, 8.0, 5.0]) / 9.0 * (shape @ thickness)
+            area += float(np.hypot(d[:, 0], d[:, 1]) @ weight)
         return area
 
 

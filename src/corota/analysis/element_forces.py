@@ -113,6 +113,7 @@ def _of_stress(
     modulus = float(getattr(section.material, "E", 0.0)) or float(np.abs(stress).max()) or 1.0
     tangent = modulus * np.array([[1.1, 0.3, 0.0], [0.3, 1.1, 0.0], [0.0, 0.0, 0.4]])
     given = core_input(block) | {"law": "given", "parameters": tangent.ravel().tolist()}
+    given["by_temperature"] = []
     problem, u = _alone(model, block, given, frame)
     c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
     xx, yy, xy = stress[..., 0], stress[..., 1], stress[..., 3]

@@ -38,7 +38,7 @@ TERMS = {
     "ALLCL": "energy stored by contact pressure laws",
     "ALLPW": "work of contact forces in central differences less ALLFD and ALLCL",
     "ALLWK": "work of loads and of moving supports",
-    "ALLTH": "work of thermal expansion, done by changes of temperature",
+    "ALLTH": "work of thermal expansion and of moduli that follow the temperature",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }
 #: Names of the energy-conserving scheme in Python and decks.
@@ -169,7 +169,7 @@ class Energies:
     def _negligible(self) -> float:
         """Energy of rounding size: of forces, or of strains canceled by free expansion."""
         free, scales, length = self.system.free, self.system.scales, self.system.length
-        expansion = free.largest(free.start - free.now) * length if free.expands else 0.0
+        expansion = free.largest(free.start - free.now) * length if free.responds else 0.0
         rounding = scales.nothing * max(scales.moved, NEGLIGIBLE_ENERGY * length)
         return max(rounding, NEGLIGIBLE_ENERGY * scales.stiffest * expansion**2)
 

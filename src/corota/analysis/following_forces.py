@@ -40,7 +40,8 @@ class FollowingTraction:
     system : NumberedModel
     nodes : ndarray, shape (n, 3)
         Of each edge, the third repeated from the first where it is straight.
-    thickness : ndarray, shape (n,)
+    thickness : ndarray, shape (n, 3)
+        Of these nodes.
     value : tuple of float
         A vector on the reference [force/length^2], or one number: a shear along the edges, with
         the element on the left.
@@ -74,7 +75,7 @@ class FollowingTraction:
             if size != 0.0:
                 self.bulged.append((size, Pressure(system, edges)))
             across[mask] = 0.0
-        weight = thickness[:, None] * _WEIGHTS
+        weight = np.einsum("ega,ea->eg", shape, thickness) * _WEIGHTS
         #: Force at node a per position of node b, shape (n, 3, 3, 2, 2).
         self.matrix = np.einsum(
             "eg,ega,egb,egij->eabij",

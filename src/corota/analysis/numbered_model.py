@@ -18,7 +18,7 @@ from corota.analysis.linear.matrix import AssembledPattern
 from corota.analysis.linear.system import LinearSystem
 from corota.analysis.memory import require_model
 from corota.analysis.terms.moving_mass import MovingMass
-from corota.analysis.terms.thermal import FreeStrains
+from corota.analysis.terms.thermal import FreeStrains, start_temperatures
 from corota.errors import ModelError
 from corota.model import elements
 
@@ -61,8 +61,9 @@ class NumberedModel:
         self.mass = MovingMass()
         self.linear = LinearSystem(solver)
         mesh = model.mesh
-        inputs = [core_input(b) for b in self.blocks]
         check_shapes(model, self.blocks)
+        start = start_temperatures(model)
+        inputs = [core_input(b, start) for b in self.blocks]
         require_model(self.blocks, mesh.n_nodes)
         carried = np.zeros(mesh.n_nodes, np.int64)
         for b in self.blocks:

@@ -48,7 +48,8 @@ def recover(
         if (work := own["values"].get("PWORK")) is not None:
             plastic += float(np.einsum("ep,ep->", work, own["volume"]))
         if "heat" in own:
-            system.free.record(index, own["heat"], own["volume"])
+            values = own["values"]
+            system.free.record(index, own["heat"], values["S"][..., 2], own["volume"])
         stored, lost = user.energies(index, own["values"]["ENER"], own["volume"])
         energy, plastic = energy + stored, plastic + lost
         section, strain = block.section, float(own["largest_strain"])

@@ -14,6 +14,7 @@ from corota.mesh.data import EDGES
 from corota.mesh.parts import cells_of, part_of_cells
 from corota.model import elements
 from corota.model.local_strain import ADVICE
+from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic
 
 if TYPE_CHECKING:
@@ -72,6 +73,8 @@ def _locking(mesh: Mesh, section: Section, cells: Ints, steps: list[Step]) -> li
     found = []
     name = section.element
     material = section.material
+    if isinstance(material, MaterialTable):
+        material = max((m for _, m in material.table), key=lambda m: getattr(m, "nu", 0.0))
     element = elements.find(name)
     if (
         section.plane == "strain"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic
+from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,8 +39,10 @@ def check_units(model: Model) -> list[Diagnostic]:
     found: dict[str, Diagnostic] = {}
     for section in model.sections:
         material = section.material
+        if isinstance(material, MaterialTable):
+            material = material.first
         modulus = young(material)
-        name = material.name or "a material"
+        name = section.material.name or "a material"
         if modulus <= 0.0 or name in found:
             continue
         for text, hint in _doubts(model.unit_system, material, modulus, size):

@@ -26,6 +26,14 @@ def cells_of(mesh: Mesh, where: str | Ints) -> Ints:
     return np.zeros(0, np.int64)
 
 
+def nodes_of_cells(mesh: Mesh, cells: Ints) -> Ints:
+    """Nodes of cells, each once, rising."""
+    nodes, owner = _incidence(mesh)
+    inside = np.zeros(mesh.n_cells, bool)
+    inside[cells] = True
+    return np.unique(nodes[inside[owner]])
+
+
 def part_of_cells(mesh: Mesh) -> Ints:
     """Number the parts connected by common nodes; shape (n_cells,)."""
     nodes, cells = _incidence(mesh)

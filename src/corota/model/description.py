@@ -13,6 +13,7 @@ from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.model.contact import RigidCurve
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, applied
+from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises, Voce
 from corota.model.summary import joint_lines
 
@@ -109,6 +110,8 @@ def _section(section: Section, material: int, model: Model) -> dict[str, Any]:
         "thickness": section.thickness,
         "local strain": section.local_strain,
     }
+    if section.nodal_thickness is not None:
+        found["thickness of nodes"] = [float(t) for t in section.nodal_thickness]
     if section.orientation:
         found["orientation"] = section.orientation
     if section.mean_dilatation:
@@ -126,6 +129,8 @@ def _section(section: Section, material: int, model: Model) -> dict[str, Any]:
 
 def _material(material: Material) -> dict[str, Any]:
     """Constants by name, and the curve of hardening where there is one."""
+    if isinstance(material, MaterialTable):
+        return _table(material)
     constants: dict[str, Any] = {}
     for item in fields(material):
         value = getattr(material, item.name)
@@ -145,6 +150,30 @@ def _material(material: Material) -> dict[str, Any]:
     }
     if isinstance(material, Mises):
         found["curve"] = hardening(material)
+    return found
+
+
+def _table(material: MaterialTable) -> dict[str, Any]:
+    """The same of a table: constants that change with all their values, a curve a temperature."""
+    rows = [(t, _material(m)) for t, m in material.table]
+    constants: dict[str, Any] = {}
+    for name in rows[0][1]["constants"]:
+        values = [row["constants"].get(name, 0.0) for _, row in rows]
+        same = all(v == values[0] for v in values)
+        shown = ", ".join(f"{v} at {t:g}" for v, (t, _) in zip(values, rows, strict=True))
+        constants[name] = values[0] if same else shown
+    found: dict[str, Any] = {
+        "name": material.name,
+        "type": f"{type(material.first).__name__} by temperature",
+        "constants": constants,
+    }
+    if all("curve" in row for _, row in rows):
+        lines = {
+            f"{name} at {t:g}": line
+            for t, row in rows
+            for name, line in row["curve"]["lines"].items()
+        }
+        found["curve"] = {"x": "plastic strain", "y": "stress", "lines": lines}
     return found
 
 

@@ -18,12 +18,14 @@ if TYPE_CHECKING:
     from corota.errors import Location
 
 
-def isotropic_compliance(E: float, nu: float) -> NDArray[np.float64]:
-    """Compliance of isotropic elasticity, rows xx, yy, zz, xy, shape (4, 4)."""
-    s = np.full((4, 4), -nu / E)
-    np.fill_diagonal(s, 1.0 / E)
-    s[3, :] = s[:, 3] = 0.0
-    s[3, 3] = 2.0 * (1.0 + nu) / E
+def isotropic_compliance(E: ArrayLike, nu: ArrayLike) -> NDArray[np.float64]:
+    """Compliance of isotropic elasticity, rows xx, yy, zz, xy, shape (..., 4, 4)."""
+    young, poisson = np.asarray(E, dtype=np.float64), np.asarray(nu, dtype=np.float64)
+    s = np.zeros((*young.shape, 4, 4))
+    s[..., :3, :3] = (-poisson / young)[..., None, None]
+    for i in range(3):
+        s[..., i, i] = 1.0 / young
+    s[..., 3, 3] = 2.0 * (1.0 + poisson) / young
     return s
 
 
@@ -140,6 +142,11 @@ class Material(Brief):
     oriented = False
     #: Whether trusses and beams support it.
     for_lines = False
+    #: Whether its constants follow the temperature.
+    follows_temperature = False
+    #: How many of its first parameters make the elastic or complementary energy; 0 for a law whose
+    #: constants nobody knows.
+    elastic_constants = 0
 
     def compliance(self) -> NDArray[np.float64]:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).
@@ -151,6 +158,19 @@ class Material(Brief):
             "strain or initial stress; include them in the function itself",
             self.where,
         )
+
+    @staticmethod
+    def compliance_of(constants: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Elastic compliance (..., 4, 4) of the first parameters (..., elastic_constants)."""
+        return isotropic_compliance(constants[..., 0], constants[..., 1])
+
+    @classmethod
+    def complementary_of(
+        cls, constants: NDArray[np.float64], stress: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Complementary energy by volume of stresses (..., 4) along the material axes."""
+        strain = np.einsum("...ij,...j->...i", cls.compliance_of(constants), stress)
+        return 0.5 * np.asarray(np.sum(strain * stress, axis=-1))
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """Numbers passed to the core, in the order documented in the law's file.
@@ -204,6 +224,7 @@ class Elastic(Material):
     law = "elastic"
     linear, remembers = True, False
     for_lines = True
+    elastic_constants = 2
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)
@@ -251,6 +272,7 @@ class Orthotropic(Material):
 
     law = "orthotropic"
     linear, remembers, oriented = True, False, True
+    elastic_constants = 7
 
     def __post_init__(self) -> None:
         for name in ("E1", "E2", "E3", "G12"):
@@ -272,10 +294,17 @@ class Orthotropic(Material):
         self._check_motion()
 
     def compliance(self) -> NDArray[np.float64]:
-        s = np.diag([1.0 / self.E1, 1.0 / self.E2, 1.0 / self.E3, 1.0 / self.G12])
-        s[0, 1] = s[1, 0] = -self.nu12 / self.E1
-        s[0, 2] = s[2, 0] = -self.nu13 / self.E1
-        s[1, 2] = s[2, 1] = -self.nu23 / self.E2
+        return self.compliance_of(np.array(self.parameters()[:7]))
+
+    @staticmethod
+    def compliance_of(constants: NDArray[np.float64]) -> NDArray[np.float64]:
+        e1, e2, e3, nu12, nu13, nu23, g12 = np.moveaxis(constants, -1, 0)
+        s = np.zeros((*e1.shape, 4, 4))
+        for i, modulus in enumerate((e1, e2, e3, g12)):
+            s[..., i, i] = 1.0 / modulus
+        s[..., 0, 1] = s[..., 1, 0] = -nu12 / e1
+        s[..., 0, 2] = s[..., 2, 0] = -nu13 / e1
+        s[..., 1, 2] = s[..., 2, 1] = -nu23 / e2
         return s
 
     def parameters(self, orientation: float = 0.0) -> list[float]:

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
@@ -171,7 +171,7 @@ class Model(Loading, LineSections, InitialFields):
         *,
         element: str,
         material: Material,
-        thickness: float = 1.0,
+        thickness: float | ArrayLike = 1.0,
         plane: Literal["stress", "strain"] = "stress",
         local_strain: LocalStrain = "linear",
         orientation: float = 0.0,
@@ -188,8 +188,9 @@ class Model(Loading, LineSections, InitialFields):
             One of ``corota.model.elements.names()``; must fit the cells' shape.
         material : Material
             Copied; later changes have no effect.
-        thickness : float, optional
-            Out-of-plane thickness [length].
+        thickness : float or array_like, shape (n_nodes,), optional
+            Out-of-plane thickness [length], or that of every node of the mesh; between the nodes
+            it follows the shape functions.
         plane : {"stress", "strain"}, optional
         local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
             ``logarithmic`` for plastic flow or local strains above a few percent; see
@@ -221,7 +222,7 @@ class Model(Loading, LineSections, InitialFields):
                 where,
                 element,
                 deepcopy(material),
-                thickness,
+                cast("float", thickness),
                 plane,
                 local_strain,
                 orientation,

@@ -106,6 +106,7 @@ class Mises(LawOfTheCore):
     rows: Sequence[Location] = field(default=(), kw_only=True, compare=False, repr=False)
 
     law = "mises"
+    elastic_constants = 2
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)

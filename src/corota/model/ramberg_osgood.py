@@ -69,6 +69,7 @@ class RambergOsgood(LawOfTheCore):
 
     law = "ramberg_osgood"
     remembers = False
+    elastic_constants = 5
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)
@@ -97,6 +98,17 @@ class RambergOsgood(LawOfTheCore):
 
     def compliance(self) -> NDArray[np.float64]:
         return isotropic_compliance(self.E, self.nu)
+
+    @classmethod
+    def complementary_of(
+        cls, constants: NDArray[np.float64], stress: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        E, _, yield_stress, exponent, offset = np.moveaxis(constants, -1, 0)
+        xx, yy, zz, xy = np.moveaxis(stress, -1, 0)
+        q2 = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2
+        power = offset * (np.sqrt(q2) / yield_stress) ** (exponent - 1.0)
+        out: NDArray[np.float64] = power * q2 / (E * (exponent + 1.0))
+        return out + super().complementary_of(constants, stress)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
         """``E, nu, yield_stress, exponent, offset``."""

@@ -10,17 +10,22 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError, Location, number
+from corota.mesh.parts import cells_of
 from corota.model import elements
 from corota.model.local_strain import local_strain
 from corota.model.materials import Material
 from corota.names import choose
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
+    from corota.mesh import Mesh
     from corota.model.local_strain import LocalStrain
 
     Ints = NDArray[np.int64]
+    Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -34,8 +39,9 @@ class Section(Brief):
     element : str
         Element name (``Q4I``, ``Q4D``, ``OPT``, ...).
     material : Material
-    thickness : float
-        Out-of-plane thickness [length], > 0.
+    thickness : float or array_like, shape (n_nodes,)
+        Out-of-plane thickness [length], > 0; or that of every node of the mesh, interpolated
+        with the shape functions of the elements. The attribute is then the mean.
     plane : {"stress", "strain"}
     local_strain : {"linear", "logarithmic", "green_lagrange"}
         Measure of the local displacement gradient. ``linear`` is the classical co-rotational one,
@@ -69,6 +75,8 @@ class Section(Brief):
     beta0: float | None = field(default=None, kw_only=True)
     profile: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), kw_only=True)
     table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
+    #: Thickness of the nodes, where it is given for each.
+    nodal_thickness: Floats | None = field(default=None, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         self.element = elements.find(self.element, self.where).name
@@ -102,6 +110,8 @@ class Section(Brief):
                 "with increasing elongation",
                 self.where,
             )
+        if np.ndim(self.thickness):
+            self._set_nodal_thickness()
         self.thickness = number(self.thickness, "the thickness", self.where)
         self.orientation = number(self.orientation, "the orientation", self.where)
         if not self.thickness > 0.0:
@@ -139,3 +149,32 @@ class Section(Brief):
                 f"{', '.join(elements.weighted_names())} has this weight, and it must be > 0",
                 self.where,
             )
+
+    def _set_nodal_thickness(self) -> None:
+        given = np.array(self.thickness, dtype=np.float64)
+        fact = elements.find(self.element)
+        if given.ndim != 1 or fact.line:
+            raise InputError(
+                "a thickness by node is an array (n_nodes,) for planar elements, not "
+                f"{given.shape} for {self.element}",
+                self.where,
+            )
+        known = given[np.isfinite(given) & (given > 0.0)]
+        self.nodal_thickness = given
+        # Of nodes that belong to other sections there may be none.
+        self.thickness = float(known.mean()) if len(known) else 0.0
+
+    def thickness_at(self, nodes: Ints) -> Floats:
+        """Thickness of nodes [length], of the shape of `nodes`."""
+        if self.nodal_thickness is None:
+            return np.full(np.shape(nodes), self.thickness)
+        return np.asarray(self.nodal_thickness[nodes])
+
+
+def thickness_at(mesh: Mesh, sections: Iterable[Section], cells: Ints, nodes: Ints) -> Floats:
+    """Thickness of nodes (n, k) [length], as the sections of cells (n,) have it; 1 without one."""
+    found = np.ones(nodes.shape)
+    for section in sections:
+        mine = np.isin(cells, cells_of(mesh, section.cells))
+        found[mine] = section.thickness_at(nodes[mine])
+    return found

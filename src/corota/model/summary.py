@@ -5,13 +5,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from corota.model.constraints import Coupling
+from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from corota.model.loads import Fixed
+    from corota.model.materials import Material
     from corota.model.model import Model
+    from corota.model.sections import Section
 
 
 def model_lines(model: Model) -> list[str]:
@@ -39,7 +44,7 @@ def model_lines(model: Model) -> list[str]:
         material = section.material.name or type(section.material).__name__
         lines.append(
             f"  {where or 'all'}: {section.element}, plane {section.plane}, {material}, "
-            f"thickness {section.thickness:g}"
+            f"thickness {_thickness(section)}"
         )
     lines += material_lines(model) + joint_lines(model) + support_lines(model, model.supports)
     for number, step in enumerate(model.steps, 1):
@@ -58,27 +63,36 @@ def model_lines(model: Model) -> list[str]:
 def material_lines(model: Model) -> list[str]:
     """Materials with their constants and curves."""
     lines = []
-    for material in {id(s.material): s.material for s in model.sections}.values():
-        shown = [type(material).__name__]
-        for name in ("E", "nu", "E1", "E2", "nu12", "G12", "rho"):
-            value = getattr(material, name, None)
-            if isinstance(value, (int, float)) and not (name == "rho" and value == 0.0):
-                shown.append(f"{name} {value:g}")
-        curve = getattr(material, "yield_curve", None)
-        if curve is not None:
-            first, last = curve[0], curve[-1]
-            shown.append(
-                f"yield stress {first[0]:g} to {last[0]:g} at plastic strain {last[1]:g} "
-                f"({len(curve)} points)"
-            )
-        elif getattr(material, "yield_stress", None) is not None:
-            shown.append(f"yield stress {material.yield_stress:g}")  # type: ignore[attr-defined]
-        for name in ("kinematic", "chaboche"):
-            value = getattr(material, name, None)
-            if value:
-                shown.append(f"{name} {value if isinstance(value, float) else len(value)}")
-        lines.append(f"  {material.name or 'unnamed'}: {', '.join(shown)}")
+    for whole in {id(s.material): s.material for s in model.sections}.values():
+        rows = whole.table if isinstance(whole, MaterialTable) else [(None, whole)]
+        for temperature, material in rows:
+            at = "" if temperature is None else f" at {temperature:g}"
+            name = f"{whole.name or 'unnamed'}{at}"
+            lines.append(f"  {name}: {', '.join(_constants(material))}")
     return ["materials", *lines] if lines else []
+
+
+def _constants(material: Material) -> list[str]:
+    """Class of a material, its constants and its curve."""
+    shown = [type(material).__name__]
+    for name in ("E", "nu", "E1", "E2", "nu12", "G12", "rho"):
+        value = getattr(material, name, None)
+        if isinstance(value, (int, float)) and not (name == "rho" and value == 0.0):
+            shown.append(f"{name} {value:g}")
+    curve = getattr(material, "yield_curve", None)
+    if curve is not None:
+        first, last = curve[0], curve[-1]
+        shown.append(
+            f"yield stress {first[0]:g} to {last[0]:g} at plastic strain {last[1]:g} "
+            f"({len(curve)} points)"
+        )
+    elif getattr(material, "yield_stress", None) is not None:
+        shown.append(f"yield stress {material.yield_stress:g}")  # type: ignore[attr-defined]
+    for name in ("kinematic", "chaboche"):
+        value = getattr(material, name, None)
+        if value:
+            shown.append(f"{name} {value if isinstance(value, float) else len(value)}")
+    return shown
 
 
 def joint_lines(model: Model) -> list[str]:
@@ -120,6 +134,14 @@ def support_lines(model: Model, supports: Iterable[Fixed]) -> list[str]:
         found.setdefault(where, []).append(f"{direction} {support.value:g}{amplitude}")
     lines = [f"  support {where}: {', '.join(what)}" for where, what in list(found.items())[:10]]
     return lines + ([f"  and {len(found) - 10} more supports"] if len(found) > 10 else [])
+
+
+def _thickness(section: Section) -> str:
+    nodal = section.nodal_thickness
+    if nodal is None:
+        return f"{section.thickness:g}"
+    known = nodal[np.isfinite(nodal)]
+    return f"{known.min(initial=np.inf):g} to {known.max(initial=0.0):g}"
 
 
 def _named(where: object) -> str:

@@ -251,7 +251,7 @@ class Cut:
             ]
         )
         length = np.concatenate([c.length for c in self.crossings])
-        weight = length * np.concatenate([_thickness(self.results, c) for c in self.crossings])
+        weight = length * np.concatenate([_depth(self.results, c) for c in self.crossings])
         if weight.sum() <= 0.0:
             weight = np.ones(len(length))
         center = (ends.mean(axis=1) * weight[:, None]).sum(axis=0) / weight.sum()
@@ -399,14 +399,15 @@ def _points(
     """Natural points (p, 2), weights with the thickness (n, p), stress (n, p, 4) of cells."""
     if "S11" not in results.variables(index):
         raise InputError("the results hold no stress; section forces need S")
-    depth = _thickness(results, crossing)[:, None]
+    depth = _thickness(results, crossing, crossing.nodes)
     corners = natural_nodes(crossing.nodes.shape[1])
     for block in state.fields:
         rows = np.flatnonzero(np.isin(block.cells, crossing.cells))
         if len(rows) == len(crossing.cells):
             at = block.shape @ corners
             if len(at) in (1, 3, 4, 9):
-                return at, depth * _weights(crossing.kind, at), block.values["S"][rows]
+                here = depth @ shape_functions(crossing.kind, at).T
+                return at, here * _weights(crossing.kind, at), block.values["S"][rows]
     # The mean of each cell, and the slope of the averages at its nodes.
     at = _gauss(crossing.kind)
     weight = _weights(crossing.kind, at)
@@ -421,7 +422,7 @@ def _points(
             values = nodal[crossing.nodes[mine]] @ shape.T
             middle = (values * weight).sum(axis=1) / weight.sum()
             stress[mine, :, column] = values + (mean[mine] - middle)[:, None]
-    return at, depth * weight, stress
+    return at, (depth @ shape.T) * weight, stress
 
 
 def _gauss(kind: str) -> Floats:
@@ -466,28 +467,46 @@ def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> NDArray[np.bool_]:
     return mask
 
 
-def _thickness(results: Results, crossing: _Crossing) -> Floats:
-    """Thickness of cells; lines have none."""
+def _depth(results: Results, crossing: _Crossing) -> Floats:
+    """Mean thickness of the part of each cell that is cut, shape (n,)."""
+    ends = crossing.ends
+    first, last = (_thickness(results, crossing, ends[..., i]) for i in (0, 1))
+    return np.asarray((first * (1.0 - crossing.share) + last * crossing.share).mean(axis=1))
+
+
+def _thickness(results: Results, crossing: _Crossing, nodes: Ints) -> Floats:
+    """Thickness of nodes of the cells, of the shape of `nodes` (n, k); lines have none."""
     if crossing.kind == "line2":
-        return np.zeros(len(crossing.cells))
+        return np.zeros(nodes.shape)
     mesh = results.mesh
-    depth = np.full(mesh.n_cells, np.nan)
-    sections: list[tuple[Any, float]] = [
-        (s.cells, s.thickness) for s in results.model.sections if not s.profile[0]
+    owner = np.full(mesh.n_cells, -1)
+    sections: list[tuple[Any, Any]] = [
+        (s.cells, s.thickness if s.nodal_thickness is None else s.nodal_thickness)
+        for s in results.model.sections
+        if not s.profile[0]
     ]
     if not sections:
         told = getattr(results, "description", {}).get("sections", [])
-        sections = [(s["where"], s["thickness"]) for s in told if not s["line"]]
-    for where, value in sections:
+        sections = [
+            (s["where"], np.array(s.get("thickness of nodes", s["thickness"])))
+            for s in told
+            if not s["line"]
+        ]
+    alike = len({np.asarray(t).tobytes() for _, t in sections}) == 1
+    for number, (where, _) in enumerate(sections):
         if not isinstance(where, str):
-            depth[np.asarray(where)] = value
+            owner[np.asarray(where)] = number
         elif where in mesh.cell_sets:
-            depth[mesh.cell_sets[where]] = value
-        elif len({t for _, t in sections}) == 1 or where == "all":
-            depth[:] = value
-    found = depth[crossing.cells]
-    if np.isnan(found).any():
+            owner[mesh.cell_sets[where]] = number
+        elif alike or where == "all":
+            owner[:] = number
+    mine = owner[crossing.cells]
+    if (mine < 0).any():
         raise InputError("the file does not contain the thickness of the elements at the cut")
+    found = np.empty(nodes.shape)
+    for number in np.unique(mine):
+        own, value = mine == number, np.asarray(sections[number][1], dtype=np.float64)
+        found[own] = value[nodes[own]] if value.ndim else value
     return found
 
 

@@ -434,7 +434,13 @@ def section_of_cells(model: Model) -> Ints:
     group = np.full(model.mesh.n_cells, -1, dtype=np.int64)
     kinds: list[tuple[object, ...]] = []
     for section in model.sections:
-        key = (section.material, section.thickness, section.plane, section.orientation)
+        nodal = section.nodal_thickness
+        key = (
+            section.material,
+            section.thickness if nodal is None else nodal.tobytes(),
+            section.plane,
+            section.orientation,
+        )
         if key not in kinds:
             kinds.append(key)
         where = section.cells

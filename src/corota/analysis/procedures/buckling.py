@@ -87,7 +87,7 @@ def buckle_step(
 def _check_unloaded(system: System, step: Buckle) -> None:
     """Refuse to leave out a preload that has changed the material."""
     linear = all(block.section.material.linear for block in system.blocks)
-    heated = system.free.expands and not system.free.follows(system.free.start)
+    heated = system.free.responds and not system.free.follows(system.free.start)
     if heated or not linear:
         raise UnsupportedError(
             "buckling without the preload needs elastic material at its initial temperature; "

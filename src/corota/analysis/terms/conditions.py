@@ -392,11 +392,12 @@ class Conditions(Term):
             raise ModelError(
                 "a step that follows a path needs loads that grow (ramp=True, AMPLITUDE=RAMP)"
             )
-        linear = all(block.section.material.linear for block in self.system.blocks)
+        materials = [block.section.material for block in self.system.blocks]
+        linear = all(m.linear and not m.follows_temperature for m in materials)
         if self.heating.any() and not linear:
             raise ModelError(
-                "temperatures that change in a step that follows a path need elastic material; "
-                "heat in a static step before"
+                "temperatures that change in a step that follows a path need elastic material "
+                "with constants that do not depend on them; heat in a static step before"
             )
         if np.any(self.fading):
             dof = int(np.flatnonzero(self.fading)[0])
@@ -555,7 +556,7 @@ class Conditions(Term):
         )
 
     def _heat(self, item: Temperature) -> None:
-        self.system.free.require_expansion(item.where)
+        self.system.free.require_response(item.where)
         amplitude = self._amplitude(item.amplitude, item.where)
         every = isinstance(item.nodes, str) and not item.nodes
         nodes = np.arange(len(self.temperature.end)) if every else self._nodes(item.nodes)

@@ -122,13 +122,13 @@ class Elements(Term):
     def heat(self, time: float) -> None:
         """Give the elements the thermal strain of a step time."""
         free = self.system.free
-        if free.expands:
+        if free.responds:
             free.apply(self.conditions.temperatures(time))
 
     def holds(self, time: float) -> bool:
         """Whether the elements have the temperatures of a step time already."""
         free = self.system.free
-        return not free.expands or free.follows(self.conditions.temperatures(time))
+        return not free.responds or free.follows(self.conditions.temperatures(time))
 
     # -- committed state ---------------------------------------------------------------
 

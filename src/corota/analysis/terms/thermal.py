@@ -20,6 +20,7 @@ import numpy as np
 
 from corota.errors import ModelError
 from corota.model import elements
+from corota.model.material_table import MaterialTable
 from corota.model.materials import Expansion
 
 if TYPE_CHECKING:
@@ -45,15 +46,32 @@ class _Block:
     nodes: Ints
     shape: Floats  # (p, k)
     expansion: Expansion
-    turn: Floats  # strain along the axes 1, 2, 3 to rows xx, yy, zz, xy
-    compliance: Floats  # (4, 4), rows xx, yy, zz, xy
+    turn: Floats  # (4, 4), strain along the material axes to rows xx, yy, zz, xy
+    constant: Floats | None  # compliance, (4, 4), rows xx, yy, zz, xy; of tables none
+    table: MaterialTable | None
     line: bool
     strain: bool  # plane strain
     spherical: bool
     stress: Floats | None = None  # initial, (n, p, 4)
-    start: Floats = field(init=False)
-    rows: Floats = field(init=False)  # strains that the core has, (n, p, 4)
-    last: tuple[Floats, Floats] | None = None  # rows of the last frame, and forces on them
+    start: Floats = field(init=False)  # temperatures at the points, (n, p), and now
+    now: Floats = field(init=False)
+    at_start: Floats | None = None  # compliance, where there is an initial stress
+    free: Floats = field(init=False)  # free strains
+    rows: Floats = field(init=False)  # what the core has of them, (n, p, 4)
+    # Strains of the last frame, forces on them, temperatures.
+    last: tuple[Floats, Floats, Floats] | None = None
+
+    @property
+    def responds(self) -> bool:
+        return bool(self.expansion) or self.table is not None
+
+    def compliance(self, temperature: Floats) -> Floats:
+        """At temperatures (n, p): shape (4, 4), or (n, p, 4, 4) where it depends on them."""
+        if self.constant is not None:
+            return self.constant
+        assert self.table is not None
+        turned: Floats = self.turn @ self.table.compliances(temperature) @ self.turn.T
+        return turned
 
 
 class FreeStrains:
@@ -73,23 +91,13 @@ class FreeStrains:
         Temperature in the core.
     offset : ndarray or None
         Added to every temperature while a procedure evaluates neighboring states.
-    expands : bool
-        Whether any material expands.
+    responds : bool
+        Whether any material expands or has constants that follow the temperature.
     """
 
     def __init__(self, core: Any, model: Model, blocks: Sequence[BlockOfCells]) -> None:
         self.core, self.model = core, model
-        self.start = np.zeros(model.mesh.n_nodes)
-        for item in model.initial_temperatures:
-            nodes = _nodes(model, item.nodes)
-            try:
-                self.start[nodes] = item.value
-            except ValueError:
-                raise ModelError(
-                    f"{np.size(item.value)} initial temperatures for "
-                    f"{len(self.start[nodes])} nodes",
-                    item.where,
-                ) from None
+        self.start = start_temperatures(model)
         self.offset: Floats | None = None
         #: Work of changing thermal strain so far [force*length].
         self.work = 0.0
@@ -97,12 +105,15 @@ class FreeStrains:
         self._blocks: list[_Block] = []
         for index, block in enumerate(blocks):
             expansion = Expansion.of(block.section.material.expansion)
-            if expansion or stresses[index] is not None:
-                self._blocks.append(_block(core, index, block, expansion, stresses[index]))
-        self.expands = any(block.expansion for block in self._blocks)
+            own = _block(core, index, block, expansion, stresses[index])
+            if expansion or own.stress is not None or own.table is not None:
+                own.start = self.start[own.nodes] @ own.shape.T
+                if own.stress is not None:
+                    own.at_start = own.compliance(own.start)
+                self._blocks.append(own)
+        self.responds = any(block.responds for block in self._blocks)
         self.now = self.start.copy()
         for own in self._blocks:
-            own.start = self.start[own.nodes] @ own.shape.T
             self._set(own, self.start)
 
     def _stresses(self, blocks: Sequence[BlockOfCells]) -> list[Floats | None]:
@@ -150,23 +161,24 @@ class FreeStrains:
                     )
         return found
 
-    def require_expansion(self, where: Any) -> None:
+    def require_response(self, where: Any) -> None:
         """Refuse temperatures without effect.
 
         Raises
         ------
         ModelError
         """
-        if not self.expands:
+        if not self.responds:
             raise ModelError(
-                "temperatures without effect: no material has a coefficient of thermal expansion; "
-                "give it one (expansion=, *EXPANSION)",
+                "temperatures without effect: no material has a coefficient of thermal expansion "
+                "or constants that follow the temperature; give it one (expansion=, *EXPANSION) "
+                "or several sets of constants (MaterialTable)",
                 where,
             )
 
     def follows(self, temperature: Floats) -> bool:
         """Whether the core has these temperatures already."""
-        return not self.expands or np.array_equal(self._wanted(temperature), self.now)
+        return not self.responds or np.array_equal(self._wanted(temperature), self.now)
 
     def apply(self, temperature: Floats) -> None:
         """Set the strains of the core from nodal temperatures, shape (n_nodes,)."""
@@ -174,7 +186,7 @@ class FreeStrains:
             return
         self.now = self._wanted(temperature)
         for block in self._blocks:
-            if block.expansion:
+            if block.responds:
                 self._set(block, self.now)
 
     def largest(self, heating: Floats) -> float:
@@ -192,15 +204,21 @@ class FreeStrains:
         return temperature + self.offset if self.offset is not None else temperature.copy()
 
     def _set(self, block: _Block, temperature: Floats) -> None:
-        at_points = temperature[block.nodes] @ block.shape.T
-        free = block.expansion.strain(at_points, block.start) @ block.turn.T
-        if block.stress is not None:
-            free = free - block.stress @ block.compliance
-        block.rows = _rows(block, free)
+        block.now = temperature[block.nodes] @ block.shape.T
+        if block.table is not None:
+            try:
+                self.core.set_temperatures(block.index, block.now.ravel())
+            except ValueError as error:
+                raise ModelError(str(error), block.table.where) from None
+        block.free = block.expansion.strain(block.now, block.start) @ block.turn[:, :3].T
+        if block.stress is not None and block.at_start is not None:
+            # What the initial stress was as a strain stays.
+            block.free -= np.einsum("...ij,...j->...i", block.at_start, block.stress)
+        block.rows = _rows(block, block.free, block.compliance(block.now))
         self.core.set_initial(block.index, block.rows.ravel())
 
-    def record(self, index: int, force: Floats, volume: Floats) -> None:
-        """Add the work that the strains have done since the last call, by the trapezoidal rule.
+    def record(self, index: int, force: Floats, stress_zz: Floats, volume: Floats) -> None:
+        """Add the work that temperatures have done since the last call, by the trapezoidal rule.
 
         Parameters
         ----------
@@ -208,18 +226,70 @@ class FreeStrains:
             Block.
         force : ndarray, shape (n, p, 4)
             Stress of the elements that is conjugate to the strains, in their rows [stress].
+        stress_zz : ndarray, shape (n, p)
+            Stress through the thickness.
         volume : ndarray, shape (n, p)
         """
         block = next(b for b in self._blocks if b.index == index)
+        if block.table is not None:
+            self._record_table(block, block.table, force, stress_zz, volume)
+            return
         if block.last is not None:
-            rows, before = block.last
+            rows, before, _ = block.last
             moved = block.rows - rows
             self.work -= 0.5 * float(np.einsum("epr,epr,ep->", force + before, moved, volume))
-        block.last = (block.rows, force)
+        block.last = (block.rows, force, block.now)
+
+    def _record_table(
+        self, block: _Block, table: MaterialTable, force: Floats, stress_zz: Floats, volume: Floats
+    ) -> None:
+        """The same where the law follows the temperature.
+
+        At a fixed elastic strain the energy changes by what the complementary energy loses at a
+        fixed stress.
+        """
+        stress = np.zeros(force.shape)
+        stress[..., IN], stress[..., ZZ] = force[..., :3], stress_zz
+        if block.line:
+            stress[..., 1:] = 0.0
+        if block.last is not None:
+            free, before, at = block.last
+            moved = np.einsum("epr,epr->ep", stress + before, block.free - free)
+            for s in (before, stress):
+                # The transposed map of strains turns a stress to the material axes.
+                own = s @ block.turn
+                gained = table.complementary_energy(block.now, own)
+                moved += gained - table.complementary_energy(at, own)
+            self.work -= 0.5 * float(np.einsum("ep,ep->", moved, volume))
+        block.last = (block.free, stress, block.now)
 
 
-def _rows(block: _Block, free: Floats) -> Floats:
-    """Values for the core from free strains in rows xx, yy, zz, xy, shape (n, p, 4)."""
+def start_temperatures(model: Model) -> Floats:
+    """Initial temperatures of the nodes, shape (n_nodes,).
+
+    Raises
+    ------
+    ModelError
+        If there are more or fewer values than nodes.
+    """
+    start = np.zeros(model.mesh.n_nodes)
+    for item in model.initial_temperatures:
+        nodes = _nodes(model, item.nodes)
+        try:
+            start[nodes] = item.value
+        except ValueError:
+            raise ModelError(
+                f"{np.size(item.value)} initial temperatures for {len(start[nodes])} nodes",
+                item.where,
+            ) from None
+    return start
+
+
+def _rows(block: _Block, free: Floats, s: Floats) -> Floats:
+    """Values for the core from free strains in rows xx, yy, zz, xy, shape (n, p, 4).
+
+    `s` is the compliance, shape (4, 4) or (n, p, 4, 4).
+    """
     rows = np.zeros(free.shape)
     if block.line:
         rows[..., 0] = free[..., 0]
@@ -227,15 +297,17 @@ def _rows(block: _Block, free: Floats) -> Floats:
     rows[..., :3], rows[..., 3] = free[..., IN], free[..., ZZ]
     if not block.strain:
         return rows
-    s = block.compliance
-    rows[..., 3] = -free[..., ZZ] / s[ZZ, ZZ]
-    rows[..., :3] += s[IN, ZZ] * rows[..., 3:]
+    across = s[..., ZZ, ZZ]
+    rows[..., 3] = -free[..., ZZ] / across
+    rows[..., :3] += s[..., IN, ZZ] * rows[..., 3:]
     if block.spherical:
         # The same stress as a pressure on all sides, which does not change the deviator.
-        share = -s[ZZ, IN] / s[ZZ, ZZ]
-        reduced = s[np.ix_(IN, IN)] - np.outer(s[IN, ZZ], s[ZZ, IN]) / s[ZZ, ZZ]
-        rows[..., 3] /= 1.0 - share[0] - share[1]
-        rows[..., :3] += rows[..., 3:] * (reduced[:, 0] + reduced[:, 1])
+        share = -s[..., ZZ, IN] / across[..., None]
+        inside = s[..., np.array(IN)[:, None], IN]
+        pairs = s[..., IN, ZZ][..., :, None] * s[..., ZZ, IN][..., None, :]
+        reduced = inside - pairs / across[..., None, None]
+        rows[..., 3] /= 1.0 - share[..., 0] - share[..., 1]
+        rows[..., :3] += rows[..., 3:] * (reduced[..., 0] + reduced[..., 1])
     return rows
 
 
@@ -254,14 +326,19 @@ def _block(
             [2.0 * c * s, -2.0 * c * s, 0.0, c * c - s * s],
         ]
     )
-    compliance = turn @ section.material.compliance() @ turn.T
+    material, constant, table = section.material, None, None
+    if isinstance(material, MaterialTable) and material.varies:
+        table = material
+    elif expansion or stress is not None:
+        constant = turn @ material.compliance() @ turn.T
     return _Block(
         index,
         block.nodes,
         core.shape(index).reshape(-1, facts.n_nodes),
         expansion,
-        turn[:, :3],
-        compliance,
+        turn,
+        constant,
+        table,
         facts.line,
         section.plane == "strain",
         section.material.flows and section.plane == "strain",
@@ -275,4 +352,4 @@ def _nodes(model: Model, where: str | Ints) -> Any:
     return where
 
 
-__all__ = ["FreeStrains"]
+__all__ = ["FreeStrains", "start_temperatures"]

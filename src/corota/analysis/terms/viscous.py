@@ -1,8 +1,8 @@
 """Damping per stiffness in the element frame.
 
-The viscous force of an element is its elastic local stiffness times the rates of its local
-dofs. A rigid motion has none of these in any configuration, so it is not damped, and the forces
-have neither resultant nor moment.
+The viscous force of an element is its elastic local stiffness, at the initial temperature, times
+the rates of its local dofs. A rigid motion has none of these in any configuration, so it is not
+damped, and the forces have neither resultant nor moment.
 
 With the frame's rotation R, ``eta = R X``, ``gamma = S eta / sum(eta . x)`` and x from the mean,
 the frame turns at ``rate = gamma . v``, and the local dofs change by ``R^T (v - rate S x)`` and by
@@ -87,6 +87,9 @@ class ViscousElements:
         core = _core.Problem(
             np.ascontiguousarray(points.reshape(-1, 2)), [alone], np.zeros(n * nodes, np.uint8)
         )
+        if alone.get("by_temperature"):
+            shape = core.shape(0).reshape(-1, nodes)
+            core.set_temperatures(0, (system.free.start[block.nodes] @ shape.T).ravel())
         size = core.n_dofs // n
         force, scale, rest = np.zeros((3, core.n_dofs))
         values = np.zeros(len(core.indices))

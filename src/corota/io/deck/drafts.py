@@ -103,20 +103,27 @@ class SectionDraft:
 
 @dataclass(slots=True)
 class PlasticDraft:
-    """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING`` with the places of their rows.
-
-    ``ready`` is false after an error; ``voce`` holds Q and b where the cyclic hardening is
-    given by parameters.
-    """
+    """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING``; ``ready`` is false after an error."""
 
     card: Card | None = None
     kind: str = "ISOTROPIC"
     ready: bool = True
-    curve: list[tuple[float, float]] = field(default_factory=list)
-    rows: list[Location] = field(default_factory=list)
-    back: list[tuple[float, float]] = field(default_factory=list)
+    curves: list[CurveDraft] = field(default_factory=list)
     cyclic_card: Card | None = None
-    cyclic: tuple[list[tuple[float, float]], list[Location]] | None = None
+    cyclic: list[CurveDraft] | None = None
+
+
+@dataclass(slots=True)
+class CurveDraft:
+    """Yield stress against plastic strain at one temperature, with the places of the rows.
+
+    ``back`` holds the back-stresses, ``voce`` Q and b, where they are given by parameters.
+    """
+
+    temperature: float
+    points: list[tuple[float, float]]
+    rows: list[Location]
+    back: list[tuple[float, float]] = field(default_factory=list)
     voce: tuple[float, float] | None = None
 
 
@@ -127,15 +134,24 @@ class MaterialDraft:
     name: str
     card: Card
     law: str = ""
-    constants: list[float] = field(default_factory=list)
+    #: Constants of the law by temperature.
+    constants: list[tuple[float, list[float]]] = field(default_factory=list)
     law_where: Location | None = None
     law_card: Card | None = None
-    #: Rows of constants and temperature, where there are several.
-    table: list[list[float]] = field(default_factory=list)
     rho: float = 0.0
+    #: Densities by temperature, where there are several.
+    densities: list[tuple[float, float]] = field(default_factory=list)
     damping: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDraft | None = None
     expansion: float | Expansion = 0.0
+
+    @property
+    def follows_temperature(self) -> bool:
+        """Whether its law or its density is given at several temperatures."""
+        counts = [len(self.constants), len(self.densities)]
+        if self.plastic is not None:
+            counts += [len(self.plastic.curves), len(self.plastic.cyclic or ())]
+        return max(counts) > 1
 
 
 @dataclass(slots=True)

@@ -471,7 +471,18 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("CLEARANCE", "TABULAR"): "give one VALUE",
     ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
     ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
-    ("ELASTIC", "DEPENDENCIES"): "constants that depend on fields are not part of this version",
+    **{
+        (keyword, "DEPENDENCIES"): "field variables are not part of this version; constants may "
+        "depend on the temperature alone"
+        for keyword in (
+            "ELASTIC",
+            "DENSITY",
+            "EXPANSION",
+            "PLASTIC",
+            "CYCLICHARDENING",
+            "DEFORMATIONPLASTICITY",
+        )
+    },
 }
 
 

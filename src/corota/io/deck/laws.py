@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic, Orthotropic
 from corota.model.plasticity import Mises
 from corota.model.ramberg_osgood import RambergOsgood
@@ -35,8 +36,9 @@ class DeckLaw:
         Constants on a data line.
     optional : int
         Optional constants at the end; they default to zero.
-    follows_temperature : bool
-        Whether constants for several temperatures are read.
+    pieces : int
+        Pieces of an interval of temperature in which the constants of the material are straight;
+        more than one where they are no linear functions of those of the card.
     writes : tuple of types of Material, optional
         The materials that are written by this card.
     values : callable, optional
@@ -48,7 +50,7 @@ class DeckLaw:
     make: Callable[..., Material]
     per_row: int = 8
     optional: int = 0
-    follows_temperature: bool = False
+    pieces: int = 1
     writes: tuple[type[Material], ...] = ()
     values: Callable[[Any], Sequence[float]] | None = None
 
@@ -82,7 +84,6 @@ LAWS: dict[str, DeckLaw] = {
         Elastic,
         per_row=2,
         optional=1,
-        follows_temperature=True,
         writes=(Elastic, Mises),
         values=lambda m: (m.E, m.nu),
     ),
@@ -102,6 +103,7 @@ LAWS: dict[str, DeckLaw] = {
         ("D1111", "D1122", "D2222", "D1133", "D2233", "D3333", "D1212", "D1313", "D2323"),
         _stiffness,
         optional=2,
+        pieces=64,
     ),
     "DEFORMATIONPLASTICITY": DeckLaw(
         "DEFORMATION PLASTICITY",
@@ -116,13 +118,21 @@ LAWS: dict[str, DeckLaw] = {
 
 def law_cards(material: Material, number: Callable[[float], str]) -> str | None:
     """The card of a material's law; ``None`` where there is none."""
-    law = next((law for law in LAWS.values() if type(material) in law.writes), None)
+    table: Sequence[tuple[float | None, Material]] = [(None, material)]
+    if isinstance(material, MaterialTable):
+        table = material.table
+    law = next((law for law in LAWS.values() if type(table[0][1]) in law.writes), None)
     if law is None:
         return None
     assert law.values is not None
-    values = [number(v) for v in law.values(material)]
-    rows = [values[i : i + law.per_row] for i in range(0, len(values), law.per_row)]
-    return f"*{law.card}\n" + "".join(", ".join(row) + "\n" for row in rows)
+    text = f"*{law.card}\n"
+    for temperature, own in table:
+        values = [number(v) for v in law.values(own)]
+        rows = [values[i : i + law.per_row] for i in range(0, len(values), law.per_row)]
+        if temperature is not None:
+            rows[-1].append(number(temperature))
+        text += "".join(", ".join(row) + "\n" for row in rows)
+    return text
 
 
 __all__ = ["LAWS", "DeckLaw", "law_cards"]

@@ -14,8 +14,8 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.io.tables.dat_numbers import fortran, rows
-from corota.mesh.parts import cells_of
 from corota.model.contact import RigidCurve, joint_thickness
+from corota.model.sections import thickness_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -118,16 +118,14 @@ def _closed_part(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, 
     assert frame.C is not None
     x = model.mesh.points + frame.U
     ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(_slave(model, pair))])
-    thickness = np.ones(model.mesh.n_cells)
-    for section in model.sections:
-        thickness[cells_of(model.mesh, section.cells)] = section.thickness
     chord = x[ends[:, 1]] - x[ends[:, 0]]
-    own = thickness[_slave(model, pair)[:, 0]]
+    own = thickness_at(model.mesh, model.sections, _slave(model, pair)[:, 0], ends).mean(axis=1)
     master = pair.master
     if not isinstance(master, RigidCurve):
         edges = model.mesh.edge_sets[master] if isinstance(master, str) else np.asarray(master)
         facing = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
-        own = joint_thickness(model.mesh.points, ends, own, facing, thickness[edges[:, 0]])
+        other = thickness_at(model.mesh, model.sections, edges[:, 0], facing).mean(axis=1)
+        own = joint_thickness(model.mesh.points, ends, own, facing, other)
     share = 0.5 * own
     closed = (frame.C[ends, 4] > 0.0) * share[:, None]
     weight = closed * np.hypot(*chord.T)[:, None]

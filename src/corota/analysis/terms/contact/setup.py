@@ -80,7 +80,7 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
             rows = order[at[here]]
             nodes[here, : len(local)] = block.nodes[rows][:, list(local)]
             bulge[here] = element.alpha_b
-            thickness[here] = block.section.thickness
+            thickness[here] = block.section.thickness_at(nodes[here, :2]).mean(axis=1)
             found[here] = True
     if not found.all():
         cell = int(edges[int(np.argmin(found)), 0])

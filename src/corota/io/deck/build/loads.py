@@ -15,6 +15,7 @@ from corota.io.deck.cards.thermal import build_temperature
 from corota.io.deck.deck import nearest
 from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
+from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -207,6 +208,19 @@ class LoadBuilder:
             return
         rho = np.full(self.mesh.n_cells, -1.0)
         for section in self.model.sections:
+            material = section.material
+            if isinstance(material, MaterialTable) and material.density_varies:
+                mine = np.isin(cells, cells_of(self.mesh, section.cells))
+                if mine.any():
+                    self.deck.row_error(
+                        draft.card,
+                        draft.row,
+                        1,
+                        "a force per volume is taken per mass, and the density of a material here "
+                        "depends on the temperature",
+                        "give one *DENSITY, or the load as GRAV",
+                    )
+                    return
             rho[cells_of(self.mesh, section.cells)] = section.material.rho
         for density in distinct(rho[cells]).tolist():
             if density == 0.0:

@@ -3,7 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from corota.errors import InputError
 from corota.io.deck.cards.plastic import build_mises
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
+from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -18,18 +21,26 @@ if TYPE_CHECKING:
     from corota.model.materials import Material
 
 
-def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
-    """Material of a draft; ``None`` after an error."""
+def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) -> Material | None:
+    """Material of a draft; ``None`` after an error.
+
+    Constants by temperature are taken at the one `temperature` that the whole model has, if it has
+    one.
+    """
     if not draft.law:
         deck.error(draft.card, draft.card.where, f"material {draft.name} has no *ELASTIC below it")
         return None
     if draft.law_card is None:
         return None
     try:
-        found = _law(draft) if draft.plastic is None else build_mises(deck, draft)
-        if found is not None:
-            found.expansion = draft.expansion
-        return found
+        found = _by_temperature(draft)
+        if found is None or not isinstance(found, MaterialTable) or temperature is None:
+            return found
+        deck.note(
+            f"{draft.law_where}: the constants of {draft.name} are those at the temperature "
+            f"{temperature:g}, which the whole model has"
+        )
+        return found.at(temperature)
     except InputError as error:
         # Constants of a plastic material are checked with its curve, on the card of the curve.
         plastic = draft.plastic
@@ -38,42 +49,50 @@ def build_material(deck: Deck, draft: MaterialDraft) -> Material | None:
         return None
 
 
-def _law(draft: MaterialDraft) -> Material:
-    return LAWS[draft.law].make(
-        *draft.constants,
-        rho=draft.rho,
-        rayleigh=draft.damping,
-        name=draft.name,
-        where=draft.law_where,
-    )
+def _by_temperature(draft: MaterialDraft) -> Material | None:
+    """The material, or its table over the temperatures at which any of its cards has numbers."""
+    common: dict[str, Any] = {
+        "rayleigh": draft.damping,
+        "name": draft.name,
+        "where": draft.law_where,
+        "expansion": draft.expansion,
+    }
+    law = LAWS[draft.law]
+    sets = sorted(draft.constants)
+    given = [t for t, _ in sets]
+    columns = np.array([values for _, values in sets]).T
 
+    def constants(at: float) -> list[float]:
+        return [float(np.interp(at, given, column)) for column in columns]
 
-def settle_temperature(deck: Deck, temperature: float | None) -> None:
-    """Evaluate temperature-dependent constants at the uniform temperature of the model.
-
-    Where it differs (``None``), such constants are refused.
-    """
-    for draft in deck.materials.values():
-        if not draft.table or draft.law_card is None:
-            continue
-        if temperature is None:
-            deck.error(
-                draft.law_card,
-                draft.law_where,
-                "constants that depend on temperature need one temperature in the whole model; "
-                "this deck changes it",
-                hint="give one set of constants at a mean temperature",
-            )
-            draft.law_card = None
-            continue
-        table = np.array(sorted(draft.table, key=lambda row: row[-1]))
-        draft.constants = [
-            float(np.interp(temperature, table[:, -1], column)) for column in table[:, :-1].T
+    if draft.plastic is None:
+        # Between stiffnesses the constants that they stand for are no straight lines.
+        fine = [t for a, b in pairwise(given) for t in np.linspace(a, b, law.pieces + 1)[:-1]]
+        temperatures = [float(t) for t in (*fine, *given[-1:])]
+        rows: list[tuple[float, Material]] = [
+            (t, law.make(*constants(t), **common)) for t in temperatures
         ]
-        deck.note(
-            f"{draft.law_where}: the constants of {draft.name} are those at the temperature "
-            f"{temperature:g}, which the whole model has"
-        )
+    else:
+        plastic = build_mises(draft, lambda at: (constants(at)[0], constants(at)[1]), **common)
+        if plastic is None:
+            return None
+        rows = list(plastic)
+    density = sorted(draft.densities)
+    every = set(given if len(given) > 1 else ())
+    every |= {t for t, _ in density} if len(density) > 1 else set()
+    every |= {t for t, _ in rows} if len(rows) > 1 else set()
+    if not every:
+        return replace(rows[0][1], rho=draft.rho)
+    table = MaterialTable(rows, **common)
+    whole: list[tuple[float, Material]] = []
+    for t in sorted(every):
+        own: dict[str, Any] = {"rho": draft.rho}
+        if len(density) > 1:
+            own["rho"] = float(np.interp(t, *np.array(density).T))
+        if draft.plastic is not None:
+            own |= dict(zip(("E", "nu"), constants(t), strict=True))
+        whole.append((t, replace(table.at(t), **own)))
+    return MaterialTable(whole, **common)
 
 
 def share_damping(deck: Deck) -> None:

@@ -10,12 +10,11 @@ import numpy as np
 from corota.errors import InputError
 from corota.io.deck.build.contact import build_contacts
 from corota.io.deck.build.loads import LoadBuilder
-from corota.io.deck.build.materials import settle_temperature, share_damping
+from corota.io.deck.build.materials import share_damping
 from corota.io.deck.build.mesh import MeshBuilder, views_in
 from corota.io.deck.build.pretension import PretensionBuilder
 from corota.io.deck.build.sections import SectionBuilder
 from corota.io.deck.build.targets import Targets
-from corota.io.deck.build.temperatures import constant_temperature, drop_temperatures
 from corota.io.deck.build.ties import build_tie
 from corota.io.deck.cards.attachments import build_attachments
 from corota.io.deck.cards.thermal import build_initial
@@ -56,8 +55,6 @@ class ModelBuilder:
         until = sum(step.times[1] for step in self.deck.steps)
         for name, curve in self.deck.curves.items():
             self.deck.amplitudes[name] = curve.sampled(until)
-        settle_temperature(self.deck, constant_temperature(targets))
-        drop_temperatures(self.deck)
         SectionBuilder(targets).build()
         model, deck = self.model, self.deck
         for tie in deck.ties:

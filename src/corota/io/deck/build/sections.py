@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from corota.arrays import distinct
 from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
+from corota.io.deck.build.temperatures import constant_temperature, drop_temperatures
 from corota.io.deck.cards.lines import build_lines, truss_section
 from corota.io.deck.deck import nearest
 from corota.io.deck.elements import (
@@ -25,6 +26,7 @@ from corota.io.deck.elements import (
     WRITTEN_BY_MESHIO,
 )
 from corota.io.deck.lexer import key
+from corota.mesh.parts import nodes_of_cells
 from corota.model.local_strain import LocalStrain
 from corota.model.sections import Section
 
@@ -56,7 +58,12 @@ class SectionBuilder:
     def build(self) -> None:
         owner = np.full(self.mesh.n_cells, -1, np.int64)
         drafts = [(view, draft) for view in self.meshes.views for draft in view.scope.sections]
-        materials = {name: build_material(self.deck, m) for name, m in self.deck.materials.items()}
+        temperature = constant_temperature(self.targets)
+        drop_temperatures(self.deck)
+        materials = {
+            name: build_material(self.deck, draft, temperature)
+            for name, draft in self.deck.materials.items()
+        }
         for number, (view, draft) in enumerate(drafts):
             card = draft.card
             found = self.sets.elements(view, draft.elset, card.at("ELSET"), card)
@@ -172,12 +179,9 @@ class SectionBuilder:
             element = self._element(self.meshes.types[code])
             groups.setdefault((element, plane), []).append(cells[types == code])
         full = self.sets.full_name(self.sets.elsets, view, draft.elset)
-        pieces: list[tuple[str, str, Ints, float]] = [
-            (element, plane, mine, thickness)
-            for (element, plane), parts in groups.items()
-            for mine, thickness in self._thickness(draft, np.sort(np.concatenate(parts)))
-        ]
-        for element, plane, mine, thickness in pieces:
+        thickness = self._thickness(draft, cells)
+        for (element, plane), parts in groups.items():
+            mine = np.sort(np.concatenate(parts))
             if element in DRILLING:
                 for block, row in ((self.mesh.cells[b], r) for b, r in self._rows(mine)):
                     self.targets.rotating[block.nodes[row]] = True
@@ -189,7 +193,7 @@ class SectionBuilder:
                         where,
                         element,
                         material,
-                        thickness,
+                        cast("float", thickness),
                         cast("Literal['stress', 'strain']", plane),
                         cast("LocalStrain", draft.local_strain),
                         angle,
@@ -201,8 +205,10 @@ class SectionBuilder:
             except InputError as error:
                 deck.error(card, card.where, error.message)
 
-    def _thickness(self, draft: SectionDraft, cells: Ints) -> list[tuple[Ints, float]]:
-        """Cells of a section by their thickness: that of the section, or the mean of their nodes.
+    def _thickness(
+        self, draft: SectionDraft, cells: Ints
+    ) -> float | np.ndarray[Any, np.dtype[np.float64]]:
+        """Thickness of a section, or that of each node.
 
         As in CalculiX and Abaqus, ``*NODAL THICKNESS`` counts where the section says so.
         """
@@ -212,7 +218,7 @@ class SectionBuilder:
                     f"{draft.card.where}: {draft.card.spelled} has no NODAL THICKNESS: its own "
                     "thickness is used, *NODAL THICKNESS is not"
                 )
-            return [(cells, draft.thickness)]
+            return draft.thickness
         if self.nodal is None:
             self.nodal = np.full(self.mesh.n_nodes, np.nan)
             for item in self.deck.thicknesses:
@@ -223,25 +229,13 @@ class SectionBuilder:
                         at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
                         self.nodal[at] = item.value[0]
             self.targets.at = self.meshes.views[0]
-        values = np.where(np.isnan(self.nodal), draft.thickness, self.nodal)
         if not self.deck.thicknesses:
             text = "NODAL THICKNESS is given, and no card *NODAL THICKNESS"
             self.deck.error(draft.card, draft.card.at("NODALTHICKNESS"), text)
-        mean, spread = np.zeros(len(cells)), 0.0
-        offsets = self.mesh.offsets
-        for number, block in enumerate(self.mesh.cells):
-            inside = (cells >= offsets[number]) & (cells < offsets[number + 1])
-            corners = 3 if block.kind.startswith("tri") else 4
-            own = values[block.nodes[cells[inside] - offsets[number], :corners]]
-            mean[inside] = own.mean(axis=1)
-            spread = max(spread, float(np.ptp(own, axis=1).max(initial=0.0)))
-        if spread > 1e-9 * float(mean.max(initial=1.0)):
-            self.deck.note(
-                f"{draft.card.where}: the thickness differs between the nodes of an element by up "
-                f"to {spread:g}; each element has the mean of its corners"
-            )
-        sizes, group = np.unique(np.round(mean, 12), return_inverse=True)
-        return [(cells[group == i], float(size)) for i, size in enumerate(sizes)]
+        values = np.where(np.isnan(self.nodal), draft.thickness, self.nodal)
+        mine = values[nodes_of_cells(self.mesh, cells)]
+        # One thickness for all nodes costs nothing.
+        return float(mine[0]) if len(mine) and (mine == mine[0]).all() else values
 
     def _element(self, type_: str) -> str:
         mapped = self.deck.element_map.get(type_)

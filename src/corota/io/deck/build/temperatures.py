@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 
 def drop_temperatures(deck: Deck) -> None:
-    """Leave out temperatures where no material expands: they act on nothing."""
-    if any(m.expansion != 0.0 for m in deck.materials.values()):
+    """Leave out temperatures where no material responds to them: they act on nothing."""
+    if any(m.expansion != 0.0 or m.follows_temperature for m in deck.materials.values()):
         return
     given = [d for step in deck.steps for d in step.loads if d.kind == "temperature"]
     if given:
@@ -27,7 +27,7 @@ def drop_temperatures(deck: Deck) -> None:
 def constant_temperature(targets: Targets) -> float | None:
     """Temperature of the whole model in all steps; ``None`` where there are several."""
     deck = targets.deck
-    if not any(m.table for m in deck.materials.values()):
+    if not any(m.follows_temperature for m in deck.materials.values()):
         return 0.0
     if any(d.kind == "temperature" for step in deck.steps for d in step.loads):
         return None

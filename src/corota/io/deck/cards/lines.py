@@ -301,7 +301,7 @@ def truss_section(
     deck: Deck, draft: SectionDraft, cells: Ints, material: Material
 ) -> Section | None:
     """Trusses of a ``*SOLID SECTION``, whose number is their area."""
-    if not isinstance(material, Elastic):
+    if not material.for_lines:
         deck.error(
             draft.card, draft.card.at("MATERIAL"), "trusses take isotropic *ELASTIC material only"
         )
@@ -324,7 +324,7 @@ def _section(
         material = materials[key(draft.material)]
     if material is None:
         return None
-    if not isinstance(material, Elastic):
+    if not material.for_lines:
         deck.error(card, card.at("MATERIAL"), "beams take isotropic *ELASTIC material only")
         return None
     area, inertia, shear = draft.profile

@@ -74,77 +74,92 @@ def _law(deck: Deck, card: Card, name: str) -> None:
 
 
 def _constants(deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, law: DeckLaw) -> None:
-    names, per_row = law.constants, law.per_row
-    n_rows, needed = -(-len(names) // per_row), len(names) - law.optional
-    for index, name in enumerate(names):
-        row_number, column = divmod(index, per_row)
-        if row_number >= len(rows):
-            if index < needed:
-                deck.row_error(card, rows[-1], len(rows[-1]), f"{name} is missing")
-                break
-            found.constants.append(0.0)
-            continue
-        value = deck.real(card, rows[row_number], column, name, None if index < needed else 0.0)
-        if value is None:
-            break
-        found.constants.append(value)
-    if len(found.constants) < len(names):
-        found.law_card = None
-    if len(rows) > n_rows:
-        _by_temperature(deck, card, rows, found, law)
-        return
-    for number, row in enumerate(rows):
-        used = per_row if number + 1 < n_rows else len(names) - per_row * (n_rows - 1)
-        deck.extra_fields(card, row, used + 1)
-        if row.get(used):
-            deck.note(f"{row.where}: the temperature {row.get(used)} in {card.spelled} is ignored")
-
-
-def _by_temperature(
-    deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, law: DeckLaw
-) -> None:
-    """Rows of constants and temperature."""
-    if not law.follows_temperature:
+    """Sets of constants, each of some rows with the temperature behind them."""
+    count, per_row = len(law.constants), law.per_row
+    n_rows, needed = -(-count // per_row), count - law.optional
+    if len(rows) > n_rows and len(rows) % n_rows:
         deck.row_error(
             card,
-            rows[-(-len(law.constants) // law.per_row)],
+            rows[-1],
             0,
-            "only isotropic constants may depend on temperature",
-            "give one set of constants",
+            f"{len(rows)} data lines: each temperature takes {n_rows} of them",
         )
+        found.law_card = None
         return
-    for row in rows:
-        values = [
-            deck.real(card, row, i, name, 0.0)
-            for i, name in enumerate((*law.constants, "the temperature"))
-        ]
-        if None in values:
+    used = count - per_row * (n_rows - 1)
+    for first in range(0, len(rows), n_rows):
+        mine = rows[first : first + n_rows]
+        values: list[float] = []
+        for index, name in enumerate(law.constants):
+            row_number, column = divmod(index, per_row)
+            if row_number >= len(mine):
+                if index < needed:
+                    deck.row_error(card, mine[-1], len(mine[-1]), f"{name} is missing")
+                    found.law_card = None
+                    return
+                values.append(0.0)
+                continue
+            value = deck.real(card, mine[row_number], column, name, None if index < needed else 0.0)
+            if value is None:
+                found.law_card = None
+                return
+            values.append(value)
+        temperature = 0.0
+        for number, row in enumerate(mine):
+            last = number + 1 == n_rows
+            deck.extra_fields(card, row, (used if last else per_row) + 1)
+            if last and row.get(used):
+                at = deck.real(card, row, used, "the temperature")
+                if at is None:
+                    found.law_card = None
+                    return
+                temperature = at
+        found.constants.append((temperature, values))
+    _only_temperature(deck, card, rows[-1] if len(rows) == n_rows else None, used)
+    _refuse_twice(deck, card, [t for t, _ in found.constants])
+
+
+def _only_temperature(deck: Deck, card: Card, row: Row | None, column: int) -> None:
+    """Note that the temperature of the only set does not matter."""
+    if row is not None and row.get(column):
+        deck.note(f"{row.where}: the temperature {row.get(column)} in {card.spelled} is ignored")
+
+
+def _refuse_twice(deck: Deck, card: Card, temperatures: list[float]) -> None:
+    """Refuse a temperature that has two sets of numbers."""
+    seen: set[float] = set()
+    for at in temperatures:
+        if at in seen:
+            deck.error(
+                card,
+                card.where,
+                f"the temperature {at:g} is given twice",
+                hint="each set of numbers needs a temperature of its own, behind the last one",
+            )
             return
-        found.table.append([float(v or 0.0) for v in values])
+        seen.add(at)
 
 
 def density(deck: Deck, card: Card) -> None:
-    """``*DENSITY``: mass per volume."""
+    """``*DENSITY``: mass per volume, temperature."""
     found = open_material(deck, card)
     if found is None:
         return
     rows = list(card.rows())
     if not rows:
         deck.error(card, card.where, "a data line is missing: the density")
-        return
-    value = deck.real(card, rows[0], 0, "the density")
-    if value is None:
-        return
-    if value <= 0.0:
-        deck.row_error(card, rows[0], 0, f"the density must be > 0, not {value:g}")
-        return
-    found.rho = value
-    deck.extra_fields(card, rows[0], 2)
-    for row in rows[1:]:
-        deck.row_error(
-            card, row, 0, "a density that depends on temperature is not part of this version"
-        )
-        return
+    for row in rows:
+        value = deck.real(card, row, 0, "the density")
+        at = deck.real(card, row, 1, "the temperature", 0.0)
+        if value is None or at is None:
+            return
+        if value <= 0.0:
+            deck.row_error(card, row, 0, f"the density must be > 0, not {value:g}")
+            return
+        deck.extra_fields(card, row, 2)
+        found.rho = value
+        found.densities.append((at, value))
+    _refuse_twice(deck, card, [t for t, _ in found.densities])
 
 
 def open_material(deck: Deck, card: Card) -> MaterialDraft | None:

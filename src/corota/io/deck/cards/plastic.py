@@ -3,16 +3,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.cards.material import open_material
-from corota.io.deck.drafts import PlasticDraft
+from corota.io.deck.drafts import CurveDraft, PlasticDraft
 from corota.model.plasticity import Mises, Voce
 
 if TYPE_CHECKING:
-    from corota.errors import Location
+    from collections.abc import Callable
+
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
     from corota.io.deck.lexer import Card
@@ -43,15 +45,16 @@ def plastic(deck: Deck, card: Card) -> None:
     draft.ready = table is not None
     if table is None:
         return
-    draft.curve, draft.rows = table
-    if kind != "ISOTROPIC" and len(draft.curve) > 2:
-        rows = list(card.rows())
+    draft.curves = table
+    long = next((curve for curve in table if len(curve.points) > 2), None)
+    if kind != "ISOTROPIC" and long is not None:
+        row = next(row for row in card.rows() if row.where == long.rows[2])
         deck.row_error(
             card,
-            rows[2],
+            row,
             0,
-            "kinematic hardening from a table is linear: two rows; for a curve give "
-            "HARDENING=COMBINED, DATA TYPE=PARAMETERS with several back-stresses",
+            "kinematic hardening from a table is linear: two rows at a temperature; for a curve "
+            "give HARDENING=COMBINED, DATA TYPE=PARAMETERS with several back-stresses",
         )
         draft.ready = False
 
@@ -75,58 +78,70 @@ def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:
     names = ["the yield stress"]
     for i in range(1, count + 1):
         names += [f"C of back-stress {i}", f"gamma of back-stress {i}"]
-    values: list[float] = []
-    for number, row in enumerate(rows):
-        for index in range(min(8, wanted - len(values))):
-            value = deck.real(card, row, index, names[len(values)])
+    # Behind the last number stands the temperature, at most eight on a line.
+    n_rows = -(-wanted // 8) if len(rows) <= -(-wanted // 8) else -(-(wanted + 1) // 8)
+    if not rows or len(rows) % n_rows:
+        deck.error(
+            card,
+            card.where,
+            f"{wanted} numbers take {n_rows} data lines for each temperature, not {len(rows)}: "
+            f"{', '.join(names)}, the temperature",
+        )
+        return False
+    for first in range(0, len(rows), n_rows):
+        mine = rows[first : first + n_rows]
+        values: list[float] = []
+        for index, name in enumerate(names):
+            row_number, column = divmod(index, 8)
+            value = deck.real(card, mine[row_number], column, name)
             if value is None:
                 return False
             values.append(value)
-        if len(values) == wanted and number + 1 < len(rows):
-            deck.row_error(
-                card,
-                rows[number + 1],
-                0,
-                "parameters that depend on temperature are not part of this version",
-            )
+        row_number, column = divmod(wanted, 8)
+        at: float | None = 0.0
+        if row_number < n_rows:
+            at = deck.real(card, mine[row_number], column, "the temperature", 0.0)
+        if at is None:
             return False
-    if len(values) < wanted:
-        deck.error(card, card.where, f"data are missing: {', '.join(names[len(values) :])}")
-        return False
-    draft.curve = [(values[0], 0.0)]
-    draft.rows = [rows[0].where]
-    draft.back = list(zip(values[1::2], values[2::2], strict=True))
-    return True
+        back = list(zip(values[1::2], values[2::2], strict=True))
+        draft.curves.append(CurveDraft(at, [(values[0], 0.0)], [mine[0].where], back))
+    return _distinct(deck, card, draft.curves)
 
 
-def _table(deck: Deck, card: Card) -> tuple[list[tuple[float, float]], list[Location]] | None:
-    """Rows of stress, plastic strain (default 0), temperature (one only)."""
+def _distinct(deck: Deck, card: Card, curves: list[CurveDraft]) -> bool:
+    """Whether each temperature has one curve; told where not."""
+    found = sorted(curve.temperature for curve in curves)
+    twice = next((a for a, b in pairwise(found) if a == b), None)
+    if twice is None:
+        return True
+    deck.error(card, card.where, f"the temperature {twice:g} is given twice")
+    return False
+
+
+def _table(deck: Deck, card: Card) -> list[CurveDraft] | None:
+    """Rows of stress, plastic strain (default 0), temperature; a curve at each temperature."""
     rows = list(card.rows())
     if not rows:
         deck.error(card, card.where, "a data line is missing: yield stress, plastic strain")
         return None
-    points, where = [], []
+    curves: list[CurveDraft] = []
     for row in rows:
         stress = deck.real(card, row, 0, "the yield stress")
         strain = deck.real(card, row, 1, "the plastic strain", 0.0)
-        if stress is None or strain is None:
+        at = deck.real(card, row, 2, "the temperature", 0.0)
+        if stress is None or strain is None or at is None:
             return None
         deck.extra_fields(card, row, 3)
-        if row.get(2) != rows[0].get(2):
-            deck.row_error(
-                card,
-                row,
-                2,
-                "a yield curve that depends on temperature is not part of this version",
-                "give the curve at the temperature of the part alone",
-            )
-            return None
-        points.append((stress, strain))
-        where.append(row.where)
-    if rows[0].get(2):
+        if not curves or curves[-1].temperature != at:
+            curves.append(CurveDraft(at, [], []))
+        curves[-1].points.append((stress, strain))
+        curves[-1].rows.append(row.where)
+    if not _distinct(deck, card, curves):
+        return None
+    if len(curves) == 1 and rows[0].get(2):
         note = f"the temperature {rows[0].get(2)} in *{card.keyword} is ignored"
         deck.note(f"{rows[0].where}: {note}")
-    return points, where
+    return curves
 
 
 def cyclic_hardening(deck: Deck, card: Card) -> None:
@@ -146,21 +161,32 @@ def cyclic_hardening(deck: Deck, card: Card) -> None:
     if not rows:
         deck.error(card, card.where, "a data line is missing: yield stress, Q, b")
         return
-    values = [deck.real(card, rows[0], i, n) for i, n in enumerate(("the yield stress", "Q", "b"))]
-    deck.extra_fields(card, rows[0], 4)
-    for row in rows[1:]:
-        deck.row_error(
-            card, row, 0, "parameters that depend on temperature are not part of this version"
-        )
-        return
-    if None not in values:
+    curves = []
+    for row in rows:
+        values = [deck.real(card, row, i, n) for i, n in enumerate(("the yield stress", "Q", "b"))]
+        at = deck.real(card, row, 3, "the temperature", 0.0)
+        deck.extra_fields(card, row, 4)
+        if None in values or at is None:
+            return
         initial, q, b = (float(v or 0.0) for v in values)
-        draft.cyclic = ([(initial, 0.0)], [rows[0].where])
-        draft.voce = (q, b)
+        curves.append(CurveDraft(at, [(initial, 0.0)], [row.where], voce=(q, b)))
+    if _distinct(deck, card, curves):
+        draft.cyclic = curves
 
 
-def build_mises(deck: Deck, draft: MaterialDraft) -> Mises | None:
-    """Plastic material of a draft with ``*ELASTIC`` and ``*PLASTIC``; ``None`` after an error.
+def build_mises(
+    draft: MaterialDraft, elastic: Callable[[float], tuple[float, float]], **common: Any
+) -> list[tuple[float, Mises]] | None:
+    """Plastic material of a draft by temperature; ``None`` after an error.
+
+    Parameters
+    ----------
+    draft : MaterialDraft
+        With ``*ELASTIC`` and ``*PLASTIC``.
+    elastic : callable
+        Young's modulus and Poisson's ratio at a temperature.
+    **common
+        What all materials have.
 
     Raises
     ------
@@ -183,33 +209,53 @@ def build_mises(deck: Deck, draft: MaterialDraft) -> Mises | None:
         raise InputError("*PLASTIC needs isotropic constants in *ELASTIC", p.card.where)
     if not p.ready or (p.cyclic_card is not None and p.cyclic is None):
         return None
-    e, nu = draft.constants[:2]
-    common: dict[str, Any] = {
-        "rho": draft.rho,
-        "rayleigh": draft.damping,
-        "name": draft.name,
-        "where": p.card.where,
-    }
-    if p.kind == "ISOTROPIC":
-        return Mises(e, nu, yield_curve=p.curve, rows=p.rows, **common)
+    common["where"] = p.card.where
+    cyclic = {curve.temperature: curve for curve in p.cyclic or ()}
+    if len(cyclic) == 1 and len(p.curves) == 1:
+        cyclic = {p.curves[0].temperature: next(iter(cyclic.values()))}
+    if cyclic and set(cyclic) != {curve.temperature for curve in p.curves}:
+        assert p.cyclic_card is not None
+        raise InputError(
+            "*CYCLIC HARDENING and *PLASTIC are given at different temperatures: give the same",
+            p.cyclic_card.where,
+        )
+    return [
+        (
+            curve.temperature,
+            _mises(p.kind, curve, cyclic.get(curve.temperature), elastic, common),
+        )
+        for curve in p.curves
+    ]
+
+
+def _mises(
+    kind: str,
+    curve: CurveDraft,
+    cyclic: CurveDraft | None,
+    elastic: Callable[[float], tuple[float, float]],
+    common: dict[str, Any],
+) -> Mises:
+    """The material at one temperature."""
+    e, nu = elastic(curve.temperature)
     # The check of the curve names the row.
-    Mises(e, nu, yield_curve=p.curve, rows=p.rows, **common)
-    back = list(p.back)
-    if len(p.curve) == 2:
-        (s0, _), (s1, p1) = p.curve
+    plain = Mises(e, nu, yield_curve=curve.points, rows=curve.rows, **common)
+    if kind == "ISOTROPIC":
+        return plain
+    back = list(curve.back)
+    if len(curve.points) == 2:
+        (s0, _), (s1, p1) = curve.points
         if s1 > s0:
             back.append(((s1 - s0) / p1, 0.0))
-    curve, rows = [p.curve[0]], [p.rows[0]]
-    if p.cyclic is not None:
-        curve, rows = p.cyclic
-        if curve[0][0] != p.curve[0][0]:
+    points, rows = [curve.points[0]], [curve.rows[0]]
+    if cyclic is not None:
+        points, rows = cyclic.points, cyclic.rows
+        if points[0][0] != curve.points[0][0]:
             raise InputError(
-                f"*CYCLIC HARDENING starts at the yield stress {curve[0][0]:g}, *PLASTIC at "
-                f"{p.curve[0][0]:g}: give the same",
+                f"*CYCLIC HARDENING starts at the yield stress {points[0][0]:g}, *PLASTIC at "
+                f"{curve.points[0][0]:g}: give the same",
                 rows[0],
             )
-    if p.voce is not None:
-        return Mises(
-            e, nu, yield_stress=curve[0][0], isotropic=Voce(*p.voce), chaboche=back, **common
-        )
-    return Mises(e, nu, yield_curve=curve, chaboche=back, rows=rows, **common)
+        if cyclic.voce is not None:
+            first, law = points[0][0], Voce(*cyclic.voce)
+            return Mises(e, nu, yield_stress=first, isotropic=law, chaboche=back, **common)
+    return Mises(e, nu, yield_curve=points, chaboche=back, rows=rows, **common)

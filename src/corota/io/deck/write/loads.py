@@ -11,8 +11,8 @@ import numpy as np
 
 from corota.io.deck.write.text import DOFS, Writer, number, plain
 from corota.io.deck.write.thermal import temperatures
-from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
+from corota.model.sections import thickness_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -118,18 +118,18 @@ def _area(writer: Writer, where: str | Ints) -> float:
     """Area of edges times thickness [length^2], over which a resultant is spread."""
     mesh = writer.mesh
     edges = mesh.edge_pairs(where)
-    thickness = np.ones(mesh.n_cells)
-    for section in writer.model.sections:
-        thickness[cells_of(mesh, section.cells)] = section.thickness
     area = 0.0
     for (cell, _), nodes in zip(edges, mesh.edge_nodes(edges), strict=True):
         x = mesh.points[nodes]
-        length = math.dist(x[0], x[1])
+        found = thickness_at(mesh, writer.model.sections, np.array([cell]), np.array([nodes]))
+        thickness = found[0]
         if len(nodes) == 3:
             r, weights = _GAUSS
             slope = np.stack([r - 0.5, r + 0.5, -2.0 * r], axis=1) @ x
-            length = float(np.hypot(slope[:, 0], slope[:, 1]) @ weights)
-        area += float(thickness[cell]) * length
+            shape = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
+            area += float((np.hypot(slope[:, 0], slope[:, 1]) * (shape @ thickness)) @ weights)
+        else:
+            area += math.dist(x[0], x[1]) * float(thickness.mean())
     return area
 
 

@@ -29,7 +29,8 @@ from corota.io.deck.write.steps import step_cards
 from corota.io.deck.write.text import number, plain, rows
 from corota.io.deck.write.thermal import expansion_cards, initial_cards
 from corota.mesh import EDGES
-from corota.mesh.parts import cells_of
+from corota.mesh.parts import cells_of, nodes_of_cells
+from corota.model.material_table import MaterialTable
 from corota.model.steps import Static, Step
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints, Mesh
     from corota.model.materials import Material
     from corota.model.model import Model
+    from corota.model.sections import Section
 
 
 def write_deck(
@@ -136,6 +138,7 @@ class _Writer:
     def _materials_and_sections(self) -> list[str]:
         lines: list[str] = []
         angles: dict[float, str] = {}
+        nodal: dict[int, float] = {}
         for section in self.model.sections:
             if section.element in LINE_TYPES:
                 spring = section.element.startswith("SPRING")
@@ -162,8 +165,25 @@ class _Writer:
                     )
                     lines.append(f"{number(-s)}, {number(c)}, 0.\n")
                 options += f", ORIENTATION={angles[angle]}"
+            if section.nodal_thickness is not None:
+                options += ", NODAL THICKNESS"
+                self._add_thickness(section, nodal)
             lines.append(f"*SOLID SECTION, {options}\n{number(section.thickness)}\n")
+        if nodal:
+            lines.append("*NODAL THICKNESS\n")
+            labels = self.mesh.node_labels
+            lines += [f"{labels[n]}, {number(t)}\n" for n, t in sorted(nodal.items())]
         return lines
+
+    def _add_thickness(self, section: Section, nodal: dict[int, float]) -> None:
+        """The thickness of the nodes of a section; a deck has one for each node."""
+        nodes = nodes_of_cells(self.mesh, cells_of(self.mesh, section.cells))
+        for node, value in zip(nodes.tolist(), section.thickness_at(nodes).tolist(), strict=True):
+            if nodal.setdefault(node, value) != value:
+                raise UnsupportedError(
+                    f"node {self.mesh.node_labels[node]} has two thicknesses in two sections, "
+                    "which a deck cannot tell: give the sections nodes of their own"
+                )
 
     def _material(self, material: Material, lines: list[str]) -> str:
         for other, name in self._materials.items():
@@ -181,7 +201,10 @@ class _Writer:
             )
         lines.append(f"*MATERIAL, NAME={name}\n{law}{plastic_cards(material)}")
         lines.append(expansion_cards(material) + damping_card(material.rayleigh))
-        if material.rho:
+        if isinstance(material, MaterialTable) and material.density_varies:
+            lines.append("*DENSITY\n")
+            lines += [f"{number(m.rho)}, {number(t)}\n" for t, m in material.table]
+        elif material.rho:
             lines.append(f"*DENSITY\n{number(material.rho)}\n")
         return name
 

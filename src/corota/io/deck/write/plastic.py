@@ -6,10 +6,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.errors import UnsupportedError
-from corota.io.deck.write.text import number, numbers
+from corota.io.deck.write.text import numbers
+from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises, Voce
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from corota.model.materials import Material
 
 #: Plastic strain up to which a table holds linear hardening: no analysis comes near.
@@ -30,42 +33,53 @@ def plastic_cards(material: Material) -> str:
     UnsupportedError
         If the isotropic part saturates and grows linearly besides.
     """
-    if not isinstance(material, Mises):
+    table: Sequence[tuple[float | None, Material]] = [(None, material)]
+    if isinstance(material, MaterialTable):
+        table = material.table
+    # A temperature stands behind the numbers that belong to it.
+    rows = [((t,) if t is not None else (), m) for t, m in table if isinstance(m, Mises)]
+    if not rows:
         return ""
-    law, back = material.isotropic, material.back_stresses
-    if isinstance(law, Voce) and law.H:
+    laws, back = [m.isotropic for _, m in rows], rows[0][1].back_stresses
+    if any(isinstance(law, Voce) and law.H for law in laws):
         raise UnsupportedError(
             f"material {material.name or 'Mises'}: the linear part H of Voce hardening has no "
             "card in a deck: give a yield_curve instead, or keep the model in Python"
         )
-    saturates = isinstance(law, Voce) and law.Q != 0.0
+    saturates = any(isinstance(law, Voce) and law.Q != 0.0 for law in laws)
+    curves = [_table(m, at) for at, m in rows]
     if not back and not saturates:
-        return "*PLASTIC\n" + _table(material)
-    first = material.first_yield
+        return "*PLASTIC\n" + "".join(curves)
     if back:
-        values = [first, *(v for pair in back for v in pair)]
         text = "*PLASTIC, HARDENING=COMBINED, DATA TYPE=PARAMETERS, "
         text += f"NUMBER BACKSTRESSES={len(back)}\n"
-        for start in range(0, len(values), PER_ROW):
-            text += numbers(values[start : start + PER_ROW]) + "\n"
+        for at, m in rows:
+            values = [m.first_yield, *(v for pair in m.back_stresses for v in pair), *at]
+            for start in range(0, len(values), PER_ROW):
+                text += numbers(values[start : start + PER_ROW]) + "\n"
     else:
-        text = f"*PLASTIC, HARDENING=COMBINED\n{number(first)}, 0.\n"
+        text = "*PLASTIC, HARDENING=COMBINED\n"
+        text += "".join(numbers((m.first_yield, 0.0, *at)) + "\n" for at, m in rows)
     if saturates:
-        assert isinstance(law, Voce)
-        return text + f"*CYCLIC HARDENING, PARAMETERS\n{numbers((first, law.Q, law.b))}\n"
-    table = _table(material)
-    return text + (f"*CYCLIC HARDENING\n{table}" if table.count("\n") > 1 else "")
+        text += "*CYCLIC HARDENING, PARAMETERS\n"
+        for at, m in rows:
+            law = m.isotropic
+            q, b = (law.Q, law.b) if isinstance(law, Voce) else (0.0, 0.0)
+            text += numbers((m.first_yield, q, b, *at)) + "\n"
+        return text
+    hardens = any(curve.count("\n") > 1 for curve in curves)
+    return text + (f"*CYCLIC HARDENING\n{''.join(curves)}" if hardens else "")
 
 
-def _table(material: Mises) -> str:
-    """Rows of yield stress and plastic strain; after the last one the stress stays."""
+def _table(material: Mises, at: tuple[float, ...] = ()) -> str:
+    """Rows of yield stress, plastic strain and temperature; after the last the stress stays."""
     curve = material.yield_curve
     if curve is None:
         assert material.yield_stress is not None
         first, law = material.yield_stress, material.isotropic
         slope = 0.0 if isinstance(law, Voce) else float(law)
         curve = [(first, 0.0)] + ([(first + slope * FAR, FAR)] if slope else [])
-    return "".join(numbers(point) + "\n" for point in curve)
+    return "".join(numbers((*point, *at)) + "\n" for point in curve)
 
 
 __all__ = ["plastic_cards"]
