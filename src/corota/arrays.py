@@ -1,4 +1,4 @@
-"""What NumPy has, without what its function would load."""
+"""Replacements of NumPy functions that would load large modules."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def distinct(values: ArrayLike) -> NDArray[Any]:
-    """Values that occur, each once, in ascending order.
+    """Distinct values in ascending order.
 
     ``numpy.unique`` gives the same; its first call loads masked arrays, which takes as long as
     solving a small model.

@@ -1,4 +1,4 @@
-"""Functions that tables name without loading their modules."""
+"""Lazy references to functions in tables, without loading their modules."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def lazy(place: str) -> Callable[..., Any]:
-    """Stand-in for a function whose module is imported when it is first called.
+    """Proxy of a function whose module is imported at the first call.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def rotating_nodes(model: Model) -> NDArray[np.bool_]:
 
 
 def reference_nodes(model: Model) -> list[int]:
-    """Nodes that have a rotation because something turns with them."""
+    """Nodes that have a rotation because of attached bodies, curves or constraints."""
     found = [c.reference for c in model.constraints if isinstance(c, Coupling)]
     curves = [pair.master for pair in model.contacts if isinstance(pair.master, RigidCurve)]
     return found + [int(c.reference) for c in curves if isinstance(c.reference, int | np.integer)]

@@ -1,9 +1,10 @@
-"""When surfaces that are apart will meet, so that an increment of a motion can end there.
+"""Time of first contact of separate surfaces, so that a dynamic increment can end there.
 
-A body in flight feels nothing of a wall, and an increment that only its own error limits goes on
-to any depth behind it. The time to contact follows from gap, closing velocity and acceleration of
-the body. From farther off an increment goes most of the way, since the estimate gets better as the
-surfaces come near; the last one ends a ten-thousandth of an edge behind the first touch.
+A wall does not act on a body in flight, and an increment limited only by its own error may end
+at any depth behind it. The time to contact follows from gap, closing velocity and acceleration of
+the body. At larger distance an increment covers most of the gap, because the estimate improves as
+the
+surfaces approach; the last one ends a ten-thousandth of an edge behind the first contact.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -27,22 +28,22 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: An increment that meets a surface ends so far behind the first touch [slave edges].
+#: Depth behind the first contact at which an increment ends [slave edges].
 BEYOND = 1e-4
-#: From a gap wider than this [slave edges] an increment leaves that share of it.
+#: Gap from which an increment leaves a remainder [slave edges], and the fraction left.
 WIDE, LEFT = 0.1, 0.05
-#: Increments in a row that may be shortened so: surfaces may also pass each other closely.
+#: Largest number of successive increments shortened in this way: surfaces may also pass closely.
 MOST_IN_A_ROW = 8
 
 
 class Approach:
-    """Times to contact of surfaces that are apart.
+    """Times to contact of separate surfaces.
 
     Parameters
     ----------
     system : System
     massless : ndarray of bool, shape (n_dofs,)
-        Displacements without mass; their accelerations mean nothing.
+        Displacements without mass; their accelerations are meaningless.
 
     Attributes
     ----------
@@ -57,7 +58,7 @@ class Approach:
         self.meets = self.limited = False
         self.in_a_row = 0
         #: Displacement of the last increment by node and its time; velocities of nodes without
-        #: mass swing about it.
+        #: mass oscillate about it.
         self.moved, self.dt = np.zeros((0, 3)), 0.0
         part = part_of_nodes(system.model.mesh)
         heavy = np.zeros(len(part), bool)
@@ -66,7 +67,7 @@ class Approach:
         self.part, self.heavy = part, heavy & (part >= 0)
 
     def within(self, now: MotionState, dt: float, least: float) -> float:
-        """The increment, or the shorter one that ends where surfaces meet [time]."""
+        """The increment, or the shorter one that ends at first contact [time]."""
         self.meets = self.limited = False
         term: ContactTerm = self.system.contact_term
         if not term.opens or self.in_a_row >= MOST_IN_A_ROW:
@@ -95,7 +96,7 @@ class Approach:
         return max(until, min(least, dt))
 
     def follow(self, before: Floats, after: Floats, dt: float) -> None:
-        """Take note of an increment that was taken, between displacements of shape (n_dofs,)."""
+        """Record an accepted increment between displacements of shape (n_dofs,)."""
         if not self.system.contact_term.opens:
             return
         self.in_a_row = self.in_a_row + 1 if self.limited else 0
@@ -128,7 +129,7 @@ class Approach:
 def _time_to_contact(
     pair: Pair, terms: Terms, seen: NDArray[np.bool_], rates: Floats, acceleration: Floats
 ) -> tuple[float, bool]:
-    """Time to the end of the next increment towards contact, and whether surfaces meet there."""
+    """Time to the end of the next increment towards contact, and whether contact begins there."""
     if not seen.any():
         return np.inf, False
     area = np.where(seen, terms.area, 1.0)
@@ -144,7 +145,7 @@ def _time_to_contact(
     speed, growth = rate(rates), rate(acceleration)
     wide = gap > WIDE * edge
     way = np.where(wide, (1.0 - LEFT) * gap, gap + BEYOND * edge)
-    # Schemes that close gaps at the end of an increment may begin with any gap this small.
+    # Schemes that close gaps at the end of an increment may start with such small gaps.
     least = pair.noise if pair.start is not None else BEYOND * edge
     square = speed**2 + 2.0 * growth * way
     root = speed + np.sqrt(np.maximum(square, 0.0))
@@ -159,7 +160,7 @@ def _time_to_contact(
 def _time_in_reach(
     pair: Pair, which: NDArray[np.bool_], x: Floats, rates: Floats, dt: float
 ) -> float:
-    """Time after which surfaces that see nothing of each other are near, if that is before `dt`."""
+    """Time after which distant surfaces are near each other, if that is before `dt`."""
     if not np.isfinite(dt):
         return np.inf
     new = x + dt * rates
@@ -182,7 +183,8 @@ def _time_in_reach(
     when = min(times, default=np.inf)
     if not np.isfinite(when):
         return np.inf
-    # Half of the way, or all but what is within reach, where gaps and closing velocities are known.
+    # Half of the distance, or all up to the reach, within which gaps and closing velocities are
+    # known.
     way = float(np.hypot(*(move[nodes] - mean).T).max())
     share: float = max(0.5, 1.0 - 0.25 * pair.reach / way)
     return share * when * dt

@@ -1,4 +1,4 @@
-"""Sharp corners of a master that press into a slave surface where it has no constraint."""
+"""Sharp corners of a master that penetrate a slave surface between its constraints."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Depth from which a corner is named, and beyond which it is on the far side of a body [edges].
+#: Depth from which a corner is reported, and beyond which it is on the far side of a body [edges].
 NAMED, FAR = 0.1, 2.0
 
 
 def sunk_corner(contact_term: ContactTerm) -> str:
-    """What to say of the deepest corner of a master inside a slave surface, or ''.
+    """Message on the deepest corner of a master inside a slave surface, or ''.
 
-    Gaps belong to slave nodes, with mortar as means over edges. A corner between two nodes is
-    therefore free to go in, until a node of the slave meets the side of the corner and wedges.
+    Gaps are defined at slave nodes, with mortar as means over edges. A corner between two nodes can
+    therefore penetrate until a slave node is in contact with the side of the corner and jams.
     """
     x = contact_term.positions(contact_term.u)[:, :2]
     worst, said = NAMED, ""

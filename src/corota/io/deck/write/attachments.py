@@ -31,7 +31,7 @@ def model_damping(writer: Writer, steps: Sequence[Step]) -> str:
     Raises
     ------
     UnsupportedError
-        If steps differ in it, or what materials have would not stay theirs.
+        If steps differ in it, or the damping of materials would change.
     """
     taking = [s for s in steps if isinstance(s, Dynamic) or _complex(s)]
     pairs = {tuple(map(float, s.rayleigh)) for s in taking}  # type: ignore[attr-defined]
@@ -61,7 +61,7 @@ def material_damping(material: Material) -> str:
 
 
 def attachment_cards(writer: Writer) -> Iterator[str]:
-    """Point masses and dashpots: elements of their own with a card for the value.
+    """Point masses and dashpots: separate elements with a card for the value.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def velocity_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
         if item.dof is not None or len(item.value) == 2 or item.value[2] == 0.0:
             pairs = [(0 if item.dof is None else item.dof, item.value[0])]
             if item.dof is None:
-                # What an earlier item let spin does so no longer.
+                # An earlier spin of these nodes is replaced.
                 pairs += [(1, item.value[1])] + ([(2, 0.0)] if spun else [])
             for target in writer.nodes(item.nodes if len(item.nodes) else _every(writer)):
                 for dof, value in pairs:

@@ -115,7 +115,7 @@ def _body(writer: Writer, load: BodyForce) -> str:
 
 
 def _area(writer: Writer, where: str | Ints) -> float:
-    """Area of edges times thickness [length^2], over which a resultant is spread."""
+    """Area of edges times thickness [length^2], over which a resultant is distributed."""
     mesh = writer.mesh
     edges = mesh.edge_pairs(where)
     area = 0.0

@@ -242,7 +242,7 @@ class _Writer:
         return np.concatenate(planar)
 
     def cell_set(self, where: str | Ints) -> str:
-        """Name of an element set, invented for an array."""
+        """Name of an element set, generated for an array."""
         where = self._cells(where)
         if isinstance(where, str):
             return plain(where or "all")
@@ -252,7 +252,7 @@ class _Writer:
         return self._invent("ELSET", self.mesh.cell_labels[where])
 
     def edge_set(self, where: str | Ints) -> str:
-        """Name of a surface, invented for an array."""
+        """Name of a surface, generated for an array."""
         if isinstance(where, str):
             return plain(where)
         for edges, name in [*((e, n) for n, e in self.mesh.edge_sets.items()), *self._edges]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from corota.model.materials import Material
 
-#: Plastic strain up to which a table holds linear hardening: no analysis comes near.
+#: Plastic strain up to which a table represents linear hardening, beyond any analysis.
 FAR = 100.0
 #: Constants on a data line.
 PER_ROW = 8

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
     from corota.model.loads import AppliedLoad, LoadKind
 
-#: Cards that take away the loads of a kind.
+#: Cards that remove the loads of a kind.
 _NEW: dict[LoadKind, str] = {"force": "CLOAD", "distributed": "DLOAD", "temperature": "TEMPERATURE"}
-#: Arcs of a path in a deck are shares of one load.
+#: Arcs of a path in a deck are fractions of one load.
 _ARCS = 1.0
 #: Number of the last mode where all are meant.
 _EVERY_MODE = 1_000_000
@@ -66,7 +66,7 @@ def step_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
                 if index > 1:
                     supports = [s for s in model.supports if s.value] + supports
         elif not isinstance(step, Frequency):
-            # The model's loads act from the first step on that is loaded at all.
+            # The model's loads act from the first loaded step on.
             loads += [x for x in own if not loaded or step.renews(kind_of(x))]
             loaded = loaded or not isinstance(step, SteadyState)
         loads += applied(step.loads, model.mesh)
@@ -94,7 +94,7 @@ def step_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
 
 
 class _Says:
-    """A step, and what of it has no card.
+    """A step, and its options without a card.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def _controlled(says: _Says, where: Any) -> int:
 
 
 def _controls(step: Static) -> str:
-    """Tolerance and iterations; they hold until the next card, so every step says its own."""
+    """Tolerance and iterations; they hold until the next card, so every step has its own."""
     text = "*CONTROLS, RESET\n"
     if step.tolerance != 1e-9:
         text += f"*CONTROLS, PARAMETERS=FIELD\n{number(step.tolerance)},\n"
@@ -279,7 +279,7 @@ def _outputs(writer: Writer, step: Step) -> Iterator[str]:
         yield "\n" + ", ".join(request.variables) + "\n"
 
 
-#: What writes the cards of a procedure: ``*STEP``, and the procedure itself.
+#: Writers of the cards of a procedure: ``*STEP``, and the procedure itself.
 PROCEDURES: dict[type[Step], Callable[[_Says], tuple[str, str]]] = {
     Static: _static,
     Dynamic: _dynamic,

@@ -1,4 +1,4 @@
-"""Names, numbers and lists as decks hold them."""
+"""Names, numbers and lists in the format of decks."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 #: Entries on a line of a set.
 PER_LINE = 10
-#: Degrees of freedom of decks, by ours.
+#: Degrees of freedom of decks by ours.
 DOFS = (1, 2, 6)
 
 
 class Writer(Protocol):
-    """What the parts of the writer use of it: the model, and names for its places."""
+    """Interface of the writer for its parts: the model, and names of sets."""
 
     model: Model
     mesh: Mesh
@@ -29,15 +29,15 @@ class Writer(Protocol):
         ...
 
     def node_set(self, where: str | Ints) -> str:
-        """Name of a node set, invented for an array."""
+        """Name of a node set, generated for an array."""
         ...
 
     def cell_set(self, where: str | Ints) -> str:
-        """Name of an element set, invented for an array."""
+        """Name of an element set, generated for an array."""
         ...
 
     def edge_set(self, where: str | Ints) -> str:
-        """Name of a surface, invented for an array."""
+        """Name of a surface, generated for an array."""
         ...
 
 
@@ -52,7 +52,7 @@ def numbers(values: Iterable[float]) -> str:
 
 
 def plain(name: str) -> str:
-    """Name that a deck can hold; one that starts with a digit would be read as a number."""
+    """Valid name in a deck; one that starts with a digit would be read as a number."""
     text = re.sub(r"[\s,=*\"]+", "_", name)
     return f"_{text}" if re.match(r"[-+.\d]", text) else text
 
