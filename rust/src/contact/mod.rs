@@ -5,19 +5,22 @@
 //! symmetry of the frictionless tangent hold by construction.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod active_set;
 pub mod curve;
+pub mod discretization;
+pub mod law;
 pub mod master;
-pub mod mortar;
-pub mod node;
 pub mod pair;
 pub mod search;
+pub mod sides;
 pub mod slave;
 pub mod terms;
-pub mod tie;
 pub mod tree;
 
 pub use curve::{Edge, Shape};
+pub use law::ContactLaw;
 pub use master::{Rigid, Surface};
-pub use pair::{Contact, Kind, Method};
+pub use pair::Contact;
+pub use sides::Distances;
 pub use slave::Slave;
 pub use terms::Terms;

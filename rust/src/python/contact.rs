@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::pool;
-use crate::contact::pair::Distances;
+use crate::contact::discretization::{self, DISCRETIZATIONS, Entry};
 use crate::contact::terms::WIDTH;
-use crate::contact::{Contact as Pair, Edge, Method, Rigid, Shape, Surface, Terms};
+use crate::contact::{Contact as Pair, Distances, Edge, Rigid, Shape, Surface, Terms};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,12 +14,12 @@ type Floats<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
 type Numbers<'py> = PyReadonlyArray2<'py, i64>;
 
-fn bad(text: impl Into<String>) -> PyErr {
+pub(super) fn bad(text: impl Into<String>) -> PyErr {
     PyValueError::new_err(text.into())
 }
 
 /// Rows of `N` numbers.
-fn rows<'a, const N: usize, T: numpy::Element>(
+pub(super) fn rows<'a, const N: usize, T: numpy::Element>(
     array: &'a PyReadonlyArray2<'_, T>,
     name: &str,
 ) -> PyResult<&'a [[T; N]]> {
@@ -74,12 +74,17 @@ fn shape(edges: &mut [Edge], shapes: &[i64]) -> PyResult<()> {
     Ok(())
 }
 
-fn method(name: &str) -> PyResult<Method> {
-    match name {
-        "mortar" => Ok(Method::Mortar),
-        "node_to_segment" => Ok(Method::NodeToSegment),
-        other => Err(bad(format!("method must be mortar or node_to_segment, not {other}"))),
-    }
+/// Facts of all discretizations: name, and whether it joins the surfaces or integrates.
+#[pyfunction]
+fn contact_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let facts = |entry: &Entry| {
+        let d = PyDict::new(py);
+        d.set_item("name", entry.name)?;
+        d.set_item("joins", entry.joins)?;
+        d.set_item("integrates", entry.integrates)?;
+        Ok(d)
+    };
+    DISCRETIZATIONS.iter().map(facts).collect()
 }
 
 /// A pair of boundaries that may touch, or are tied.
@@ -115,18 +120,18 @@ impl Contact {
         x: &[[f64; 3]],
         slave: (Vec<Edge>, Vec<f64>),
         master: Option<Surface>,
-        method: Method,
-        tied: bool,
+        method: &str,
         distances: Distances,
     ) -> PyResult<Self> {
         let Distances { reach, margin, depth } = distances;
         if !(reach > 0.0 && margin >= 0.0 && depth > 0.0 && reach.is_finite()) {
             return Err(bad("reach and depth are positive, margin is not negative"));
         }
-        if tied && method != Method::Mortar {
-            return Err(bad("ties are mortar ties"));
+        let entry = discretization::find(method).map_err(bad)?;
+        if entry.joins && !matches!(master, Some(Surface::Edges(_))) {
+            return Err(bad(format!("{method} joins two boundaries of the mesh")));
         }
-        let pair = Pair::new(x, slave, master, method, tied, distances);
+        let pair = Pair::new(x, slave, master, entry, distances);
         Ok(Self { pair, n_nodes: x.len(), terms: Vec::new(), threads: 1 })
     }
 
@@ -149,7 +154,7 @@ impl Contact {
     #[staticmethod]
     #[pyo3(signature = (
         reference, slave_nodes, slave_bulge, slave_thickness, master_nodes, master_bulge, *,
-        master_shapes=None, method="mortar", tie=false, reach, margin, depth=f64::INFINITY
+        master_shapes=None, method="mortar", reach, margin, depth=f64::INFINITY
     ))]
     #[allow(clippy::too_many_arguments)]
     fn edges(
@@ -161,7 +166,6 @@ impl Contact {
         master_bulge: Floats<'_>,
         master_shapes: Option<PyReadonlyArray1<'_, i64>>,
         method: &str,
-        tie: bool,
         reach: f64,
         margin: f64,
         depth: f64,
@@ -174,7 +178,7 @@ impl Contact {
         }
         let master = Surface::Edges(master);
         let distances = Distances { reach, margin, depth };
-        Self::wrap(x, slave, Some(master), self::method(method)?, tie, distances)
+        Self::wrap(x, slave, Some(master), method, distances)
     }
 
     /// A boundary with itself; a penetration beyond half the local thickness is no contact.
@@ -193,7 +197,7 @@ impl Contact {
         let x = rows::<3, f64>(&reference, "reference")?;
         let slave = sides(x, &nodes, &bulge, &thickness)?;
         let distances = Distances { reach, margin, depth: f64::INFINITY };
-        Self::wrap(x, slave, None, self::method(method)?, false, distances)
+        Self::wrap(x, slave, None, method, distances)
     }
 
     /// A boundary and a rigid curve.
@@ -232,7 +236,7 @@ impl Contact {
         };
         let rigid = Rigid::new(rows::<7, f64>(&segments, "segments")?, node, point).map_err(bad)?;
         let distances = Distances { reach, margin, depth };
-        Self::wrap(x, slave, Some(Surface::Rigid(rigid)), self::method(method)?, false, distances)
+        Self::wrap(x, slave, Some(Surface::Rigid(rigid)), method, distances)
     }
 
     /// Mesh node of each constraint: those of nodes, then those of facets by their first node.
@@ -254,16 +258,16 @@ impl Contact {
     /// Distance taken off the gap at each constraint.
     #[getter]
     fn offset<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.pair.offset)
+        PyArray1::from_slice(py, self.pair.offset())
     }
 
     #[setter]
     fn set_offset(&mut self, offset: Floats<'_>) -> PyResult<()> {
         let offset = offset.as_slice()?;
-        if offset.len() != self.pair.offset.len() {
-            return Err(bad(format!("the offsets are {} numbers", self.pair.offset.len())));
+        if offset.len() != self.pair.offset().len() {
+            return Err(bad(format!("the offsets are {} numbers", self.pair.offset().len())));
         }
-        self.pair.offset.copy_from_slice(offset);
+        self.pair.offset_mut().copy_from_slice(offset);
         Ok(())
     }
 
@@ -328,7 +332,7 @@ impl Contact {
         q: Floats<'py>,
     ) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (p, q) = (p.as_slice()?, q.as_slice()?);
-        let n = self.pair.offset.len();
+        let n = self.pair.offset().len();
         if p.len() != n || q.len() != n {
             return Err(bad(format!("p and q are {n} numbers each")));
         }
@@ -366,7 +370,7 @@ impl Contact {
         (
             places.into_pyarray(py),
             whole.into_pyarray(py),
-            PyArray1::from_slice(py, &self.pair.offset),
+            PyArray1::from_slice(py, self.pair.offset()),
         )
     }
 
@@ -385,6 +389,11 @@ impl Contact {
         }
     }
 
+    /// Forget which masters the nodes had, to which they would keep for a while.
+    fn forget(&mut self) {
+        self.pair.forget();
+    }
+
     /// Return to the masters remembered.
     fn restore(&mut self) {
         self.pair.restore();
@@ -393,7 +402,7 @@ impl Contact {
 
 impl Contact {
     fn collect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let n = self.pair.offset.len();
+        let n = self.pair.offset().len();
         let mut order: Vec<(usize, usize, usize)> = Vec::new();
         for (t, terms) in self.terms.iter().enumerate() {
             for (s, share) in terms.shares.iter().enumerate() {
@@ -447,5 +456,6 @@ fn matrix<T: numpy::Element, const N: usize>(
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(contact_methods, m)?)?;
     m.add_class::<Contact>()
 }

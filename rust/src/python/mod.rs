@@ -3,6 +3,7 @@
 
 mod blocks;
 mod contact;
+mod contact_law;
 mod edges;
 mod io;
 mod linear;
@@ -17,6 +18,7 @@ use pyo3::prelude::*;
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     contact::register(m)?;
+    contact_law::register(m)?;
     edges::register(m)?;
     io::register(m)?;
     linear::register(m)?;

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from corota import _core
 from corota.display import Brief
 from corota.errors import InputError, Location
 
@@ -23,7 +24,10 @@ if TYPE_CHECKING:
 
 #: Treatment of overlaps and gaps at the start.
 STARTS = ("keep", "adjust", "ramp")
-METHODS = ("mortar", "node_to_segment")
+#: Facts of the discretizations of contact that the core knows, by their names.
+METHODS: dict[str, dict[str, Any]] = {
+    facts["name"]: facts for facts in _core.contact_methods() if not facts["joins"]
+}
 
 
 @dataclass
@@ -216,15 +220,14 @@ class PressureLaw(Brief):
             raise InputError("the numbers of a pressure law must be > 0", self.where)
 
     @property
+    def constants(self) -> tuple[str, list[float], list[float]]:
+        """Kind, pressures and overclosures, as the core takes them."""
+        return self.kind, self.pressure.tolist(), self.overclosure.tolist()
+
+    @property
     def start(self) -> float:
         """Overclosure at which the pressure begins [length]; negative before contact."""
-        if self.kind == "linear":
-            return 0.0
-        return (
-            -float(self.overclosure[0])
-            if self.kind == "exponential"
-            else float(self.overclosure[0])
-        )
+        return _core.ContactLaw(*self.constants).start
 
     def __call__(self, w: Floats) -> tuple[Floats, Floats, Floats]:
         """Pressure, slope and energy per area at overclosures above the start.
@@ -238,29 +241,8 @@ class PressureLaw(Brief):
         pressure, slope, energy : ndarray, shape (n,)
             [force/length^2], [force/length^3], [force/length].
         """
-        if self.kind == "linear":
-            k = float(self.pressure[0])
-            return k * w, np.full_like(w, k), 0.5 * k * w * w
-        if self.kind == "exponential":
-            c, p0 = float(self.overclosure[0]), float(self.pressure[0]) / (math.e - 1.0)
-            # Linear beyond 30 c: the exponential of a bad iterate must not overflow.
-            s = w / c + 1.0
-            near = np.minimum(s, 30.0)
-            e, over = np.exp(near), s - near
-            slope = p0 / c * (e - 1.0 + near * e)
-            at = p0 * near * (e - 1.0)
-            energy = p0 * c * (near * e - e + 1.0 - 0.5 * near * near)
-            return (
-                at + slope * c * over,
-                slope,
-                energy + at * c * over + 0.5 * slope * (c * over) ** 2,
-            )
-        ws, ps = self.overclosure, self.pressure
-        at = np.clip(np.searchsorted(ws, w, side="right") - 1, 0, len(ws) - 2)
-        slopes = np.diff(ps) / np.diff(ws)
-        below = np.concatenate([[0.0], np.cumsum(0.5 * (ps[1:] + ps[:-1]) * np.diff(ws))])
-        d = w - ws[at]
-        return ps[at] + slopes[at] * d, slopes[at], below[at] + ps[at] * d + 0.5 * slopes[at] * d**2
+        pressure, slope, energy = _core.ContactLaw(*self.constants).curve(np.asarray(w, float))
+        return pressure, slope, energy
 
 
 @dataclass
@@ -275,6 +257,7 @@ class ContactPair(Brief):
     master : str, array_like of int or RigidCurve
         The opposite surface; the slave again for self-contact.
     method : {"mortar", "node_to_segment"}
+        Gaps weighted and integrated over slave edges, or measured at slave nodes.
     friction : float
         Coulomb coefficient, >= 0.
     law : PressureLaw, optional
@@ -303,7 +286,7 @@ class ContactPair(Brief):
 
     slave: str | Ints
     master: str | Ints | RigidCurve
-    method: Literal["mortar", "node_to_segment"] = "mortar"
+    method: str = "mortar"
     friction: float = 0.0
     law: PressureLaw | None = None
     clearance: float | None = None

@@ -357,7 +357,7 @@ class Model(Loading, LineSections, InitialFields):
         slave: str | ArrayLike,
         master: str | ArrayLike | RigidCurve,
         *,
-        method: Literal["mortar", "node_to_segment"] = "mortar",
+        method: str = "mortar",
         friction: float = 0.0,
         law: PressureLaw | None = None,
         clearance: float | None = None,

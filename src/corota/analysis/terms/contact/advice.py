@@ -26,7 +26,7 @@ EDGES, TURN = 2.0, math.radians(20.0)
 def fillet_note(pair: Pair) -> str:
     """A remark on round corners of a rigid curve that are too small for the slave edges, or ''."""
     curve = getattr(pair.item, "master", None)
-    if not isinstance(curve, RigidCurve) or getattr(pair.item, "method", "") != "mortar":
+    if not isinstance(curve, RigidCurve) or pair.beside is None:
         return ""
     rows = curve.segments
     # Clockwise arcs have the rigid body inside: the corners that slave edges pass around.

@@ -325,7 +325,7 @@ class ContactTerm(Term):
         if not self._stiff:
             self._measure(values)
         x, old = self.positions(u), self.positions(self.u)
-        force, size = np.zeros(system.n_dofs + 1), np.zeros(system.n_dofs + 1)
+        force, size = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
         found = []
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
@@ -333,15 +333,10 @@ class ContactTerm(Term):
                 terms = pair.evaluate(x, old, system.nlgeom)
             found.append(terms)
             acting = terms.acting
-            share = self.share(pair)
-            part = share * p[acting.constraint, None] * acting.gap_gradient
-            if pair.two:
-                part = part + q[acting.constraint, None] * acting.slip_gradient
             where = self.dofs(acting.variables)
-            np.add.at(force, where, part)
-            np.add.at(size, where, np.abs(part))
+            pair.add_forces(acting, where, self.share(pair) * p, q, force, size)
         damping = self._damping(step_time)
-        state = ContactState(found, system.at_nodes(force[:-1]), size[:-1], multipliers, damping)
+        state = ContactState(found, system.at_nodes(force), size, multipliers, damping)
         if len(self.law_force):
             now = self._forces_of_laws(found, multipliers)
             state.of_end = state.force + (1.0 - self.law_share) * now
@@ -354,12 +349,12 @@ class ContactTerm(Term):
 
     def _forces_of_laws(self, terms: list[Terms], multipliers: Floats) -> Floats:
         """Pressures of the pairs with a law on the nodes, shape (n_dofs,)."""
-        force = np.zeros(self.system.n_dofs + 1)
+        force = np.zeros(self.system.n_dofs)
         for pair, own, (p, _) in zip(self.pairs, terms, self.parts(multipliers), strict=True):
             if pair.law is not None:
-                part = p[own.constraint, None] * own.gap_gradient
-                np.add.at(force, self.dofs(own.variables), part)
-        return self.system.at_nodes(force[:-1])
+                none = np.zeros(pair.n)
+                pair.add_forces(own, self.dofs(own.variables), p, none, force, None)
+        return self.system.at_nodes(force)
 
     def _keep_law_force(self) -> None:
         """Keep the forces of pressure laws that the next increment begins with."""

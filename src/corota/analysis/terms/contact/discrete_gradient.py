@@ -19,18 +19,12 @@ from corota.analysis.terms.contact.gaps import COVERED
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from corota.analysis.terms.contact.gaps import Terms
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
-    Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
-
-#: Relative changes of overclosure below which a mean is a quadrature.
-NEAR = 1e-4
 
 
 def discrete_gradient(
@@ -118,25 +112,4 @@ def _without_symmetry(curve: Any, variables: Ints, x: Floats, move: Floats) -> F
     return np.where(first, dx, np.where(second, out_y, 0.0))
 
 
-def mean_pressure(law: Law, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Pressure of a law over an increment between two gaps, and its slope by overclosure.
-
-    Parameters
-    ----------
-    law : callable
-        Pressure, slope and energy per area at gaps.
-    begin, end : ndarray, shape (n,)
-        Gaps [length].
-    """
-    p0, _, w0 = law(begin)
-    p1, slope1, w1 = law(end)
-    way = begin - end
-    near = np.abs(way) <= NEAR * np.maximum(np.abs(begin), np.abs(end))
-    step = np.where(near, 1.0, way)
-    p_middle, slope_middle, _ = law(0.5 * (begin + end))
-    mean = np.where(near, (p0 + 4.0 * p_middle + p1) / 6.0, (w1 - w0) / step)
-    slope = np.where(near, (slope1 + 2.0 * slope_middle) / 6.0, (p1 - mean) / step)
-    return mean, slope
-
-
-__all__ = ["discrete_gradient", "mean_pressure"]
+__all__ = ["discrete_gradient"]

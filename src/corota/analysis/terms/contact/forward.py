@@ -163,17 +163,12 @@ class ForwardContact:
 
     def _forces(self, found: list[Terms], multipliers: Floats) -> tuple[Floats, Floats]:
         contact, n = self.contact, self.contact.system.n_dofs
-        force, size = np.zeros(n + 1), np.zeros(n + 1)
+        force, size = np.zeros(n), np.zeros(n)
         for pair, terms, (p, q) in zip(
             contact.pairs, found, contact.parts(multipliers), strict=True
         ):
-            part = p[terms.constraint, None] * terms.gap_gradient
-            if pair.two:
-                part = part + q[terms.constraint, None] * terms.slip_gradient
-            where = contact.dofs(terms.variables)
-            np.add.at(force, where, part)
-            np.add.at(size, where, np.abs(part))
-        return force[:-1], size[:-1]
+            pair.add_forces(terms, contact.dofs(terms.variables), p, q, force, size)
+        return force, size
 
     def _count(
         self,
@@ -419,7 +414,7 @@ class _Increment:
             mine = np.flatnonzero(movable[first : first + pair.n])
 
             def law(rows: Ints, gap: Floats, pair: Pair = pair) -> tuple[Floats, Floats]:
-                pressure, slope, _ = pair.pressure(gap / area[rows])
+                pressure, slope, _ = pair.conditions.pressure(gap / area[rows])
                 return pressure, -slope / area[rows]
 
             out.append((place[first + mine], law))

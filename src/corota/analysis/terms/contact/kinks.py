@@ -111,7 +111,7 @@ class Sides:
             for pair in term.pairs:
                 multipliers[pair.first + pair.n : pair.first + pair.width] = 0.0
         for pair in term.pairs:
-            pair.let_go()
+            pair.core.forget()
         return term.evaluate(u, multipliers, self.time, np.zeros(0))
 
     def jump(self, place: Callable[[float], Floats]) -> tuple[float, float, Floats] | None:

@@ -9,8 +9,8 @@ import numpy as np
 
 from corota.analysis.linear.saddle_point import Coupling
 from corota.analysis.linear.triplets import Triplets
-from corota.analysis.terms.contact.columns import stacked
 from corota.analysis.terms.contact.equations import ContactEquations
+from corota.analysis.terms.contact.linearization import stacked
 from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
 
 if TYPE_CHECKING:

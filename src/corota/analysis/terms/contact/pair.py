@@ -10,11 +10,12 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from corota.analysis.terms.contact.discrete_gradient import discrete_gradient, mean_pressure
+from corota import _core
+from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
 from corota.analysis.terms.contact.gaps import COVERED, Terms
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
-from corota.model.contact import ContactPair, Tie
+from corota.model.contact import METHODS, ContactPair, Tie
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+    Constraints = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats | None]
 
-#: States of a constraint.
+#: States of a constraint, as the laws of the core number them.
 OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
@@ -80,7 +82,7 @@ class Pair:
         self.owner = np.arange(self.n)  # constraint that owns a node's part
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
-        if isinstance(item, ContactPair) and item.method == "mortar":
+        if isinstance(item, ContactPair) and METHODS[item.method]["integrates"]:
             place = np.full(len(system.per_node) + 1, -1, np.int64)
             place[self.nodes] = np.arange(self.n)
             ends = place[self.slave.nodes[:, :2]]
@@ -95,7 +97,16 @@ class Pair:
         self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
         self.noise = 32.0 * EPS * (system.length + far)  # gaps that are rounding [length]
+        self.conditions = self._conditions()
         self.name = item.name
+
+    def _conditions(self) -> _core.ContactLaw:
+        """The law of the constraints: what gaps, slips and tractions owe each other."""
+        if self.tied:
+            return _core.ContactLaw.joined(noise=self.noise)
+        kind, pressure, overclosure = ("hard", [], []) if self.law is None else self.law.constants
+        along = ("coulomb", [self.friction]) if self.friction else ("frictionless", [])
+        return _core.ContactLaw(kind, pressure, overclosure, *along, noise=self.noise)
 
     # -- evaluation --------------------------------------------------------------------
 
@@ -142,14 +153,6 @@ class Pair:
         out: NDArray[np.bool_] = ~met[self.surface]
         return out
 
-    def let_go(self) -> None:
-        """Reset the masters of the nodes, which they would otherwise keep for some time."""
-        if getattr(self.item, "method", "") != "node_to_segment":
-            return
-        places, masters, offset = self.core.state()
-        masters[1 : 1 + self.of_nodes] = -1
-        self.core.restore_state(places, masters, offset)
-
     def _since(self, terms: Terms) -> Terms:
         """Gaps of the persistency condition (Laursen & Chawla 1997).
 
@@ -182,7 +185,7 @@ class Pair:
         gap, area = (np.zeros(self.n) + np.bincount(self.owner, t, self.n) for t in self.start)
         if self.law is None:
             return gap
-        return np.where(area > COVERED * self.full, gap, -self.law.start * self.area)
+        return np.where(area > COVERED * self.full, gap, -self.conditions.start * self.area)
 
     def _read(self, raw: dict[str, Any]) -> Terms:
         self.seen = self.seen or bool(len(raw["constraint"]))
@@ -274,51 +277,25 @@ class Pair:
 
     # -- states ------------------------------------------------------------------------
 
+    def _at(self, terms: Terms) -> Constraints:
+        """The constraints as arrays, as the law takes them."""
+        begin = None if self.start is None or self.law is None else self.gap_of_start()
+        own = self.full, self.area, self.stiffness
+        return terms.gap, terms.slip, terms.area, *own, begin
+
     def trial(self, terms: Terms, p: Floats) -> tuple[Floats, Floats]:
         """Gap [length] and trial pressure of each constraint; not covered: infinitely open."""
-        seen = terms.area > COVERED * self.full
-        if self.law is not None:
-            # The areas of the law are those of the increment's start: its tangent is exact.
-            gap = np.where(seen, terms.gap / self.area, np.inf)
-            least = gap
-            if self.start is not None:  # its pressure is a mean over the increment
-                least = np.minimum(gap, self.gap_of_start() / self.area)
-            return gap, np.where(seen, -least - self.law.start, -np.inf)
-        gap = np.where(seen, terms.gap / np.where(seen, terms.area, 1.0), np.inf)
-        return gap, np.where(seen, p - self.stiffness * np.where(seen, gap, 0.0), -np.inf)
+        return self.conditions.trial(self._at(terms), p)
 
     def states(
         self, terms: Terms, p: Floats, q: Floats, last: NDArray[np.int8] | None = None
     ) -> NDArray[np.int8]:
         """State of each constraint by its gap, slip and tractions, shape (n,).
 
-        Closed constraints have no linearized gap after a correction: their pressure alone
-        decides. The remaining gap is a nonlinear remainder, which in a slender body
-        corresponds to many times the pressure.
+        Closed constraints have no linearized gap after the `last` correction: their pressure alone
+        decides.
         """
-        if self.tied:
-            return np.where(terms.area > COVERED * self.full, CLOSED, OPEN).astype(np.int8)
-        _, push = self.trial(terms, p)
-        # What is closed without pressure stays, or nothing would hold a body that just rests.
-        rounding = self.noise if self.law is not None else self.stiffness * self.noise
-        shear = self.shear(terms, q)
-        if last is not None and self.law is None:
-            seen = terms.area > COVERED * self.full
-            push = np.where((last != OPEN) & seen, np.maximum(p, push), push)
-            shear = np.where(last == CLOSED, q, shear)
-        state = np.where(push > -rounding, CLOSED, OPEN).astype(np.int8)
-        if self.friction:
-            bound = self.friction * (p if self.law is not None else push)
-            if last is not None:
-                # Slipping constraints continue to slip unless they reverse: at the bound rounding
-                # would decide.
-                bound = np.where(last == SLIPPING, (1.0 - 1e-6) * bound, bound)
-            slips = (state == CLOSED) & (np.abs(shear) > bound)
-            if last is not None:
-                # Constraints that reverse stick first.
-                slips &= (last != SLIPPING) | (shear * q >= 0.0)
-            state[slips] = SLIPPING
-        return state
+        return self.conditions.states(self._at(terms), p, q, last)
 
     def slip_direction(self, terms: Terms, q: Floats) -> Floats:
         """Sign of the shear traction if it slips, shape (n,)."""
@@ -326,87 +303,49 @@ class Pair:
 
     def shear(self, terms: Terms, q: Floats) -> Floats:
         """Trial shear traction, shape (n,)."""
-        seen = terms.area > COVERED * self.full
-        slip: Floats = terms.slip / np.where(seen, terms.area, 1.0)
-        return q - self.stiffness * np.where(seen, slip, 0.0)
+        return self.conditions.shear(self._at(terms), q)
 
     def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
         """Contact residual as a force by constraint, shape (n,)."""
-        seen = terms.area > COVERED * self.full
-        area = np.where(seen, terms.area, self.full)
-
-        def beyond(length: Floats) -> Floats:
-            return np.sign(length) * np.maximum(np.abs(length) - self.noise, 0.0)
-
-        gap = beyond(terms.gap / area)
-        slip = beyond(terms.slip / area)
-        c = self.stiffness
-        if self.tied:
-            return np.where(seen, area * c * np.hypot(gap, slip), self.full * np.hypot(p, q))
-        if self.law is None:
-            complementarity = np.abs(np.minimum(c * gap, p))
-        else:
-            complementarity = np.abs(p - self._law_now(terms.gap / self.area)[0])
-        complementarity = np.where(seen, complementarity, np.abs(p))
-        if self.friction:
-            bound = self.friction * np.maximum(p, 0.0)
-            complementarity += np.abs(q - np.where(seen, np.clip(q - c * slip, -bound, bound), 0.0))
-        return area * complementarity
-
-    def pressure(self, gap: Floats) -> tuple[Floats, Floats, Floats]:
-        """The law at gaps: pressure, slope, energy per area; zero where it does not act."""
-        assert self.law is not None
-        begun = -gap > self.law.start
-        p, slope, energy = self.law(np.where(begun, -gap, self.law.start))
-        return (np.where(begun, p, 0.0), np.where(begun, slope, 0.0), np.where(begun, energy, 0.0))
-
-    def _law_now(self, gap: Floats) -> tuple[Floats, Floats]:
-        """Pressure of the law in this increment, which ends with gaps, and its slope."""
-        if self.start is None:
-            return self.pressure(gap)[:2]
-        return mean_pressure(self.pressure, self.gap_of_start() / self.area, gap)
+        return self.conditions.residual(self._at(terms), p, q)
 
     def law_energy(self, terms: Terms) -> float:
         """Energy of the pressure law [force*length]."""
         if self.law is None:
             return 0.0
         seen = terms.area > COVERED * self.full
-        gap = np.where(seen, terms.gap / self.area, -self.law.start)
-        return float((self.pressure(gap)[2] * self.area)[seen].sum())
+        return float(self.conditions.energy(self._at(terms))[seen].sum())
 
     def rows(
         self, terms: Terms, state: NDArray[np.int8], p: Floats, q: Floats, slip_direction: Floats
     ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """The linearized constraints: diagonals and right-hand sides of p and q, and the slope.
 
-        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone. `sense` is
-        the sign of slipping tractions.
+        A closed row reads ``-dG du + d dp = rhs``; an open one ``d dp = rhs`` alone.
 
         Returns
         -------
         diagonal_p, rhs_p, diagonal_q, rhs_q, follow : ndarray, shape (n,)
-            ``follow`` is dq / dp of slipping rows.
+            ``follow`` is dq / dp of slipping rows; without shear tractions it is zero.
         """
-        own = self.full / self.stiffness  # of the size of a row
-        closed = state != OPEN
-        dp = np.where(closed, 0.0, own)
-        rp = np.where(closed, terms.gap, -own * p)
-        if self.law is not None and closed.any():
-            area = self.area
-            if self.start is None:
-                value, slope, _ = self.law(np.maximum(-terms.gap / area, self.law.start))
-            else:
-                value, slope = self._law_now(terms.gap / area)
-            weight = area / np.where(slope > 0.0, slope, self.stiffness)
-            dp = np.where(closed, -weight, dp)
-            rp = np.where(closed, weight * (p - value), rp)
-        if not self.two:
-            return dp, rp, dp[:0], dp[:0], dp[:0]
-        sticks = state == CLOSED
-        dq = np.where(sticks, 0.0, own)
-        follow = np.where(state == SLIPPING, self.friction * slip_direction, 0.0)
-        rq = np.where(sticks, terms.slip, 0.0)
-        return dp, rp, dq, rq, follow
+        found = self.conditions.rows(self._at(terms), p, q, state, slip_direction)
+        return tuple(found)  # type: ignore[return-value]
+
+    def add_forces(
+        self, terms: Terms, dofs: Ints, p: Floats, q: Floats, force: Floats, size: Floats | None
+    ) -> None:
+        """Add the forces of tractions along the gradients of some terms, and their sizes, in place.
+
+        Parameters
+        ----------
+        dofs : ndarray of int, shape (m, v)
+            Of the variables of the terms, -1 for none.
+        p, q : ndarray, shape (n,)
+        force, size : ndarray, shape (n_dofs,)
+        """
+        gap, slip = terms.gap_gradient, terms.slip_gradient
+        shear = q if self.two else None
+        _core.add_contact_forces(terms.constraint, dofs, gap, slip, p, shear, force, size)
 
     # -- increments --------------------------------------------------------------------
 

@@ -79,26 +79,53 @@ class ContactProblem(Protocol):
         Dofs.
     last : list of ndarray or None
         States of the last correction.
+    seen : dict of bytes to int
+        How often a set of states came back.
     slip_directions : dict of int to ndarray
         Of slipping tractions, by the pair's first multiplier.
     flips : list of ndarray
         How often the state of each constraint has changed.
-    single, sliding, pivoted : int
-        Single changes, bodies that slid, and corrections by pivoting so far.
+    single, sliding, pivoted, corrections : int
+        Single changes, bodies that slid, corrections by pivoting, and all corrections so far.
+    waited : int
+        Iterations without progress.
+    cautious, pivoting : bool
+        Whether states change one by one, and whether they come from the whole linearized problem.
     loose : str
         Bodies that were unconstrained until contact was closed.
+    kink : Kink or None
+        Kink of the contact surfaces at which the bodies may rest.
+    kinks, beyond : int
+        Kinks tried, and corrections in which one carried more than its jump.
+    places : list of ndarray
+        Displacements of the last three evaluations.
+    time : float
+        Step time of the last evaluation.
+    stage : str
+        How the last correction was found.
     """
 
     n: int
     system: System
     contact_term: ContactTerm
     last: States | None
+    seen: dict[bytes, int]
     slip_directions: dict[int, Floats]
     flips: list[Ints]
     single: int
     sliding: int
     pivoted: int
+    corrections: int
+    waited: int
+    cautious: bool
+    pivoting: bool
     loose: str
+    kink: Any
+    kinks: int
+    beyond: int
+    places: list[Floats]
+    time: float
+    stage: str
 
     @property
     def border(self) -> SaddlePointSystem:
@@ -111,9 +138,31 @@ class ContactProblem(Protocol):
 
     def _pairs(self, contact_state: ContactState) -> Any: ...
 
+    def _moved(self, z: Floats) -> Floats: ...
+
+    def _choose(self, contact_state: ContactState) -> States: ...
+
     def _coupling(
         self, contact_state: ContactState, states: States
     ) -> tuple[Coupling, Floats, int]: ...
+
+    def _solve(
+        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
+    ) -> tuple[Floats, Floats, int]: ...
+
+    def _columns(
+        self, at: ContactEvaluation, right_sides: RightHandSides, states: States
+    ) -> tuple[Floats, int]: ...
+
+    def _far(self, du: Floats, right_sides: RightHandSides) -> bool: ...
+
+    def _let_slip(
+        self,
+        at: ContactEvaluation,
+        states: States,
+        right_sides: RightHandSides,
+        found: tuple[Floats, Floats, int],
+    ) -> tuple[Floats, Floats, int, States]: ...
 
 
 __all__ = ["ContactEvaluation", "ContactProblem", "RightHandSides"]

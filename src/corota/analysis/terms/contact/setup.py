@@ -226,8 +226,7 @@ def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, f
             slave.thickness,
             master.nodes,
             master.bulge,
-            method="mortar",
-            tie=True,
+            method="tie",
             reach=reach,
             margin=reach,
         )

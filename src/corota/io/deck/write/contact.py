@@ -56,6 +56,11 @@ def contact_cards(writer: Writer) -> Iterator[str]:
         adjust = f", ADJUST={float(pair.adjust)!r}" if pair.start == "adjust" else ""
         if adjust and pair.adjust_nodes is not None:
             adjust = f", ADJUST={writer.node_set(pair.adjust_nodes)}"
+        if pair.method not in _TYPES:
+            raise UnsupportedError(
+                f"contact pair {pair.name!r}: decks have no method {pair.method!r}; take one of "
+                f"{', '.join(_TYPES)}, or keep the model in Python"
+            )
         yield f"*CONTACT PAIR, INTERACTION=INTERACTION{number}, TYPE={_TYPES[pair.method]}"
         smooth = ", SMOOTH=0.5" if pair.smooth else ""
         yield f"{adjust}{smooth}\n{slave}, {master}\n"

@@ -8,9 +8,21 @@
 //! through the pairing, so a common rigid motion gives none.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Curve, GAUSS, dot, lift, outward, sub, unit};
-use super::master::Master;
+use super::super::curve::{Curve, GAUSS, dot, lift, outward, sub, unit};
+use super::super::master::Master;
+use super::super::search::each;
+use super::super::sides::Sides;
+use super::super::terms::{Function, Share, Terms, lifted};
+use super::{Discretization, Entry};
 use crate::base::Smooth;
+
+pub const ENTRY: Entry = Entry {
+    name: "mortar",
+    joins: false,
+    middles: false,
+    integrates: true,
+    new: |_, _| Box::new(Mortar),
+};
 
 /// Least cosine between the slave normal and the opposite of the master's: the side of a block
 /// that stands on the slave is no part of its foot, though the slave's dent tilts towards it.
@@ -185,4 +197,82 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
     }
     let t = lift::<T>(c).slope(r);
     dot(t, t).sqrt()
+}
+
+/// Weighted gaps and slips at the corners of slave edges.
+pub struct Mortar;
+
+impl Discretization for Mortar {
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
+        each(sides.n_items(), |i| self.edge(sides, i, x, old)).into_iter().flatten().collect()
+    }
+}
+
+impl Mortar {
+    fn edge(
+        &self,
+        sides: &Sides,
+        i: usize,
+        x: &[[f64; 3]],
+        old: Option<&[[f64; 3]]>,
+    ) -> Vec<Terms> {
+        let mut overlaps = overlaps(sides, i, x);
+        clip_occluded(&mut overlaps);
+        let width = sides.slave.edges[i].variables().len();
+        let terms = |o: &Overlap| {
+            let master = sides.candidates()[o.pair].1;
+            if width + sides.master.variables(master).len() <= 8 {
+                self.overlapped::<8>(sides, o, x, old)
+            } else {
+                self.overlapped::<12>(sides, o, x, old)
+            }
+        };
+        overlaps.iter().map(terms).collect()
+    }
+
+    fn overlapped<const D: usize>(
+        &self,
+        sides: &Sides,
+        overlap: &Overlap,
+        x: &[[f64; 3]],
+        old: Option<&[[f64; 3]]>,
+    ) -> Terms {
+        let (i, j) = sides.candidates()[overlap.pair];
+        let edge = &sides.slave.edges[i];
+        let variables = self.variables(sides, (i, j));
+        let v = lifted::<D>(&variables, x);
+        let (width, master) = (edge.variables().len(), sides.master.variables(j).len());
+        let slave = edge.curve(&v[..width]);
+        let master = sides.master.shape(j, &v[width..width + master]);
+        let now = Placed { slave: &slave, master: &master };
+        let before = old.map(|o| (edge.place(o), sides.master.place(j, o)));
+        let before = before.as_ref().map(|(slave, master)| Placed { slave, master });
+        let constraints = sides.slave.constraints[i];
+        let offset = [sides.offset[constraints[0]], sides.offset[constraints[1]]];
+        let sums = integrals(
+            overlap,
+            &now,
+            before.as_ref(),
+            &sides.reference[i],
+            sides.slave.thickness[i],
+            offset,
+        );
+        let share = |a: usize| Share {
+            constraint: constraints[a],
+            gap: (&sums.gap[a]).into(),
+            slip: sums.slip.as_ref().map_or_else(Function::none, |s| (&s[a]).into()),
+            area: sums.area[a],
+        };
+        Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }
+    }
+}
+
+/// What a slave edge sees of its candidates.
+pub fn overlaps(sides: &Sides, i: usize, x: &[[f64; 3]]) -> Vec<Overlap> {
+    let edge = sides.slave.edges[i].place(x);
+    let seen = |pair: usize| {
+        let master = sides.master.place(sides.candidates()[pair].1, x);
+        overlap(pair, &edge, &master, sides.distances.reach, sides.depth[i])
+    };
+    sides.of_item(i).filter_map(seen).collect()
 }

@@ -4,11 +4,23 @@
 //! so it costs no strain and a common rigid motion changes nothing.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Curve, GAUSS, Vec2, add, dot, outward, sub, times, unit};
-use super::master::Master;
-use super::mortar::Overlap;
-use super::slave::weights;
+use super::super::curve::{Curve, GAUSS, Vec2, add, dot, outward, sub, times, unit};
+use super::super::master::{Master, Surface};
+use super::super::search::each;
+use super::super::sides::Sides;
+use super::super::slave::weights;
+use super::super::terms::{Share, Terms, WIDTH, lifted};
+use super::mortar::{Overlap, clip_occluded, overlaps};
+use super::{Discretization, Entry};
 use crate::base::Smooth;
+
+pub const ENTRY: Entry = Entry {
+    name: "tie",
+    joins: true,
+    middles: true,
+    integrates: true,
+    new: |_, _| Box::new(Tie { pieces: Vec::new() }),
+};
 
 /// A point of the slave edge tied to one of the master.
 #[derive(Clone, Debug)]
@@ -81,4 +93,54 @@ pub fn areas(points: &[Point], n: usize) -> [f64; 3] {
         }
     }
     sums
+}
+
+/// Edges joined on the pairing of the reference configuration.
+pub struct Tie {
+    /// Points of each candidate.
+    pieces: Vec<Vec<Point>>,
+}
+
+impl Discretization for Tie {
+    fn bind(&mut self, sides: &mut Sides, x: &[[f64; 3]]) {
+        let mut kept = Vec::new();
+        for i in 0..sides.slave.edges.len() {
+            let mut overlaps = overlaps(sides, i, x);
+            clip_occluded(&mut overlaps);
+            for o in overlaps {
+                let candidate = sides.candidates()[o.pair];
+                let master = sides.master.place(candidate.1, x);
+                let thickness = sides.slave.thickness[i];
+                self.pieces.push(points(&o, &sides.reference[i], &master, thickness));
+                kept.push(candidate);
+            }
+        }
+        sides.keep(kept);
+    }
+
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], _: Option<&[[f64; 3]]>) -> Vec<Terms> {
+        each(sides.candidates().len(), |pair| self.joined(sides, pair, x))
+    }
+}
+
+impl Tie {
+    fn joined(&self, sides: &Sides, pair: usize, x: &[[f64; 3]]) -> Terms {
+        let (i, j) = sides.candidates()[pair];
+        let edge = &sides.slave.edges[i];
+        let variables = self.variables(sides, (i, j));
+        let v = lifted::<WIDTH>(&variables, x);
+        let slave = edge.curve(&v[..edge.variables().len()]);
+        let Surface::Edges(masters) = &sides.master else { unreachable!("ties join edges") };
+        let master = masters[j].curve(&v[edge.variables().len()..]);
+        let points = &self.pieces[pair];
+        let n = edge.n_nodes;
+        let (jumps, areas) = (jumps(points, &slave, &master, n), areas(points, n));
+        let share = |a: usize| Share {
+            constraint: sides.slave.constraints[i][a],
+            gap: (&jumps[a][0]).into(),
+            slip: (&jumps[a][1]).into(),
+            area: areas[a],
+        };
+        Terms { pair, variables, shares: (0..n).map(share).collect() }
+    }
 }

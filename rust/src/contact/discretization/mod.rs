@@ -1,0 +1,89 @@
+//! How the gaps of two surfaces are measured: what a discretization says, and the list of them.
+// SPDX-License-Identifier: BSD-3-Clause
+
+pub mod mortar;
+pub mod node_to_segment;
+pub mod tie;
+
+use super::search::{self, Candidate, Item};
+use super::sides::Sides;
+use super::slave::Slave;
+use super::terms::{Terms, WIDTH, join};
+
+/// All discretizations.
+pub const DISCRETIZATIONS: &[Entry] = &[mortar::ENTRY, node_to_segment::ENTRY, tie::ENTRY];
+
+/// Facts of a discretization, and how one is made for a pair in its reference configuration.
+pub struct Entry {
+    pub name: &'static str,
+    /// Joins the surfaces for good, on the pairing of the reference configuration.
+    pub joins: bool,
+    /// Constraints are at all nodes of the slave, middle nodes of edges included; else at corners.
+    pub middles: bool,
+    /// Gaps are integrals over slave edges: where the master ends, an edge is covered in part.
+    pub integrates: bool,
+    pub new: fn(&Sides, &[[f64; 3]]) -> Box<dyn Discretization>,
+}
+
+/// The discretization of that name.
+pub fn find(name: &str) -> Result<&'static Entry, String> {
+    DISCRETIZATIONS.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let names: Vec<&str> = DISCRETIZATIONS.iter().map(|entry| entry.name).collect();
+        format!("no contact discretization {name:?}; there are {names:?}")
+    })
+}
+
+/// Gaps and slips of the constraints of a pair, with derivatives.
+///
+/// A constraint is numbered by its place in the slave's nodes. The search gives candidates: an
+/// item of the slave, which is an edge unless a discretization says otherwise, and a master.
+pub trait Discretization: Send + Sync {
+    /// Items of the slave as the search sees them.
+    fn items(&self, slave: &Slave, x: &[[f64; 3]]) -> Vec<Item> {
+        search::edges(slave, x)
+    }
+
+    /// Slave edges of each item.
+    fn owners(&self, slave: &Slave) -> Vec<Vec<usize>> {
+        slave.owners(false)
+    }
+
+    /// Slave node of each constraint, by its place in the slave's nodes.
+    fn places(&self, slave: &Slave) -> Vec<usize> {
+        (0..slave.nodes.len()).collect()
+    }
+
+    /// Variables of a candidate, -1 where unused.
+    fn variables(&self, sides: &Sides, (i, j): Candidate) -> [i64; WIDTH] {
+        join(&sides.slave.edges[i].variables(), &sides.master.variables(j))
+    }
+
+    /// Constraints of a candidate, `usize::MAX` where unused.
+    fn constraints(&self, sides: &Sides, (i, _): Candidate) -> [usize; 3] {
+        sides.slave.constraints[i]
+    }
+
+    /// Take the candidates of the reference configuration, where surfaces are joined for good, and
+    /// leave those that are.
+    fn bind(&mut self, _sides: &mut Sides, _x: &[[f64; 3]]) {}
+
+    /// Terms of all candidates that meet at `x`, in the order of the candidates; slip since `old`.
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms>;
+
+    /// Keep what later evaluations depend on as what to return to.
+    fn commit(&mut self) {}
+
+    /// Return to what the last commit kept.
+    fn restore(&mut self) {}
+
+    /// Forget which masters the constraints had, to which they would keep for a while.
+    fn forget(&mut self) {}
+
+    /// What later evaluations depend on, as masters' numbers or -1, always as many.
+    fn memory(&self) -> Vec<i64> {
+        Vec::new()
+    }
+
+    /// Take what `memory` gave.
+    fn remember(&mut self, _memory: &[i64]) {}
+}

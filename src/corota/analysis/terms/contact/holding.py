@@ -1,0 +1,169 @@
+"""Corrections whose contact states constrain the bodies."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.errors import SingularError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.terms.contact.problem import (
+        ContactEvaluation,
+        ContactProblem,
+        RightHandSides,
+    )
+
+    Floats = NDArray[np.float64]
+    States = list[NDArray[np.int8]]
+
+#: Fraction of the friction bound from which a correction is repeated with slip, and how often.
+FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
+
+
+def held(
+    problem: ContactProblem, at: ContactEvaluation, states: States, right_sides: RightHandSides
+) -> tuple[Floats, Floats, int, States]:
+    """Correction for states that constrain the bodies, with the fewest changes.
+
+    Where all nodes in contact with a body slip at once, it is unconstrained: some must stick.
+    """
+    stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
+    slipping = any((s == SLIPPING).any() for s in states)
+    tries = [states]
+    if slipping:
+        tries += [_least_stick(problem, at, states), stuck]
+    reason: SingularError | None = None
+    for tried in tries:
+        try:
+            du, dp, negative = problem._solve(at, tried, right_sides)
+        except SingularError as error:
+            reason = error
+            problem.sliding += slipping
+            continue
+        if tried is not stuck and slipping and problem._far(du, right_sides):
+            problem.sliding += 1
+            continue
+        du, dp, negative, tried = problem._let_slip(at, tried, right_sides, (du, dp, negative))
+        problem.last = tried
+        return du, dp, negative, tried
+    assert reason is not None
+    return _close_some(problem, at, stuck if slipping else states, right_sides, reason)
+
+
+def _least_stick(problem: ContactProblem, at: ContactEvaluation, states: States) -> States:
+    """States with the half that exceeds the friction least sticking again."""
+    out = []
+    for s, (pair, terms, (p, q)) in zip(states, problem._pairs(at.contact_state), strict=True):
+        slips = np.flatnonzero(s == SLIPPING)
+        shear, loaded = np.abs(pair.shear(terms, q))[slips], p[slips] > 0.0
+        over = np.where(loaded, shear / np.where(loaded, p[slips], 1.0), np.inf)
+        s = s.copy()
+        s[slips[np.lexsort((shear, over))[: (len(slips) + 1) // 2]]] = CLOSED
+        out.append(s)
+    return out
+
+
+def let_slip(
+    problem: ContactProblem,
+    at: ContactEvaluation,
+    states: States,
+    right_sides: RightHandSides,
+    found: tuple[Floats, Floats, int],
+) -> tuple[Floats, Floats, int, States]:
+    """Let constraints slip at once that a correction would load far beyond friction.
+
+    Otherwise a large displacement of supports distorts the mesh before anything slips.
+    """
+    for _ in range(MAX_SLIP_CORRECTIONS if problem.corrections <= 2 else 0):
+        new = [s.copy() for s in states]
+        slip_directions = dict(problem.slip_directions)
+        for s, (pair, _, (p, q)) in zip(new, problem._pairs(at.contact_state), strict=True):
+            if not pair.friction:
+                continue
+            p1 = p + found[1][pair.first : pair.first + pair.n, 0]
+            q1 = q + found[1][pair.first + pair.n : pair.first + pair.width, 0]
+            over = (s == CLOSED) & (
+                np.abs(q1) > FRICTION_EXCESS * pair.friction * np.maximum(p1, p)
+            )
+            s[over] = SLIPPING
+            slip_direction = problem.slip_directions[pair.first]
+            slip_directions[pair.first] = np.where(
+                over, np.where(q1 > 0.0, 1.0, -1.0), slip_direction
+            )
+        if all(np.array_equal(a, b) for a, b in zip(new, states, strict=True)):
+            break
+        before, problem.slip_directions = problem.slip_directions, slip_directions
+        try:
+            other = problem._solve(at, new, right_sides)
+        except SingularError:
+            problem.slip_directions = before
+            break
+        if problem._far(other[0], right_sides):
+            problem.slip_directions = before
+            break
+        found, states = other, new
+    return *found, states
+
+
+def far(problem: ContactProblem, du: Floats, right_sides: RightHandSides) -> bool:
+    """Whether a correction moves the surfaces beyond the contact search distance."""
+    moved = problem.system.by_node(du[:, 0])[:, :2]
+    constrained = 2.0 * float(
+        np.abs(problem.system.by_node(right_sides.constrained[:, 0])[:, :2]).max()
+    )
+    for pair in problem.contact_term.pairs:
+        if pair.friction and np.abs(moved[pair.slave.node_list]).max() > pair.reach + constrained:
+            return True
+    return False
+
+
+def _close_some(
+    problem: ContactProblem,
+    at: ContactEvaluation,
+    states: States,
+    right_sides: RightHandSides,
+    error: SingularError,
+) -> tuple[Floats, Floats, int, States]:
+    """Bring unconstrained bodies into contact: close the nearest nodes, increasingly many."""
+    gaps = [
+        np.where((s == OPEN) & (not pair.tied), pair.trial(terms, p)[0], np.inf)
+        for s, (pair, terms, (p, _)) in zip(states, problem._pairs(at.contact_state), strict=True)
+    ]
+    nearest = min(float(gap.min(initial=np.inf)) for gap in gaps)
+    for count in (0, 1, 2, None):
+        tried = [s.copy() for s in states]
+        for s, gap in zip(tried, gaps, strict=True):
+            near = np.argsort(gap, kind="stable")[: count or (None if count is None else 1)]
+            limit = nearest if count == 0 else np.finfo(float).max
+            s[near[gap[near] <= limit]] = CLOSED
+        if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
+            break
+        try:
+            du, dp, negative = problem._solve(at, tried, right_sides)
+        except SingularError:
+            continue
+        problem.last, problem.loose = tried, str(error)
+        return du, dp, negative, tried
+    open_pairs = [
+        pair.name
+        for pair, s in zip(problem.contact_term.pairs, states, strict=True)
+        if not (s != OPEN).any()
+    ]
+    if open_pairs:
+        raise SingularError(
+            f"{error}; contact pair {open_pairs[0]!r} is open: support the body until it is "
+            "in contact, start in contact (start='adjust'), or damp it (stabilise=True, "
+            "*CONTACT CONTROLS, STABILIZE)",
+            error.equation,
+            error.mode,
+        ) from None
+    raise error
+
+
+__all__ = ["far", "held", "let_slip"]
