@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.model.contact import METHODS
 
 
 def incline(friction, method="mortar"):
@@ -19,7 +20,7 @@ def incline(friction, method="mortar"):
     return model
 
 
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("method", METHODS)
 def test_block_rests_where_the_slope_is_below_the_friction(method):
     results = ct.solve(incline(0.58, method), threads=1)  # tan 30 = 0.577
     sums = results.frames[-1].scalars

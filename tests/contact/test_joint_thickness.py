@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.model.contact import METHODS
 from corota.model.steps import Static
 
 
 @pytest.mark.parametrize("slave", ["thick", "thin"])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("method", METHODS)
 def test_pressure_belongs_to_the_smaller_thickness(slave: str, method: str) -> None:
     """Blocks of thickness 2 and .5 under a force of 1.5 on a width of 1: 1.5 / .5 = 3.
 

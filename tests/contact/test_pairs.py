@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.model.contact import METHODS
 
 #: Local strains above 5 % warn; these tests press hard.
 pytestmark = pytest.mark.filterwarnings("ignore:local strain")
@@ -27,7 +28,7 @@ def punch(method="mortar", load=None, scale=1.0, element="Q4I"):
     return ct.solve(model, ct.Static(increments=3), threads=1), disc
 
 
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("method", METHODS)
 def test_moved_and_loaded_disc_agree(method):
     moved, disc = punch(method)
     force = moved.frames[-1].RF[disc, 1]
@@ -178,7 +179,7 @@ def test_contact_in_files(tmp_path):
         )
 
 
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("method", METHODS)
 def test_constraints_that_follow_from_others_are_left_out(method):
     """The same wall twice, and a corner that is held on it."""
     mesh = ct.mesh.rectangle(1.0, 0.5, 4, 2)

@@ -9,6 +9,7 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.terms.contact.equations import ContactEquations
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
+from corota.model.contact import METHODS
 
 STEP = 1e-6
 
@@ -30,7 +31,7 @@ def problem(method, law):
 
 
 @pytest.mark.parametrize("law", [None, ct.PressureLaw("linear", 20.0)])
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("method", METHODS)
 def test_rows_and_columns_are_derivatives(method, law):
     self = problem(method, law)
     n, m = self.n, self.contact_term.n

@@ -12,7 +12,7 @@ import corota as ct
 from corota.verification.plastic_models import find, notched, perforated_strip
 from corota.verification.problems import plastic_bending
 from corota.verification.problems.ring_plane_stress import nadai, radial_stress
-from corota.verification.problems.thick_cylinder_plastic import YIELD, hill, ring
+from corota.verification.problems.thick_cylinder_plastic import YIELD, hill, perfect, ring
 
 
 @pytest.mark.parametrize(
@@ -30,7 +30,7 @@ def test_thick_cylinder(element: str, options: dict[str, Any]) -> None:
         p, u = hill(c, 0.4999)
         errors = []
         for n in (6, 12):
-            _, computed = ring(element, n, "strain", 0.4999, p, **options)
+            _, computed = ring(element, n, "strain", perfect(0.4999), p, **options)
             errors.append(abs(computed / u - 1.0))
         assert errors[1] < 0.01, (c, errors)
         assert errors[1] < 0.6 * errors[0] or errors[1] < 2e-4, (c, errors)
@@ -39,7 +39,7 @@ def test_thick_cylinder(element: str, options: dict[str, Any]) -> None:
 @pytest.mark.parametrize(("p", "u"), [(160.0, 0.111633), (180.0, 0.153985), (190.0, 0.20537)])
 def test_thick_cylinder_of_steel(p: float, u: float) -> None:
     """Converged values for nu = 0.3, where Hill's are not exact."""
-    assert ring("Q8R", 12, "strain", 0.3, p)[1] == pytest.approx(u, rel=0.003)
+    assert ring("Q8R", 12, "strain", perfect(0.3), p)[1] == pytest.approx(u, rel=0.003)
 
 
 @pytest.mark.parametrize("element", ["Q4I", "Q8", "Q8R", "Q4D", "OPT", "T6"])
@@ -48,7 +48,7 @@ def test_ring_in_plane_stress(element: str) -> None:
     p, u, radial = nadai(140.0)
     errors = []
     for n in (6, 12):
-        results, computed = ring(element, n, "stress", 0.3, p)
+        results, computed = ring(element, n, "stress", perfect(0.3), p)
         errors.append(abs(computed / u - 1.0))
     assert errors[1] < 0.01, errors
     assert errors[1] < 0.6 * errors[0] or errors[1] < 5e-4, errors

@@ -20,6 +20,7 @@ from corota.verification.problems.thick_cylinder_plastic import (
     OUTER,
     YIELD,
     YOUNG,
+    perfect,
     ring,
 )
 
@@ -60,7 +61,7 @@ def measure() -> Iterator[Value]:
     """Outer displacement, and the mean error of the radial stress."""
     p, u, radial = nadai(FRONT)
     for element in ELEMENTS:
-        results, found = ring(element, 12, "stress", 0.3, p)
+        results, found = ring(element, 12, "stress", perfect(0.3), p)
         yield Value(f"outer displacement, {element} 12 x 24", u, found, 0.01)
         r, mine, size = radial_stress(results)
         exact = np.array([radial(float(v)) for v in r])
@@ -76,13 +77,13 @@ def measure() -> Iterator[Value]:
 
 def picture() -> Picture:
     """Equivalent plastic strain and the front."""
-    return Picture(ring("Q8", 12, "stress", 0.3, nadai(FRONT)[0])[0], "PEEQ", 100.0)
+    return Picture(ring("Q8", 12, "stress", perfect(0.3), nadai(FRONT)[0])[0], "PEEQ", 100.0)
 
 
 def curve() -> Curve:
     """Radial stress over the radius."""
     p, _, radial = nadai(FRONT)
-    r, mine, _ = radial_stress(ring("Q8", 6, "stress", 0.3, p)[0])
+    r, mine, _ = radial_stress(ring("Q8", 6, "stress", perfect(0.3), p)[0])
     line = np.linspace(INNER, OUTER, 60)
     return Curve(
         "radius",
