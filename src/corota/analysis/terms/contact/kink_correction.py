@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Iterations without progress after which a kink is looked for.
+#: Iterations without progress after which a kink is searched.
 WAITED = 3
 #: Kinks that an attempt tries, and corrections in which one may carry a force above its jump.
 MAX_KINKS, MAX_BEYOND = 3, 3
