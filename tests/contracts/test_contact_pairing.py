@@ -246,5 +246,7 @@ def test_bad_input_is_named() -> None:
         pair(slave, master, reach=-1.0)
     with pytest.raises(ValueError, match="edge 0 - 1 has no length"):
         pair(0 * slave, master)
-    with pytest.raises(ValueError, match="ties are mortar"):
-        pair(slave, master, method="node_to_segment", tie=True)
+    X, edges = nodes(slave), path(slave)
+    none, ones = np.zeros(len(edges)), np.ones(len(edges))
+    with pytest.raises(ValueError, match="tie joins two boundaries"):
+        Contact.itself(X, edges, none, ones, method="tie", reach=1.0, margin=1.0)
