@@ -87,7 +87,7 @@ class LoadBuilder:
     def loads(self, draft: Draft) -> list[Load]:
         if draft.kind == "surface shear":
             return list(self._shear(draft))
-        if draft.kind == "volume":
+        if draft.kind in ("volume", "line"):
             return list(self._volume_force(draft))
         load = self._load(draft)
         return [] if load is None else [load]
@@ -193,7 +193,7 @@ class LoadBuilder:
         return self._body(draft, name or found.cells, amplitude)
 
     def _volume_force(self, draft: Draft) -> Iterator[Load]:
-        """A force per volume as gravity: the core takes forces per mass."""
+        """A force per volume, or per length of lines, as gravity: the core has forces per mass."""
         amplitude, root = self.targets.amplitude(draft), self.meshes.views[0]
         cells = np.arange(self.mesh.n_cells)
         if draft.target:
@@ -207,8 +207,11 @@ class LoadBuilder:
         if amplitude is None:
             return
         rho = np.full(self.mesh.n_cells, -1.0)
+        area = np.zeros(self.mesh.n_cells)
         for section in self.model.sections:
             material = section.material
+            if section.element in ("TRUSS", "BEAM"):
+                area[cells_of(self.mesh, section.cells)] = section.profile[0]
             if isinstance(material, MaterialTable) and material.density_varies:
                 mine = np.isin(cells, cells_of(self.mesh, section.cells))
                 if mine.any():
@@ -222,6 +225,20 @@ class LoadBuilder:
                     )
                     return
             rho[cells_of(self.mesh, section.cells)] = section.material.rho
+        if draft.kind == "line":
+            if (area[cells] == 0.0).any():
+                label = self.mesh.cell_labels[cells[np.argmin(area[cells])]]
+                self.deck.row_error(
+                    draft.card,
+                    draft.row,
+                    1,
+                    "PX and PY are forces per length of beams and trusses; element "
+                    f"{label} is none",
+                    "give BX and BY, or pressures and tractions on its faces",
+                )
+                return
+            # Mass by length stands for mass by volume.
+            rho[cells] *= area[cells]
         for density in distinct(rho[cells]).tolist():
             if density == 0.0:
                 self.deck.row_error(

@@ -376,6 +376,16 @@ class Sets:
             count = len(EDGES[block.kind])
             if (inside & ((face_of < 0) | (face_of >= count))).any():
                 label = self.mesh.cell_labels[cells[inside][0]]
+                if not count:
+                    self.deck.error(
+                        card,
+                        where,
+                        f"element {label} is a line and has no faces: P1 and P2 are forces per "
+                        "length of beams in Abaqus and pressures on their width in CalculiX",
+                        hint="give PX and PY, forces per length in global directions",
+                        text=text,
+                    )
+                    return None
                 self.deck.error(
                     card, where, f"element {label} has {count} faces, not {face + 1}", text=text
                 )

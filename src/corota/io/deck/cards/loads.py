@@ -25,9 +25,10 @@ _TRACTION = re.compile(r"(TRVEC|TRSHR)(\d{1,9})\Z", re.ASCII)
 
 #: Loads of other programs, and what to give instead.
 _OTHER_LOADS = (
+    (re.compile(r"(PZ|BZ)\Z"), "a planar model takes no load out of its plane"),
     (re.compile(r"HP\d?\Z"), "give each edge its mean pressure: P1 to P4, or P on surfaces"),
     (
-        re.compile(r"(P\d?|BX|BY|TRVEC\d?|TRSHR\d?)NU\Z"),
+        re.compile(r"(P\d?|[BP][XY]|TRVEC\d?|TRSHR\d?)NU\Z"),
         "no user subroutine is called: give values",
     ),
     (re.compile(r"(ROTA|CORIO)\Z"), "rotate the base by *BOUNDARY, or give BX and BY"),
@@ -79,12 +80,12 @@ def dload(deck: Deck, card: Card) -> None:
             _gravity(deck, card, row, now)
         elif label == "CENTRIF":
             _centrifugal(deck, card, row, now)
-        elif label in ("BX", "BY"):
+        elif label in ("BX", "BY", "PX", "PY"):
             _volume_force(deck, card, row, label, now)
         elif traction := _TRACTION.match(label):
             _edge_traction(deck, card, row, traction.group(1), int(traction.group(2)), now)
         else:
-            known = "expected P1 to P4, TRVEC1 to 4, TRSHR1 to 4, BX, BY, GRAV or CENTRIF"
+            known = "expected P1 to P4, TRVEC1 to 4, TRSHR1 to 4, BX, BY, PX, PY, GRAV or CENTRIF"
             why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
             deck.row_error(
                 card,
@@ -98,13 +99,16 @@ def dload(deck: Deck, card: Card) -> None:
 
 
 def _volume_force(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> None:
-    """``BX``, ``BY``: force per volume."""
+    """``BX``, ``BY``: force per volume; ``PX``, ``PY``: force per length of beams and trusses."""
+    kind = "volume" if label.startswith("B") else "line"
     deck.extra_fields(card, row, 3)
-    value = deck.real(card, row, 2, "the force per volume")
-    if value is not None:
-        vector = (value, 0.0) if label == "BX" else (0.0, value)
+    value = deck.real(card, row, 2, f"the force per {'volume' if kind == 'volume' else 'length'}")
+    if kind == "line" and not row.get(0):
+        deck.row_error(card, row, 0, "an element number or a set is missing")
+    elif value is not None:
+        vector = (value, 0.0) if label.endswith("X") else (0.0, value)
         now.loads.append(
-            Draft("volume", card, row, row.get(0), vector, amplitude=card.value("AMPLITUDE"))
+            Draft(kind, card, row, row.get(0), vector, amplitude=card.value("AMPLITUDE"))
         )
 
 
