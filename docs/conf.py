@@ -6,7 +6,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "builder"))
 
 import site_pages
 
@@ -23,7 +23,7 @@ extensions = [
     "sphinx_design",
     "sphinx-mathjax-offline",  # equations without a network
 ]
-exclude_patterns = ["_build", "decks/syntax.md"]
+exclude_patterns = ["_build", "builder", "decks/syntax.md"]
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence"]
 myst_heading_anchors = 4
 autosummary_generate = False

@@ -1,4 +1,4 @@
-"""The figures of the documents are those that ``python docs/figures.py`` draws."""
+"""The figures of the documents are those that ``python docs/builder/figures.py`` draws."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -20,8 +20,8 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
 def module() -> ModuleType:
-    if str(DOCS) not in sys.path:
-        sys.path.insert(0, str(DOCS))
+    if str(DOCS / "builder") not in sys.path:
+        sys.path.insert(0, str(DOCS / "builder"))
     return importlib.import_module("figures")
 
 
@@ -40,10 +40,12 @@ def test_there_is_a_figure_of_every_element(drawn: dict[str, str]) -> None:
 @pytest.mark.parametrize("path", STORED, ids=lambda p: p.stem)
 def test_a_figure_is_up_to_date(path: Path, drawn: dict[str, str]) -> None:
     stored, now = path.read_text(encoding="utf-8"), drawn[path.name]
-    assert NUMBER.sub("0", stored) == NUMBER.sub("0", now), "run python docs/figures.py"
+    assert NUMBER.sub("0", stored) == NUMBER.sub("0", now), "run python docs/builder/figures.py"
     pairs = zip(NUMBER.findall(stored), NUMBER.findall(now), strict=True)
     # A tenth of a pixel, as coordinates are written, and what rounding does to long motions.
-    assert all(abs(float(a) - float(b)) < 0.35 for a, b in pairs), "run python docs/figures.py"
+    assert all(abs(float(a) - float(b)) < 0.35 for a, b in pairs), (
+        "run python docs/builder/figures.py"
+    )
 
 
 @pytest.mark.parametrize("name", elements.names())

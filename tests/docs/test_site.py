@@ -27,8 +27,8 @@ def site() -> ModuleType:
 
 def script(name: str) -> ModuleType:
     """Import a module of the folder of documents."""
-    if str(DOCS) not in sys.path:
-        sys.path.insert(0, str(DOCS))
+    if str(DOCS / "builder") not in sys.path:
+        sys.path.insert(0, str(DOCS / "builder"))
     return importlib.import_module(name)
 
 

@@ -1,5 +1,6 @@
-"""Pictures of the example scripts in ``docs/images/gallery``: ``python docs/thumbnails.py [NAME]``.
+"""Pictures of the example scripts in ``docs/images/gallery``.
 
+``python docs/builder/thumbnails.py [NAME]`` draws them.
 Each script runs as it is; the picture is of its last results, at the frame of the largest stress.
 """
 
@@ -16,7 +17,7 @@ from pathlib import Path
 
 import corota as ct
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "images" / "gallery"
 #: Scripts that draw no results of their own.
 NONE = {"gripper/mesh.py"}

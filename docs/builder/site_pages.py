@@ -15,7 +15,7 @@ from svg import STYLE
 
 import corota as ct
 
-DOCS = Path(__file__).resolve().parent
+DOCS = Path(__file__).resolve().parents[1]
 ROOT = DOCS.parent
 #: Sections of the reference, and what of the public names stands in each.
 REFERENCE = {

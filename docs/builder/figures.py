@@ -1,4 +1,4 @@
-"""Figures of the documents: ``python docs/figures.py`` writes them all to ``docs/figures``.
+"""Figures of the documents: ``python docs/builder/figures.py`` writes them all to ``docs/figures``.
 
 Elements are drawn from the facts of the compute core and from a model of one cell; charts are
 computed by the models below.
@@ -23,7 +23,7 @@ from corota.mesh import Mesh
 from corota.mesh.data import EDGES, Cells
 from corota.model import elements
 
-FOLDER = Path(__file__).parent / "figures"
+FOLDER = Path(__file__).resolve().parents[1] / "figures"
 #: Side of a drawn cell [px].
 SIDE = 190.0
 
