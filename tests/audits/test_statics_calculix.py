@@ -15,31 +15,11 @@ import numpy as np
 import pytest
 
 from support.audits import ends, run
+from support.calculix import curved_mesh
 
 pytestmark = pytest.mark.filterwarnings("ignore:local strain reaches")
 
-MESH = """*NODE, NSET=nall
-1, 0., 0.
-2, 1.1, 0.1
-3, 2., 0.
-4, 2.9, -0.1
-5, 4., 0.
-6, 0., 0.5
-7, 2., 0.55
-8, 4., 0.5
-9, 0., 1.
-10, 1., 1.05
-11, 2., 1.1
-12, 3., 1.
-13, 4., 1.
-*ELEMENT, TYPE=CPE8R, ELSET=all
-1, 1, 3, 11, 9, 2, 7, 10, 6
-2, 3, 5, 13, 11, 4, 8, 12, 7
-*NSET, NSET=left
-1, 6, 9
-*NSET, NSET=right
-5, 8, 13
-"""
+MESH = curved_mesh("CPE8R")
 
 DECKS = {
     "heated, reversed": MESH

@@ -3,9 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import shutil
-import subprocess
-
 import numpy as np
 import pytest
 
@@ -14,6 +11,7 @@ from corota.cli import main
 from corota.io.deck.write.model import write_deck
 from tests.dynamics.test_attachments import exact
 from tests.dynamics.test_schemes import column
+from tests.support.calculix import needs_ccx, run_ccx
 
 HEAD = """*NODE
 1, 0., 0.
@@ -84,16 +82,15 @@ CASES = {
 }
 
 
+@needs_ccx
 @pytest.mark.parametrize("case", CASES)
 def test_deck_prints_what_calculix_prints(case, tmp_path):
-    if shutil.which("ccx") is None:
-        pytest.skip("CalculiX is not installed")
     # CalculiX moves CPS4 in *DYNAMIC with half of its mass (its bricks and its frequencies agree
     # with ours): the point masses, which are right, outweigh the bar here.
     path = deck(tmp_path, *CASES[case])
     assert main(["run", str(path), "-o", str(tmp_path / "out"), "--quiet"]) == 0
     ours = tmp_path / "out" / "job.dat"
-    subprocess.run(["ccx", "-i", "job"], cwd=tmp_path, check=True, capture_output=True)
+    run_ccx(tmp_path, "job")
     theirs = tmp_path / "job.dat"
 
     def titles(dat):

@@ -12,6 +12,7 @@ import pytest
 import corota as ct
 from corota.errors import InputError
 from corota.io.deck.write.model import write_deck
+from support.calculix import curved_mesh
 
 E, NU, Y, N, A = 200e3, 0.3, 300.0, 7.0, 0.43
 LAW = ct.RambergOsgood(E, NU, Y, N, A)
@@ -176,33 +177,15 @@ def test_heat_in_plane_strain() -> None:
 
 # -- decks ---------------------------------------------------------------------------------
 
-MESH = """*NODE, NSET=nall
-1, 0., 0.
-2, 1.1, 0.1
-3, 2., 0.
-4, 2.9, -0.1
-5, 4., 0.
-6, 0., 0.5
-7, 2., 0.55
-8, 4., 0.5
-9, 0., 1.
-10, 1., 1.05
-11, 2., 1.1
-12, 3., 1.
-13, 4., 1.
-*ELEMENT, TYPE=CPE8, ELSET=all
-1, 1, 3, 11, 9, 2, 7, 10, 6
-2, 3, 5, 13, 11, 4, 8, 12, 7
-*NSET, NSET=left
-1, 6, 9
-*NSET, NSET=right
-5, 8, 13
-*MATERIAL, NAME=m
+MESH = (
+    curved_mesh("CPE8")
+    + """*MATERIAL, NAME=m
 *DEFORMATION PLASTICITY
 1000., 0.3, 0.002, 5., 0.6
 *SOLID SECTION, ELSET=all, MATERIAL=m
 0.7
 """
+)
 DECK = (
     MESH
     + """*BOUNDARY

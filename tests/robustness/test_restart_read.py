@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 
 import pytest
 
@@ -12,6 +11,7 @@ import corota as ct
 from benchmarks.restart_cases import DECKS
 from benchmarks.same_bits import folder_differences, frame_differences
 from corota.cli import main
+from tests.support.calculix import needs_ccx, run_ccx
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
@@ -188,7 +188,7 @@ def last_table(path):
     return {int(row[0]): (float(row[1]), float(row[2])) for row in rows}
 
 
-@pytest.mark.skipif(not shutil.which("ccx"), reason="CalculiX is not installed")
+@needs_ccx
 @pytest.mark.parametrize("step", [1, 2])
 def test_calculix_means_the_same(step, tmp_path):
     """The same two decks there: the new step changes and keeps the loads of the named step."""
@@ -201,7 +201,7 @@ def test_calculix_means_the_same(step, tmp_path):
     (theirs / "new.inp").write_text(new)
     for name in ("old", "new"):
         assert main(["run", str(ours / f"{name}.inp"), "-o", str(ours), "-q"]) == 0
-        subprocess.run(["ccx", name], cwd=theirs, capture_output=True, timeout=60, check=False)
+        run_ccx(theirs, name, check=False)
         if name == "old":
             (theirs / "old.rout").rename(theirs / "new.rin")
     mine, other = (last_table(folder / "new.dat") for folder in (ours, theirs))

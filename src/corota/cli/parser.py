@@ -179,6 +179,9 @@ def make_parser() -> Parser:
     )
     plot.add_argument("--scale", type=float, default=1.0, help="scale factor of the displacements")
     plot.add_argument("--element", dest="per_cell", action="store_true", help="element averages")
+    plot.add_argument(
+        "--plastic", action="store_true", help="the elastic-plastic boundary as a line"
+    )
     plot.add_argument("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
     plot.add_argument("--model", action="store_true", help="mesh, sets, supports and loads")
     plot.add_argument(

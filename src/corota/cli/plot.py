@@ -75,7 +75,8 @@ def _run(args: Any, terminal: Terminal) -> int:
             plots.animate(results, field, path=path, dpi=min(args.dpi, 110), **options)
         else:
             path = Path(args.output or f"{source.stem}_{field}.png")
-            plots.contour(results, field, frame=args.frame, path=path, dpi=args.dpi, **options)
+            options |= {"frame": args.frame, "plastic": args.plastic or None}
+            plots.contour(results, field, path=path, dpi=args.dpi, **options)
     return _tell(path, terminal)
 
 

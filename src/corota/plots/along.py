@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from corota.plots.figure import INK, PALE, figure_of, look, save
+from corota.plots.figure import INK, PALE, figure_of, finish, look
 from corota.results.variables import described, labelled
 
 if TYPE_CHECKING:
@@ -30,10 +30,8 @@ def along(
     line : Line
         Of :meth:`corota.results.Results.along`.
     variables : sequence of str
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -59,9 +57,7 @@ def along(
         ax.tick_params(length=2.5, colors=INK)
         ax.ticklabel_format(style="sci", scilimits=(-3, 4))
         ax.set_title(line.results.model.name, loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 __all__ = ["along"]

@@ -17,7 +17,14 @@ from corota.errors import InputError
 from corota.io.atomic_file import full
 from corota.names import choose
 from corota.plots.contour import Drawing, frame_title, label_bar, paint
-from corota.plots.figure import extent_size, look, new_figure, picture_path
+from corota.plots.figure import (
+    extent_size,
+    fit_texts,
+    fitted_title,
+    look,
+    new_figure,
+    picture_path,
+)
 from corota.results import variables as vf
 
 if TYPE_CHECKING:
@@ -160,6 +167,7 @@ def animate(
                 pad=0.04,
             )
             label_bar(bar, name, per_cell, limits, results.model.unit_system)
+            fit_texts(figure)
             stage = _Stage(figure, ax)
             last, image = int(chosen[0]), None
             for i in chosen.tolist():
@@ -167,7 +175,7 @@ def animate(
                     stage.clear()
                     paint(ax, mpl, drawing, i, scale, edges, True, limits)
                 if i != last or image is None:
-                    ax.set_title(frame_title(results, i, scale), loc="left")
+                    fitted_title(ax, frame_title(results, i, scale))
                     image, last = stage.picture(), i
                 yield image
 

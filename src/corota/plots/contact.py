@@ -9,7 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.plots.contour import frame_title
-from corota.plots.figure import COLORS, INK, PALE, extent_size, figure_of, label_axes, look, save
+from corota.plots.figure import COLORS, INK, PALE, extent_size, figure_of, finish, label_axes, look
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
 
@@ -51,10 +51,8 @@ def contact_line(
     frame : int
         The last by default.
     title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -108,9 +106,7 @@ def contact_line(
         ax.legend()
         at_time = f"{chosen.name}: step {state.step}, time {state.time:.6g}"
         ax.set_title(title if title is not None else at_time, loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def status(
@@ -167,9 +163,7 @@ def status(
         label_axes(ax, results.model.unit_system)
         ax.legend(loc="best")
         ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def _curve(ax: Any, way: Floats, values: Floats, color: str, name: str) -> None:

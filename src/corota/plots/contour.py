@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.plots.figure import INK, PALE, extent_size, figure_of, label_axes, look, save
+from corota.plots.figure import INK, PALE, extent_size, figure_of, finish, label_axes, look
 from corota.plots.plastic import draw_boundary
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
 from corota.results import variables as vf
+from corota.results.sampling import sampled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -36,8 +37,6 @@ PIXELS_FROM = 60000
 
 #: Variables of line elements only.
 LINE_ONLY = ("N", "V", "M1", "M2")
-#: Variables whose nodal values are cut off below zero.
-NEVER_NEGATIVE = ("PEEQ", "PWORK", "PDISS", "ENER")
 #: Cells' edges are drawn by default where cells are larger than this share of the picture.
 EDGES_FROM = 0.008
 
@@ -81,14 +80,10 @@ class Drawing:
         if self.per_cell:
             cells = self.results.cells(self.name, frame)
             return [(part, cells[part.owner]) for _, part in self.parts]
-        drawn = [
-            (part, part.values(self.results.nodal(self.name, frame, section=group)))
+        return [
+            (part, sampled(self.results, self.name, frame, part.values, group))
             for group, part in self.parts
         ]
-        if self.name in NEVER_NEGATIVE:
-            # Extrapolation from the points overshoots near the plastic front.
-            return [(part, np.maximum(values, 0.0)) for part, values in drawn]
-        return drawn
 
     def line_values(self, frame: int) -> Floats:
         """Value of each line, not a number where it has none."""
@@ -139,13 +134,14 @@ def contour(
     per_cell: bool = False,
     edges: bool | None = None,
     undeformed: bool = True,
+    plastic: bool | None = None,
     limits: tuple[float, float] | None = None,
     title: str | None = None,
     path: str | PathLike[str] | None = None,
     ax: Any = None,
     dpi: float = 150.0,
 ) -> Any:
-    """Draw a variable on the deformed shape; with ``PEEQ`` the elastic-plastic boundary too.
+    """Draw a variable on the deformed shape, and the elastic-plastic boundary on demand.
 
     Parameters
     ----------
@@ -162,6 +158,9 @@ def contour(
         Draw the cells' edges; by default in meshes of up to 1,500 cells.
     undeformed : bool
         Draw the undeformed outline.
+    plastic : bool, optional
+        Draw the boundary between elements with plastic strain at some point and those without
+        any; by default with ``PEEQ`` only.
     limits : (float, float), optional
         Of the colors.
     title : str, optional
@@ -178,7 +177,7 @@ def contour(
     Raises
     ------
     InputError
-        If there is no such variable or frame.
+        If there is no such variable or frame, or no plastic strain for its boundary.
     ResourceError
         If matplotlib is missing.
     """
@@ -198,7 +197,7 @@ def contour(
         width, height, below = extent_size(low, high)
         figure, ax = figure_of(ax, width, height, shown=path is None)
         painted = paint(ax, mpl, drawing, frame, scale, edges, undeformed, limits)
-        if name == "PEEQ":
+        if plastic or (plastic is None and name == "PEEQ"):
             draw_boundary(ax, results, frame, scale)
         bar = figure.colorbar(
             painted,
@@ -213,9 +212,7 @@ def contour(
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
         ax.set_title(title if title is not None else frame_title(results, frame, scale), loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def label_bar(

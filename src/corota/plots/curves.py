@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.model.units import Units
-from corota.plots.figure import INK, PALE, figure_of, look, save
+from corota.plots.figure import INK, PALE, figure_of, finish, look
 from corota.plots.path import draw_path, has_stability
 from corota.results.variables import described, dimension, labelled
 
@@ -40,10 +40,8 @@ def curve(
     ----------
     y : History or sequence of History
     x : History
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -87,9 +85,7 @@ def curve(
         ax.tick_params(length=2.5, colors=INK)
         ax.ticklabel_format(style="sci", scilimits=(-3, 4))
         ax.set_title(x.results.model.name, loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def shared_label(names: Sequence[str], units: Units) -> str:

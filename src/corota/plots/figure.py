@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import contextlib
 import os
-import textwrap
+import re
+import warnings
 from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 from corota.errors import InputError, ResourceError
 from corota.io.atomic_file import full
@@ -46,6 +48,12 @@ TENSION, COMPRESSION = COLORS[1], COLORS[0]
 _WIDTH: ContextVar[float] = ContextVar("width", default=0.0)
 #: Own width of a picture of a wide body [inch].
 WIDE = 7.2
+#: Space beside texts at the edge of the figure [inch].
+MARGIN = 0.08
+#: Titles with less than this share of the figure's width to their right begin at its edge.
+SHIFTED = 0.8
+#: Layouts after which axes of equal scales stay where they are.
+LAYOUTS = 3
 #: Width [mm] below which letters are smaller.
 NARROW = 110.0
 
@@ -103,6 +111,10 @@ def width_of(millimeters: float) -> Any:
         _WIDTH.reset(before)
 
 
+#: Figures whose layout is ours; others belong to whoever gave their axes.
+_OURS: WeakSet[Any] = WeakSet()
+
+
 def new_figure(width: float, height: float, shown: bool) -> Any:
     """Make an empty figure [inch]; one that is only written does not touch the display."""
     wanted = _WIDTH.get()
@@ -111,12 +123,15 @@ def new_figure(width: float, height: float, shown: bool) -> Any:
     if shown:
         from matplotlib import pyplot
 
-        return pyplot.figure(figsize=(width, height), layout="constrained")
+        figure = pyplot.figure(figsize=(width, height), layout="constrained")
+        _OURS.add(figure)
+        return figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
+    _OURS.add(figure)
     return figure
 
 
@@ -154,7 +169,6 @@ def save(figure: Any, path: str | PathLike[str], dpi: float = 150.0) -> Path:
     """
     target = picture_path(path)
     hidden = target.with_name(f".{target.name}.next")
-    wrap_texts(figure)
     try:
         with look():
             figure.savefig(hidden, dpi=dpi, format=target.suffix[1:].lower())
@@ -173,22 +187,97 @@ def label_axes(ax: Any, units: Units) -> None:
     ax.set_ylabel(f"y{unit}")
 
 
-def wrap_texts(figure: Any) -> None:
-    """Wrap titles and labels that exceed the figure."""
-    wide, high = (72.0 * inches for inches in figure.get_size_inches())
-    columns = {round(ax.get_position().x0, 2) for ax in figure.axes if not hasattr(ax, "_colorbar")}
-    count = max(len(columns), 1)
-    for ax in figure.axes:
-        for text, space in (
-            (ax._left_title, 0.92 * wide / count),
-            (ax.xaxis.label, 0.95 * wide / count),
-            (ax.yaxis.label, 0.95 * high),
-        ):
-            letters = max(int(space / (0.56 * text.get_fontsize())), 12)
-            lines = text.get_text().split("\n")
-            if any(len(line) > letters for line in lines):
-                parts = [textwrap.fill(line, letters, break_on_hyphens=False) for line in lines]
-                text.set_text("\n".join(parts))
+def finish(figure: Any, path: str | PathLike[str] | None, dpi: float) -> Any:
+    """Fit the texts into a figure of ours, and write it if there is a path; returns the figure."""
+    if figure in _OURS:
+        fit_texts(figure)
+    if path is not None:
+        save(figure, path, dpi)
+    return figure
+
+
+def fit_texts(figure: Any) -> None:
+    """Break titles and labels that would run out of the figure.
+
+    The layout keeps their height free, and not their width. Titles over narrow axes begin at the
+    edge of the figure instead.
+    """
+    renderer = figure._get_renderer()
+    margin = MARGIN * figure.dpi
+    whole: dict[Any, str] = {}
+    for _ in range(2):  # broken texts change the layout
+        _settle(figure)
+        wide, high = figure.bbox.width, figure.bbox.height
+        rows, more = _rows(figure), 0
+        for ax in figure.axes:
+            box = ax.get_window_extent()
+            title, left = ax._left_title, box.x0
+            right = min([wide, *(o.get_window_extent().x0 for o in rows.get(ax, ()))])
+            if title.get_text() and right == wide and wide - left < SHIFTED * wide:
+                title.set_x((margin - left) / box.width)
+                left = margin
+            along, up = 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)
+            for text, space in (
+                (title, right - left - margin),
+                (ax.xaxis.label, 2.0 * min(along, wide - along) - margin),
+                (ax.yaxis.label, 2.0 * min(up, high - up) - margin),
+            ):
+                before = text.get_text()
+                broken = _broken(whole.setdefault(text, before), text, space, renderer)
+                if broken != before:
+                    text.set_text(broken)
+                    more += (broken.count("\n") - before.count("\n")) * (text is title)
+        if more > 0:  # the picture grows by the lines, lest the axes shrink
+            inches = figure.get_size_inches()
+            line = 1.25 * figure.axes[0]._left_title.get_fontsize() / 72.0
+            figure.set_size_inches(inches[0], inches[1] + more * line)
+
+
+def _settle(figure: Any) -> None:
+    """Repeat the layout until axes of equal scales stay where they are."""
+    engine = figure.get_layout_engine()
+    with warnings.catch_warnings():
+        # Before long texts are broken there may be no room for the axes.
+        warnings.filterwarnings("ignore", "constrained_layout not applied")
+        for _ in range(LAYOUTS if engine is not None else 0):
+            engine.execute(figure)
+            for ax in figure.axes:
+                ax.apply_aspect()
+
+
+def fitted_title(ax: Any, text: str) -> None:
+    """Give axes another title in a layout that is settled, broken as the first one was."""
+    title = ax._left_title
+    left = ax.transAxes.transform(title.get_position())[0]
+    space = ax.figure.bbox.width - left - MARGIN * ax.figure.dpi
+    title.set_text(_broken(text, title, space, ax.figure._get_renderer()))
+
+
+def _rows(figure: Any) -> dict[Any, list[Any]]:
+    """Axes to the right of each on the same height, color bars left out."""
+    every = [ax for ax in figure.axes if not hasattr(ax, "_colorbar")]
+    boxes = {ax: ax.get_window_extent() for ax in every}
+    return {
+        ax: [o for o, b in boxes.items() if b.x0 > box.x0 + 1.0 and b.y0 < box.y1 and b.y1 > box.y0]
+        for ax, box in boxes.items()
+    }
+
+
+def _broken(words: str, text: Any, space: float, renderer: Any) -> str:
+    """Words in lines that are at most so long [pixel], broken at blanks and in long names."""
+    font = text.get_fontproperties()
+    lines: list[str] = []
+    for line in words.split("\n"):
+        now = ""
+        for piece in re.findall(r"[^ _/]+[ _/]*|[ _/]+", line):
+            whole = (now + piece).rstrip()
+            long = renderer.get_text_width_height_descent(whole, font, False)[0] > space
+            if now and long:
+                lines.append(now.rstrip())
+                now = ""
+            now += piece
+        lines.append(now.rstrip())
+    return "\n".join(lines)
 
 
 def page_width() -> float:

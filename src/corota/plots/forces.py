@@ -16,10 +16,10 @@ from corota.plots.figure import (
     TENSION,
     extent_size,
     figure_of,
+    finish,
     label_axes,
     look,
     new_figure,
-    save,
 )
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline
@@ -67,10 +67,8 @@ def section_forces(
     scale : float
         Factor of the drawn displacements.
     title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -128,9 +126,7 @@ def section_forces(
         head = f"{name}: {what}" + (f" [{unit}]" if unit else "")
         told = frame_title(results, members.frame, scale)
         ax.set_title(title if title is not None else f"{head}\n{told}", loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def _smooth(left: Floats, nodes: NDArray[np.int64]) -> Floats:
@@ -205,9 +201,8 @@ def section_diagram(
     diagram : SectionDiagram
         Of :meth:`corota.results.Results.section_diagram`.
     title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    dpi : float
+    path, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -235,9 +230,8 @@ def section_history(
     ----------
     cut : Cut
     title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    dpi : float
+    path, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -292,9 +286,7 @@ def _three(
         panels[-1].set_xlabel(along)
         panels[0].set_title(title, loc="left")
         figure.align_ylabels(panels)
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 __all__ = ["section_diagram", "section_forces", "section_history"]

@@ -15,9 +15,9 @@ from corota.plots.figure import (
     INK,
     extent_size,
     figure_of,
+    finish,
     label_axes,
     look,
-    save,
 )
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid
@@ -69,10 +69,8 @@ def model(
     edges : bool, optional
         Draw the cells' edges; by default in meshes of up to 4,000 cells.
     title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -120,9 +118,7 @@ def model(
                 handletextpad=0.4,
                 columnspacing=1.2,
             )
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def _sections(ax: Any, subject: Model) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.plots.contour import Drawing, paint
-from corota.plots.figure import COLORS, INK, PALE, look, new_figure, save
+from corota.plots.figure import COLORS, INK, PALE, finish, look, new_figure
 from corota.results.variables import labelled
 
 if TYPE_CHECKING:
@@ -39,9 +39,8 @@ def modes(results: Results, *, path: str | PathLike[str] | None = None, dpi: flo
     results : Results
         With modes, or their frames as :func:`corota.io.modes.as_results` makes them. The
         largest displacement is drawn as a tenth of the model's size.
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    dpi : float
+    path, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -83,9 +82,7 @@ def modes(results: Results, *, path: str | PathLike[str] | None = None, dpi: flo
             ax.set_ylim(low[1] - pad, high[1] + pad)
             ax.set_axis_off()
             ax.set_title(_mode_title(results.frames[index]), loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def _mode_title(frame: Frame) -> str:
@@ -144,9 +141,7 @@ def response(
             ax.set_axisbelow(True)
             ax.tick_params(length=2.5, colors=INK)
         upper.set_title(results.model.name, loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def _natural(results: Results) -> list[float]:
@@ -204,9 +199,7 @@ def energies(
             ax.tick_params(length=2.5, colors=INK)
             ax.ticklabel_format(style="sci", scilimits=(-3, 4), axis="y")
         upper.set_title(results.model.name, loc="left")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 __all__ = ["energies", "modes", "response"]

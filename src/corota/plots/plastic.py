@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.errors import InputError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -28,7 +30,17 @@ def boundary(results: Results, frame: int = -1) -> Ints:
     -------
     ndarray of int, shape (n, 2)
         Corner nodes of the edges.
+
+    Raises
+    ------
+    InputError
+        If the results have no plastic strain.
     """
+    if "PEEQ" not in results.variables(frame):
+        raise InputError(
+            "there is no plastic strain (PEEQ) whose boundary could be drawn: plastic=True is for "
+            "models with a material that flows"
+        )
     plastic = np.nan_to_num(results.cells("PEEQ", frame)) > 0.0
     edges, flows = [], []
     for offset, cells in zip(results.mesh.offsets, results.mesh.cells, strict=False):

@@ -16,10 +16,10 @@ from corota.plots.figure import (
     TENSION,
     extent_size,
     figure_of,
+    finish,
     label_axes,
     look,
     page_width,
-    save,
 )
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import outline, surface
@@ -64,10 +64,8 @@ def principal(
     scale : float
         Factor of the drawn displacements.
     title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -112,9 +110,7 @@ def principal(
                         LineCollection(list(lines), colors=color, linewidths=1.1, capstyle="butt")
                     )
         _finish(ax, results, frame, scale, title, f"principal stresses, {_size(results, largest)}")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def flow(
@@ -138,14 +134,8 @@ def flow(
         Trajectories of both principal stresses; or the flow of a force along x (or y):
         lines along the vector of stress (S11, S12) (or S12, S22), between two of which the force
         stays the same (Kelly and Tosh 2000).
-    frame : int
-    scale : float
-        Factor of the drawn displacements.
-    title : str, optional
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    frame, scale, title, path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -172,9 +162,7 @@ def flow(
             _draw_lines(ax, field, _load_path(row), field.largest, signed=False)
             what = f"flow of force along {kind}"
         _finish(ax, results, frame, scale, title, what, legend=kind == "principal")
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)
 
 
 def principal_axes(stress: Floats) -> tuple[Floats, Floats]:

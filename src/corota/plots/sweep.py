@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from corota.errors import InputError
-from corota.plots.figure import INK, figure_of, look, save
+from corota.plots.figure import INK, figure_of, finish, look
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -49,10 +49,8 @@ def sweep(
     by : str
         A line for each value of this column. Without it rows are points, joined where no other
         parameter varies.
-    path : path-like, optional
-        Write PNG, SVG or PDF there.
-    ax : matplotlib axes, optional
-    dpi : float
+    path, ax, dpi
+        As of :func:`corota.plots.contour`.
 
     Returns
     -------
@@ -94,6 +92,4 @@ def sweep(
             ax.legend()
         ax.margins(0.03)
         ax.tick_params(length=2.5, colors=INK)
-        if path is not None:
-            save(figure, path, dpi)
-    return figure
+        return finish(figure, path, dpi)

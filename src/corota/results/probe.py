@@ -15,6 +15,7 @@ from corota.mesh.data import EDGES
 from corota.mesh.shape_functions import shape_functions
 from corota.names import choose
 from corota.results.history import History
+from corota.results.sampling import sampled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -147,7 +148,7 @@ class Place(Brief):
             found.name = f"{found.name.partition(' at ')[0]} at {self.name}"
             return found
         values = [
-            float(self.inside.values(results.nodal(variable, i))[0])
+            float(sampled(results, variable, i, self.inside.values)[0])
             for i in range(len(results.frames))
         ]
         return History(f"{variable.upper()} at {self.name}", np.array(values), results)
@@ -219,7 +220,7 @@ class Line(Brief):
         InputError
             If there is no such variable.
         """
-        return self._inside.values(self.results.nodal(variable, self.frame))
+        return sampled(self.results, variable, self.frame, self._inside.values)
 
     def to_dataframe(self, *variables: str) -> Any:
         """Table of distance, x, y and variables as a ``pandas.DataFrame``."""

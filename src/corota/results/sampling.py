@@ -1,0 +1,72 @@
+"""Nodal variables between the nodes: components are interpolated, invariants taken from them."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.results import variables as vf
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from corota.results.results import Results
+
+    Floats = NDArray[np.float64]
+
+#: Variables that are not negative anywhere. Parabolas through their nodal values may be.
+NEVER_NEGATIVE = (
+    *("MISES", "PEEQ", "YRATIO", "ENER", "PWORK", "PDISS", "ELKE", "STH"),
+    *("U", "V", "A", "RF", "F", "CPRESS"),
+)
+
+
+def sampled(
+    results: Results,
+    name: str,
+    frame: int,
+    onto: Callable[[Floats], Floats],
+    section: int | None = None,
+) -> Floats:
+    """A variable between the nodes.
+
+    Parameters
+    ----------
+    results : Results
+    name : str
+    frame : int
+    onto : callable
+        Interpolates nodal values (n_nodes, ...) to places (m, ...).
+    section : int, optional
+        Average over the cells of this section group only.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+
+    Raises
+    ------
+    InputError
+        If there is no such variable.
+    """
+    state = results.frame(frame)
+    name = vf.canonical(name, state)
+    if name in vf.INVARIANTS:
+        tensor = vf.INVARIANTS[name][0]
+        components = [n for n, (of, _) in vf.COMPONENTS.items() if of == tensor]
+        if state.fields:
+            chosen = None if section is None else results.sections() == section
+            nodal = results.averaging.average(state.fields, [tensor], chosen)[tensor]
+            return vf.invariant(name, onto(nodal))
+        if set(components) <= set(results.variables(frame)):
+            nodal = np.stack([results.nodal(n, frame, section) for n in components], axis=-1)
+            return vf.invariant(name, onto(nodal))
+    values = onto(results.nodal(name, frame, section))
+    return np.maximum(values, 0.0) if name in NEVER_NEGATIVE else values
+
+
+__all__ = ["NEVER_NEGATIVE", "sampled"]
