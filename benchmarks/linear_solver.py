@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 import time
 from functools import partial
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,8 @@ import scipy.sparse as sp
 from benchmarks.common import interleaved, report
 from corota import _core
 from corota.analysis.linear import pardiso
-from corota.analysis.linear.solvers import Multifrontal, Pardiso, SuperLU
+from corota.analysis.linear.petsc import Petsc
+from corota.analysis.linear.solvers import Multifrontal, SuperLU
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,8 +85,10 @@ def contenders(n: int) -> dict[str, Callable[[], Any]]:
         "faer 1": reference,
     }
     if pardiso.find_mkl() is not None:
-        found["PARDISO 1"] = threaded(Pardiso, 1)
-        found["PARDISO 2"] = threaded(Pardiso, 2)
+        found["PARDISO 1"] = threaded(pardiso.Pardiso, 1)
+        found["PARDISO 2"] = threaded(pardiso.Pardiso, 2)
+    if find_spec("petsc4py") is not None:
+        found["MUMPS 1"] = Petsc
     if n < SUPERLU_LIMIT:
         found["SuperLU"] = SuperLU
     return found

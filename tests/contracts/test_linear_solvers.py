@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 #: Those whose library is here; the refusal of the others is tested too.
-NAMES = [name for name in SOLVERS if name != "pardiso" or pardiso.find_mkl() is not None]
+NEEDED = {"pardiso": pardiso.find_mkl, "petsc": lambda: find_spec("petsc4py")}
+NAMES = [name for name in SOLVERS if name not in NEEDED or NEEDED[name]() is not None]
 
 
 def chain(n: int, *, held: bool = True) -> sp.csc_array:

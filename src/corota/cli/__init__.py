@@ -58,7 +58,9 @@ def program() -> NoReturn:
     """
     code = main()
     threads = sys.modules.get("threading")
-    if "mpi4py" in sys.modules or (threads is not None and threads.active_count() > 1):
+    if {"mpi4py", "petsc4py"} & set(sys.modules) or (
+        threads is not None and threads.active_count() > 1
+    ):
         sys.exit(code)
     try:
         for stream in (sys.stdout, sys.stderr):

@@ -6,6 +6,9 @@ from __future__ import annotations
 import argparse
 from typing import NoReturn
 
+#: Names of :data:`corota.analysis.linear.solvers.SOLVERS`, which would load numerics.
+SOLVERS = ("multifrontal", "pardiso", "petsc", "superlu")
+
 EPILOG = """\
 exit codes:
   0 done   2 input   3 model   4 not converged   5 resource   6 file
@@ -57,6 +60,7 @@ def make_parser() -> Parser:
     run.add_argument(
         "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
     )
+    _solver(run)
     run.add_argument(
         "--format",
         dest="formats",
@@ -122,6 +126,7 @@ def make_parser() -> Parser:
     resume.add_argument(
         "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
     )
+    _solver(resume)
 
     sweep = command("sweep", "Run a deck for many values of its *PARAMETER names.")
     sweep.add_argument("deck", help="input deck (.inp)")
@@ -300,6 +305,15 @@ def make_parser() -> Parser:
         "--jobs", type=_count, metavar="N", help="number of processes (default: all cores)"
     )
     return parser
+
+
+def _solver(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--solver",
+        choices=SOLVERS,
+        default=SOLVERS[0],
+        help=f"direct solver of linear systems (default: {SOLVERS[0]})",
+    )
 
 
 def _reading(parser: argparse.ArgumentParser) -> None:

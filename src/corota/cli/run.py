@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
-from corota.errors import CorotaError, ModelError
+from corota.errors import CorotaError, ModelError, UnsupportedError
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
@@ -114,6 +114,7 @@ def run(args: Any, terminal: Terminal) -> int:
     from corota.io.writers import STREAMS
 
     begin = time.perf_counter()
+    check_alone()
     terminal.line(terminal.color(f"Corota {__version__}", "bold") + f"  {args.deck}")
     model = read_input(args.deck, args)
     read = time.perf_counter() - begin
@@ -148,6 +149,23 @@ def run(args: Any, terminal: Terminal) -> int:
     return carry_out(model, None, files, terminal, args, begin)
 
 
+def check_alone() -> None:
+    """Refuse a run that was started several times: all would write the same files.
+
+    Raises
+    ------
+    UnsupportedError
+        If the starter of MPI programs says so.
+    """
+    for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
+        count = os.environ.get(name, "")
+        if count.isdigit() and int(count) > 1:
+            raise UnsupportedError(
+                f"mpiexec started {count} processes, and a run takes one: start it without "
+                "mpiexec, or run many variants by corota sweep"
+            )
+
+
 def carry_out(
     model: Model,
     steps: list[Step] | None,
@@ -179,6 +197,7 @@ def carry_out(
                 model,
                 steps,
                 observers=observers,
+                solver=getattr(args, "solver", "multifrontal"),
                 threads=args.threads,
                 keep="all" if whole else "last",
                 start=start,

@@ -184,6 +184,7 @@ SOLVERS: dict[str, Callable[..., LinearSolver]] = {
     "multifrontal": Multifrontal,
     "superlu": SuperLU,
     "pardiso": lazy("corota.analysis.linear.pardiso:Pardiso"),
+    "petsc": lazy("corota.analysis.linear.petsc:Petsc"),
 }
 
 
