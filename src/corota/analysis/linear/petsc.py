@@ -27,7 +27,7 @@ _ERROR, _FOUND_NULL = 1, 28
 _TOO_SMALL, _NO_MEMORY, _SINGULAR = (-8, -9, -14, -17, -20), (-13, -7), (-10, -6)
 #: Backward error above which a solution is refused.
 _REFUSE_ABOVE = 1e-9
-#: Growth of a random right-hand side above which a soft motion is looked for.
+#: Growth of a random right-hand side above which soft motions are computed.
 _SUSPECT_GROWTH = 1e8
 #: Energy over squared length, relative to the norm, that is no more than rounding: as in the core.
 _SINGULAR_BELOW = 4e-16
@@ -92,7 +92,7 @@ class Petsc:
 
         self._release()
         n = self._n = len(indptr) - 1
-        # Rows instead of columns, every diagonal entry there: PETSc asks for both.
+        # Rows instead of columns, with every diagonal entry: PETSc needs both.
         starts: NDArray[np.int64] = np.asarray(indptr, dtype=np.int64)
         columns = np.repeat(np.arange(n), starts[1:] - starts[:-1])
         rows, every = np.asarray(indices, np.int64), np.arange(n)
