@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import InputError
 from corota.mesh.data import EDGES, Cells, Mesh
 
@@ -129,7 +130,7 @@ def merge(*meshes: Mesh, tolerance: float | None = None) -> Mesh:
             kept = nodes
             if name in mesh.edge_sets:
                 edges = mesh.edge_sets[name]
-                if np.array_equal(mesh.edge_set_nodes(edges), np.unique(nodes)):
+                if np.array_equal(mesh.edge_set_nodes(edges), distinct(nodes)):
                     left = edges[~_joints(edges, own, cell_index, outer)]
                     kept = nodes[np.isin(nodes, mesh.edge_set_nodes(left))]
             if len(kept) or not len(nodes):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.mesh.data import EDGES
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def nodes_of_cells(mesh: Mesh, cells: Ints) -> Ints:
     nodes, owner = _incidence(mesh)
     inside = np.zeros(mesh.n_cells, bool)
     inside[cells] = True
-    return np.unique(nodes[inside[owner]])
+    return distinct(nodes[inside[owner]])
 
 
 def part_of_cells(mesh: Mesh) -> Ints:

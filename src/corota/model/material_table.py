@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import InputError, number
 from corota.model.materials import Expansion, Material
 from corota.model.plasticity import Mises, Voce
@@ -225,7 +226,7 @@ def _aligned(materials: list[Material], table: MaterialTable) -> list[Material]:
             plastic = [replace(m, isotropic=_voce(m)) for m in plastic]
         return list(plastic)
     curves = [np.array(m.yield_curve, dtype=np.float64) for m in plastic]
-    strains = np.unique(np.concatenate([c[:, 1] for c in curves]))
+    strains = distinct(np.concatenate([c[:, 1] for c in curves]))
     out: list[Material] = []
     for m, curve in zip(plastic, curves, strict=True):
         stress = np.interp(strains, curve[:, 1], curve[:, 0])

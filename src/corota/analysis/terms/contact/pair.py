@@ -7,8 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from corota import _core
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
@@ -376,6 +374,9 @@ class Pair:
 
 def _surfaces(edges: Ints, nodes: Ints) -> Ints:
     """Number of the connected piece of surface that each of the nodes lies on."""
+    from scipy.sparse import coo_array  # takes longer to import than a small job to solve
+    from scipy.sparse.csgraph import connected_components
+
     pairs = np.concatenate([edges[:, :2], edges[:, ::2][edges[:, 2] >= 0]])
     ids, ends = np.unique(pairs, return_inverse=True)
     ends = ends.reshape(-1, 2)
