@@ -303,5 +303,5 @@ def test_a_path_takes_no_temperatures_that_change_the_material() -> None:
     model.fix("left")
     step = ct.Static(path=ct.ArcLength())
     step.temperature(300.0)
-    with pytest.raises(ct.ModelError, match="heat in a static step before"):
+    with pytest.raises(ct.ModelError, match="heat in an earlier static step"):
         ct.solve(model, step, threads=1)

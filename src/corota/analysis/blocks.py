@@ -169,7 +169,7 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
 
 
 def _check_thickness(model: Model, block: BlockOfCells) -> None:
-    """Refuse thicknesses by node that do not fit the mesh or are no thickness."""
+    """Refuse thicknesses by node of the wrong number, or that are not positive."""
     section, labels = block.section, model.mesh.node_labels
     nodal = section.nodal_thickness
     if nodal is None:

@@ -28,7 +28,7 @@ def cells_of(mesh: Mesh, where: str | Ints) -> Ints:
 
 
 def nodes_of_cells(mesh: Mesh, cells: Ints) -> Ints:
-    """Nodes of cells, each once, rising."""
+    """Nodes of cells, each once, in increasing order."""
     nodes, owner = _incidence(mesh)
     inside = np.zeros(mesh.n_cells, bool)
     inside[cells] = True

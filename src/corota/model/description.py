@@ -154,7 +154,7 @@ def _material(material: Material) -> dict[str, Any]:
 
 
 def _table(material: MaterialTable) -> dict[str, Any]:
-    """The same of a table: constants that change with all their values, a curve a temperature."""
+    """The same for a table: all values of constants that change, one curve per temperature."""
     rows = [(t, _material(m)) for t, m in material.table]
     constants: dict[str, Any] = {}
     for name in rows[0][1]["constants"]:

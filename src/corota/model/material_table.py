@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Data of a material that are no constants of its law.
+#: Data of a material other than the constants of its law.
 _COMMON = ("rho", "expansion", "rayleigh", "name", "where", "rows")
 
 
@@ -30,9 +30,9 @@ class MaterialTable(Material):
     """A material given at several temperatures: linear between them, constant outside.
 
     The stress is that of the elastic strain with the constants at the current temperature of
-    each integration point. Plastic strain and back-stresses stay when the temperature changes;
-    so does what an initial stress was as a strain. The mass does not: the density is that at the
-    initial temperature.
+    each integration point. Plastic strain, back-stresses and the strain of an
+    initial stress are kept when the temperature changes. The density is that at the initial
+    temperature, so the mass does not change.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class MaterialTable(Material):
         for other in materials:
             if type(other) is not type(first) or not other.elastic_constants:
                 raise InputError(
-                    "a material table takes materials of the core, all of one class, not "
+                    "a material table takes built-in materials, all of one class, not "
                     f"{type(first).__name__} and {type(other).__name__}",
                     self.where,
                 )
@@ -110,7 +110,7 @@ class MaterialTable(Material):
         values = [m.expansion for m in materials]
         if any(isinstance(v, Expansion) for v in values):
             raise InputError(
-                "a coefficient of expansion that is a table itself belongs to the whole: "
+                "give an expansion that is itself a table once for all temperatures: "
                 "MaterialTable(..., expansion=...)",
                 self.where,
             )
@@ -119,7 +119,7 @@ class MaterialTable(Material):
 
     @property
     def temperatures(self) -> list[float]:
-        """The given temperatures, rising."""
+        """The given temperatures, in increasing order."""
         return [t for t, _ in self.table]
 
     @property
@@ -185,7 +185,7 @@ class MaterialTable(Material):
         return self.first.compliance()
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
-        """Those at the lowest temperature."""
+        """Those of the material at the lowest temperature."""
         return self.first.parameters(orientation)
 
     def rows_of_parameters(self, orientation: float = 0.0) -> list[tuple[float, list[float]]]:
@@ -196,7 +196,7 @@ class MaterialTable(Material):
 
 
 def _mix(a: Any, b: Any, share: float) -> Any:
-    """A value between two that are alike."""
+    """A value between two of the same type."""
     if isinstance(a, Voce):
         return Voce(*(_mix(getattr(a, f.name), getattr(b, f.name), share) for f in fields(a)))
     if isinstance(a, int | float) and not isinstance(a, bool):
@@ -208,7 +208,7 @@ def _mix(a: Any, b: Any, share: float) -> Any:
 
 
 def _aligned(materials: list[Material], table: MaterialTable) -> list[Material]:
-    """Materials whose parameters stand for the same: curves at the same plastic strains."""
+    """Materials with corresponding parameters: curves at the same plastic strains."""
     plastic = [m for m in materials if isinstance(m, Mises)]
     if not plastic:
         return materials

@@ -145,7 +145,7 @@ class Material(Brief):
     #: Whether its constants follow the temperature.
     follows_temperature = False
     #: How many of its first parameters make the elastic or complementary energy; 0 for a law whose
-    #: constants nobody knows.
+    #: constants are unknown.
     elastic_constants = 0
 
     def compliance(self) -> NDArray[np.float64]:

@@ -161,7 +161,7 @@ class Section(Brief):
             )
         known = given[np.isfinite(given) & (given > 0.0)]
         self.nodal_thickness = given
-        # Of nodes that belong to other sections there may be none.
+        # Nodes of other sections need none.
         self.thickness = float(known.mean()) if len(known) else 0.0
 
     def thickness_at(self, nodes: Ints) -> Floats:
@@ -172,7 +172,7 @@ class Section(Brief):
 
 
 def thickness_at(mesh: Mesh, sections: Iterable[Section], cells: Ints, nodes: Ints) -> Floats:
-    """Thickness of nodes (n, k) [length], as the sections of cells (n,) have it; 1 without one."""
+    """Thickness of nodes (n, k) [length] from the sections of cells (n,); 1 without one."""
     found = np.ones(nodes.shape)
     for section in sections:
         mine = np.isin(cells, cells_of(mesh, section.cells))

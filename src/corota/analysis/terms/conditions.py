@@ -397,7 +397,7 @@ class Conditions(Term):
         if self.heating.any() and not linear:
             raise ModelError(
                 "temperatures that change in a step that follows a path need elastic material "
-                "with constants that do not depend on them; heat in a static step before"
+                "with constants that do not depend on them; heat in an earlier static step"
             )
         if np.any(self.fading):
             dof = int(np.flatnonzero(self.fading)[0])

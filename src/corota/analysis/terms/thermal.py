@@ -47,7 +47,7 @@ class _Block:
     shape: Floats  # (p, k)
     expansion: Expansion
     turn: Floats  # (4, 4), strain along the material axes to rows xx, yy, zz, xy
-    constant: Floats | None  # compliance, (4, 4), rows xx, yy, zz, xy; of tables none
+    constant: Floats | None  # compliance, (4, 4), rows xx, yy, zz, xy; none for tables
     table: MaterialTable | None
     line: bool
     strain: bool  # plane strain
@@ -57,7 +57,7 @@ class _Block:
     now: Floats = field(init=False)
     at_start: Floats | None = None  # compliance, where there is an initial stress
     free: Floats = field(init=False)  # free strains
-    rows: Floats = field(init=False)  # what the core has of them, (n, p, 4)
+    rows: Floats = field(init=False)  # passed to the core, (n, p, 4)
     # Strains of the last frame, forces on them, temperatures.
     last: tuple[Floats, Floats, Floats] | None = None
 
@@ -212,7 +212,7 @@ class FreeStrains:
                 raise ModelError(str(error), block.table.where) from None
         block.free = block.expansion.strain(block.now, block.start) @ block.turn[:, :3].T
         if block.stress is not None and block.at_start is not None:
-            # What the initial stress was as a strain stays.
+            # The strain of the initial stress is kept.
             block.free -= np.einsum("...ij,...j->...i", block.at_start, block.stress)
         block.rows = _rows(block, block.free, block.compliance(block.now))
         self.core.set_initial(block.index, block.rows.ravel())
@@ -243,7 +243,7 @@ class FreeStrains:
     def _record_table(
         self, block: _Block, table: MaterialTable, force: Floats, stress_zz: Floats, volume: Floats
     ) -> None:
-        """The same where the law follows the temperature.
+        """The same for a law that follows the temperature.
 
         At a fixed elastic strain the energy changes by what the complementary energy loses at a
         fixed stress.

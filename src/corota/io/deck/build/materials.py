@@ -66,7 +66,7 @@ def _by_temperature(draft: MaterialDraft) -> Material | None:
         return [float(np.interp(at, given, column)) for column in columns]
 
     if draft.plastic is None:
-        # Between stiffnesses the constants that they stand for are no straight lines.
+        # Interpolated stiffnesses do not give linearly interpolated constants.
         fine = [t for a, b in pairwise(given) for t in np.linspace(a, b, law.pieces + 1)[:-1]]
         temperatures = [float(t) for t in (*fine, *given[-1:])]
         rows: list[tuple[float, Material]] = [

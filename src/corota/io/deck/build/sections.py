@@ -234,7 +234,7 @@ class SectionBuilder:
             self.deck.error(draft.card, draft.card.at("NODALTHICKNESS"), text)
         values = np.where(np.isnan(self.nodal), draft.thickness, self.nodal)
         mine = values[nodes_of_cells(self.mesh, cells)]
-        # One thickness for all nodes costs nothing.
+        # One thickness for all nodes is passed as a scalar.
         return float(mine[0]) if len(mine) and (mine == mine[0]).all() else values
 
     def _element(self, type_: str) -> str:

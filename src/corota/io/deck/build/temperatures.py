@@ -1,4 +1,4 @@
-"""Temperatures of a deck: where they act on nothing, and where there is one in the whole model."""
+"""Temperatures of a deck: where they have no effect, and where the whole model has one."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def drop_temperatures(deck: Deck) -> None:
-    """Leave out temperatures where no material responds to them: they act on nothing."""
+    """Leave out temperatures where no material responds to them."""
     if any(m.expansion != 0.0 or m.follows_temperature for m in deck.materials.values()):
         return
     given = [d for step in deck.steps for d in step.loads if d.kind == "temperature"]

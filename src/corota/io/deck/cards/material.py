@@ -74,7 +74,7 @@ def _law(deck: Deck, card: Card, name: str) -> None:
 
 
 def _constants(deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, law: DeckLaw) -> None:
-    """Sets of constants, each of some rows with the temperature behind them."""
+    """Sets of constants: some rows each, with the temperature after the last constant."""
     count, per_row = len(law.constants), law.per_row
     n_rows, needed = -(-count // per_row), count - law.optional
     if len(rows) > n_rows and len(rows) % n_rows:
@@ -82,7 +82,7 @@ def _constants(deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, la
             card,
             rows[-1],
             0,
-            f"{len(rows)} data lines: each temperature takes {n_rows} of them",
+            f"{len(rows)} data lines: each temperature takes {n_rows}",
         )
         found.law_card = None
         return
@@ -134,7 +134,7 @@ def _refuse_twice(deck: Deck, card: Card, temperatures: list[float]) -> None:
                 card,
                 card.where,
                 f"the temperature {at:g} is given twice",
-                hint="each set of numbers needs a temperature of its own, behind the last one",
+                hint="each set of numbers needs its own temperature, after the last number",
             )
             return
         seen.add(at)

@@ -109,7 +109,7 @@ def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:
 
 
 def _distinct(deck: Deck, card: Card, curves: list[CurveDraft]) -> bool:
-    """Whether each temperature has one curve; told where not."""
+    """Whether each temperature has one curve; reports an error otherwise."""
     found = sorted(curve.temperature for curve in curves)
     twice = next((a for a, b in pairwise(found) if a == b), None)
     if twice is None:

@@ -182,7 +182,7 @@ class _Writer:
             if nodal.setdefault(node, value) != value:
                 raise UnsupportedError(
                     f"node {self.mesh.node_labels[node]} has two thicknesses in two sections, "
-                    "which a deck cannot tell: give the sections nodes of their own"
+                    "which a deck cannot express: give each section its own nodes"
                 )
 
     def _material(self, material: Material, lines: list[str]) -> str:

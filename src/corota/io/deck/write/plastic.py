@@ -36,7 +36,7 @@ def plastic_cards(material: Material) -> str:
     table: Sequence[tuple[float | None, Material]] = [(None, material)]
     if isinstance(material, MaterialTable):
         table = material.table
-    # A temperature stands behind the numbers that belong to it.
+    # The temperature follows its numbers.
     rows = [((t,) if t is not None else (), m) for t, m in table if isinstance(m, Mises)]
     if not rows:
         return ""
