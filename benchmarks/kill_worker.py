@@ -87,6 +87,7 @@ def run(case: Case, folder: Path, every: int, resume: bool, strike: Strike) -> t
         What it wrote to standard error.
     """
     log = folder.with_suffix(".log")
+    log.touch()  # a signal may end the child before it opens its log
     child = os.fork()
     if child == 0:
         code = 99
