@@ -148,7 +148,7 @@ def open_mpi() -> bool:
     if starter is None or find_spec("mpi4py") is None:
         return False
     said = subprocess.run([starter, "--version"], capture_output=True, text=True, check=False)
-    return "Open MPI" in said.stdout
+    return "Open MPI" in said.stdout or "OpenRTE" in said.stdout
 
 
 @pytest.mark.slow
