@@ -57,10 +57,12 @@ CASES: dict[str, tuple[str, bool, str]] = {
     "tension of 20 kN, linear preload": (CLAMP, False, pull(2e4)),
     "compression of 10 kN (70 % of buckling)": (CLAMP, True, pull(-1e4)),
     "bent by 3 kN across": (CLAMP, True, pull(3e3, 2)),
+    "bent by 3 kN across, linear preload": (CLAMP, False, pull(3e3, 2)),
     "held at both ends, heated by 20": (CLAMPS, True, HEAT.format(20.0)),
     "held at both ends, heated by 20, linear preload": (CLAMPS, False, HEAT.format(20.0)),
     "held at both ends, cooled by 100": (CLAMPS, True, HEAT.format(-100.0)),
     "one end moved across by 2": (CLAMP, True, "*BOUNDARY\nR, 2, 2, 2.\n"),
+    "one end moved across by 20, linear preload": (CLAMP, False, "*BOUNDARY\nR, 2, 2, 20.\n"),
 }
 
 

@@ -126,7 +126,13 @@ class Problem:
     def set_lanes(self, lanes: str) -> int: ...
     def set_active(self, active: list[bool]) -> None: ...
     def assemble(
-        self, u: _Floats, nlgeom: bool, force: _Floats, scale: _Floats, values: _Floats
+        self,
+        u: _Floats,
+        nlgeom: bool,
+        force: _Floats,
+        scale: _Floats,
+        values: _Floats,
+        stressed: bool = False,
     ) -> None: ...
     def inertia(
         self,

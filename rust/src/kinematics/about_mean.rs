@@ -20,6 +20,8 @@ pub struct AboutMean<T, Op, const N: usize, const M: usize> {
     /// Operator of the mean gradient.
     op: Op,
     kind: LocalStrain,
+    /// Whether the fluctuation counts to first order only: about a linear state.
+    stressed: bool,
     /// Mean gradient.
     pub h: [T; 4],
     strain: [T; 3],
@@ -108,9 +110,12 @@ where
             return None;
         }
         let op = E::mean(x, prepared);
-        let h = op.gradient(q);
+        // About a linear state the mean deformation is that of the reference.
+        let stressed = section.strain.is_stressed();
+        let h = if stressed { [T::zero(); 4] } else { op.gradient(q) };
+        let kind = section.strain.finite();
         let f = [[h[0] + T::one(), h[1]], [h[2], h[3] + T::one()]];
-        let g = if section.strain == LocalStrain::Logarithmic {
+        let g = if kind == LocalStrain::Logarithmic {
             inverse2(&f).0
         } else {
             [[f[0][0], f[1][0]], [f[0][1], f[1][1]]]
@@ -118,9 +123,10 @@ where
         let o = T::zero();
         Some(Self {
             op,
-            kind: section.strain,
+            kind,
+            stressed,
             h,
-            strain: section.strain.strain(&h),
+            strain: kind.strain(&h),
             g,
             stress: [o; 3],
             pulled: [o; 4],
@@ -133,6 +139,13 @@ where
     #[inline(always)]
     fn fluctuation(&self, h: &[T; 4]) -> [T; 4] {
         [h[0] - self.h[0], h[1] - self.h[1], h[2] - self.h[2], h[3] - self.h[3]]
+    }
+
+    /// Fluctuation that stresses turn with.
+    #[inline(always)]
+    fn finite_fluctuation(&self, h: &[T; 4]) -> Mat<T, 2> {
+        let k = if self.stressed { [T::zero(); 4] } else { self.fluctuation(h) };
+        [[k[0], k[1]], [k[2], k[3]]]
     }
 
     /// Strain at a point with the gradient `h`.
@@ -174,8 +187,7 @@ where
     /// Keep the weighted stress of a point, and what [`AboutMean::pull`] made of it.
     #[inline(always)]
     pub fn keep(&mut self, h: &[T; 4], s: &[T; 3], pulled: &[T; 4]) {
-        let k = self.fluctuation(h);
-        let m = times2(&[[k[0], k[1]], [k[2], k[3]]], &tensor(s));
+        let m = times2(&self.finite_fluctuation(h), &tensor(s));
         for i in 0..2 {
             for j in 0..2 {
                 self.moment[i][j] += m[i][j];
@@ -192,8 +204,7 @@ where
     /// Derivatives by the mean gradient of what a point gives, for weighted stress and tangent.
     #[inline(always)]
     pub fn mixed(&self, h: &[T; 4], s: &[T; 3], d: &Mat<T, 3>) -> MixedTangent<T> {
-        let k = self.fluctuation(h);
-        let k = [[k[0], k[1]], [k[2], k[3]]];
+        let k = self.finite_fluctuation(h);
         let own = rows(&self.g);
         let t = tensor(s);
         let o = T::zero();

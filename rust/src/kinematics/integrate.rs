@@ -46,6 +46,11 @@ impl<const N: usize> Section<N> {
     pub fn linearised(&self) -> Self {
         Self { strain: LocalStrain::Linear, finite: false, ..self.clone() }
     }
+
+    /// The same section about a state of such an analysis, with the stiffness of its stress.
+    pub fn stressed(&self) -> Self {
+        Self { strain: self.strain.stressed(), finite: false, ..self.clone() }
+    }
 }
 
 /// History of a batch of elements: state members by point, internal modes; `stride` apart.

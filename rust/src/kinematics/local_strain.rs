@@ -13,6 +13,15 @@ pub enum LocalStrain {
     Linear,
     GreenLagrange,
     Logarithmic,
+    /// Linear strain, whose tangent has the stress stiffness of another one at the reference.
+    Stressed(Finite),
+}
+
+/// A strain with a second derivative at the reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finite {
+    GreenLagrange,
+    Logarithmic,
 }
 
 impl LocalStrain {
@@ -31,12 +40,35 @@ impl LocalStrain {
         self == Self::Linear
     }
 
+    /// The strain of a linear state that small motions or bifurcations are looked for about.
+    pub fn stressed(self) -> Self {
+        match self {
+            Self::GreenLagrange => Self::Stressed(Finite::GreenLagrange),
+            Self::Logarithmic => Self::Stressed(Finite::Logarithmic),
+            other => other,
+        }
+    }
+
+    /// Whether gradients count to first order only.
+    pub fn is_stressed(self) -> bool {
+        matches!(self, Self::Stressed(_))
+    }
+
+    /// The strain that gives the stress its stiffness.
+    pub fn finite(self) -> Self {
+        match self {
+            Self::Stressed(Finite::GreenLagrange) => Self::GreenLagrange,
+            Self::Stressed(Finite::Logarithmic) => Self::Logarithmic,
+            other => other,
+        }
+    }
+
     /// Strain xx, yy, xy (engineering shear).
     #[inline(always)]
     pub fn strain<T: Real>(self, h: &[T; 4]) -> [T; 3] {
         let linear = [h[0], h[3], h[1] + h[2]];
         match self {
-            Self::Linear => linear,
+            Self::Linear | Self::Stressed(_) => linear,
             Self::GreenLagrange => [
                 (h[0] * h[0] + h[2] * h[2]).fma(T::real(0.5), linear[0]),
                 (h[1] * h[1] + h[3] * h[3]).fma(T::real(0.5), linear[1]),
@@ -51,7 +83,7 @@ impl LocalStrain {
     pub fn pull<T: Real>(self, h: &[T; 4], s: &[T; 3]) -> [T; 4] {
         let linear = [s[0], s[2], s[2], s[1]];
         match self {
-            Self::Linear => linear,
+            Self::Linear | Self::Stressed(_) => linear,
             Self::GreenLagrange => [
                 h[0].fma(s[0], h[1].fma(s[2], linear[0])),
                 h[0].fma(s[2], h[1].fma(s[1], linear[1])),
@@ -65,8 +97,10 @@ impl LocalStrain {
     /// Tangent `dP/dH = (dE/dH)^T D (dE/dH) + S : d2E/dH2`, symmetric.
     #[inline(always)]
     pub fn tangent<T: Real>(self, h: &[T; 4], s: &[T; 3], d: &Mat<T, 3>) -> Mat<T, 4> {
-        match self {
-            Self::Linear => {
+        let rest = [T::zero(); 4];
+        let h = if self.is_stressed() { &rest } else { h };
+        match self.finite() {
+            Self::Linear | Self::Stressed(_) => {
                 // Row of the strain that each gradient component feeds.
                 const ROW: [usize; 4] = [0, 2, 2, 1];
                 let mut a = [[T::zero(); 4]; 4];
@@ -112,7 +146,7 @@ impl LocalStrain {
     /// Stretch of the thickness that belongs to its strain.
     pub fn stretch(self, strain_zz: f64) -> f64 {
         match self {
-            Self::Linear => 1.0 + strain_zz,
+            Self::Linear | Self::Stressed(_) => 1.0 + strain_zz,
             Self::GreenLagrange => (1.0 + 2.0 * strain_zz).max(0.0).sqrt(),
             Self::Logarithmic => strain_zz.exp(),
         }
@@ -122,7 +156,7 @@ impl LocalStrain {
     /// to this strain, the stress through the thickness and the thickness stretch.
     pub fn cauchy(self, h: &[f64; 4], s: [f64; 3], zz: f64, stretch: f64) -> [f64; 4] {
         let (second, zz) = match self {
-            Self::Linear => return [s[0], s[1], zz, s[2]],
+            Self::Linear | Self::Stressed(_) => return [s[0], s[1], zz, s[2]],
             Self::GreenLagrange => (s, zz * stretch * stretch),
             Self::Logarithmic => (hencky::second_piola(h, &s), zz),
         };

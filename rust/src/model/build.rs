@@ -118,11 +118,12 @@ pub fn build(
         };
         let shape = section.points.iter().flat_map(|p| p.n).collect();
         let mass_points = E::points(&E::mass_rule());
-        let linear = section.linearised();
+        let (linear, stressed) = (section.linearised(), section.stressed());
         let shared = BlockData {
             block: index,
             section,
             linear,
+            stressed,
             rho: input.rho,
             table,
             weighted: input.options.beta0.is_some(),

@@ -22,6 +22,18 @@ const PAD: usize = MAX_LANES;
 /// Parts of the state of a chunk.
 pub const PARTS: usize = 5;
 
+/// How elements move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinematics {
+    /// Infinitesimally.
+    Linear,
+    /// Infinitesimally; the tangent is that about the state, with the stiffness of its stress on
+    /// the reference shape.
+    Stressed,
+    /// By finite displacements.
+    Finite,
+}
+
 /// What an evaluation needs besides the elements.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
@@ -32,6 +44,9 @@ pub struct Context<'a> {
     pub dofs: &'a Dofs,
     /// Whether frames turn (geometrically nonlinear).
     pub nlgeom: bool,
+    /// Whether the tangent has the stiffness that the stress of a linear state has on the
+    /// reference shape; only where frames stay.
+    pub stressed: bool,
     pub tangent: bool,
     /// Instructions to use.
     pub lanes: Lanes,
@@ -41,8 +56,9 @@ pub struct Context<'a> {
 pub struct Shared<const N: usize> {
     pub block: usize,
     pub section: Section<N>,
-    /// The section where the frames stay.
+    /// The section where the frames stay, and there with the stiffness of the stress.
     pub linear: Section<N>,
+    pub stressed: Section<N>,
     /// Mass per volume; 0 if none was given.
     pub rho: f64,
     /// The law by temperature, if it depends on it.
@@ -308,9 +324,11 @@ where
         let n = self.nodes.len();
         let shared = self.shared.clone();
         let members = usize::from(shared.section.law.n_state() > 0);
+        let section =
+            if context.stressed { &shared.stressed } else { shared.section(context.nlgeom) };
         for e in (0..n).step_by(T::LANES) {
             let (x, u) = self.gather::<T>(e, context);
-            let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
+            let mut frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
             let mut history = History {
                 old: &self.old[e * members..],
                 new: &mut self.new[e * members..],
@@ -320,15 +338,12 @@ where
                 per_point: PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride),
             };
             let mut answer = Local::zero();
-            E::law_into(
-                &x,
-                &frame.q,
-                shared.section(context.nlgeom),
-                &mut history,
-                context.tangent,
-                &mut answer,
-            );
+            E::law_into(&x, &frame.q, section, &mut history, context.tangent, &mut answer);
             let force = frame.force(&answer.force);
+            if context.stressed && E::TURNS {
+                // Forces turn with the element, from the reference on.
+                frame = Frame::new(&x, &[[T::zero(); M]; N], true);
+            }
             if context.tangent && E::TURNS {
                 frame.stiffness(&answer.force, &mut answer.stiffness);
             }

@@ -64,8 +64,14 @@ where
         out
     }
 
-    fn mass(&self, e: usize, x: &Nodal<f64, N, 2>, kind: MassKind) -> Mass<f64, N> {
+    /// Mass of an element. Where some nodes carry none, bulges of edges would ride with a frame
+    /// that these nodes turn at any rate: there the consistent mass is the constant one.
+    fn mass(&self, e: usize, x: &Nodal<f64, N, 2>, mut kind: MassKind) -> (Mass<f64, N>, MassKind) {
         let s = &self.shared;
+        let light = self.massless.get(e).map_or(0, |of| of.iter().filter(|&&l| l).count());
+        if kind == MassKind::Consistent && 0 < light && light < N {
+            kind = MassKind::Constant;
+        }
         let at = |p: &Point<N>, nodal: &[f64; N]| -> f64 {
             p.n.iter().zip(nodal).map(|(n, v)| n * v).sum()
         };
@@ -85,19 +91,24 @@ where
         if let Some(factor) = self.mass_factors.get(e) {
             mass.scale(*factor);
         }
-        mass
+        (mass, kind)
+    }
+
+    /// Whether bulges of the edges couple with the nodes.
+    fn coupled(kind: MassKind) -> bool {
+        kind == MassKind::Consistent && M == 3 && !E::LINE
     }
 
     pub(super) fn add_inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
         for e in 0..self.nodes.len() {
             let (x, u) = self.gather::<f64>(e, context);
-            let mass = self.mass(e, &x, motion.kind);
+            let (mass, kind) = self.mass(e, &x, motion.kind);
             let a = self.of_dofs(e, motion.a, context);
-            let (f, k) = if motion.kind == MassKind::Consistent && M == 3 && !E::LINE {
+            let (f, k) = if Self::coupled(kind) {
                 let v = self.of_dofs(e, motion.v, context);
                 consistent(&mass, &x, &u, &v, &a, motion.weights)
             } else {
-                let mut k = mass.matrix::<M>(motion.kind == MassKind::Lumped);
+                let mut k = mass.matrix::<M>(kind == MassKind::Lumped);
                 let f = symmetric_times(&k, &a);
                 for v in k.as_flattened_mut().as_flattened_mut().as_flattened_mut() {
                     *v *= motion.weights[2];
@@ -118,10 +129,10 @@ where
         mask: &[bool],
         sink: &Sink<'_>,
     ) {
-        let coupled = load.kind == MassKind::Consistent && M == 3 && !E::LINE;
         for e in (0..self.nodes.len()).filter(|&e| mask[self.elements[e] as usize]) {
             let (x, mut u) = self.gather::<f64>(e, context);
-            let mass = self.mass(e, &x, load.kind);
+            let (mass, kind) = self.mass(e, &x, load.kind);
+            let coupled = Self::coupled(kind);
             let mut secant = None;
             if !load.start.is_empty() {
                 let (u0, field) = (self.of_dofs(e, load.start, context), load.field);
@@ -161,7 +172,7 @@ where
         let members = usize::from(shared.section.law.n_state() > 0);
         for e in 0..self.nodes.len() {
             let (x, u1) = self.gather::<f64>(e, context);
-            let mass = self.mass(e, &x, between.kind);
+            let (mass, kind) = self.mass(e, &x, between.kind);
             let (u0, v0) =
                 (self.of_dofs(e, between.u0, context), self.of_dofs(e, between.v0, context));
             let mut rates = [[0.0; 2]; N];
@@ -192,7 +203,7 @@ where
                 &x,
                 &shared.section,
                 &mut history,
-                (&mass, between.kind),
+                (&mass, kind),
                 &step,
                 &rates,
                 &mut rates_end,
@@ -220,7 +231,7 @@ where
         }
         for e in 0..self.nodes.len() {
             let (x, u) = self.gather::<f64>(e, context);
-            let mass = self.mass(e, &x, MassKind::Consistent);
+            let (mass, _) = self.mass(e, &x, MassKind::Consistent);
             let v = self.of_dofs(e, v, context);
             let y = bulge_rates(&Spin::new(&x, &u, &mass.s), &u, &v);
             self.rates_old[2 * N * e..2 * N * (e + 1)].copy_from_slice(y.as_flattened());
@@ -240,9 +251,9 @@ where
         for e in 0..self.nodes.len() {
             let before = std::mem::take(&mut sums.kinetic);
             let (x, u) = self.gather::<f64>(e, context);
-            let mass = self.mass(e, &x, kind);
+            let (mass, kind) = self.mass(e, &x, kind);
             let v = self.of_dofs(e, v, context);
-            let coupled = kind == MassKind::Consistent && M == 3 && !E::LINE;
+            let coupled = Self::coupled(kind);
             let mut y = [[0.0; 2]; N];
             let mut rate = [[0.0; 2]; N];
             if coupled {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::build::{BlockInput, Options};
+use super::chunk::Kinematics;
 use super::problem::Problem;
 use super::registry::{self, Facts};
 use crate::base::Lanes;
@@ -125,7 +126,7 @@ fn case(facts: &Facts, law: &str, strain: &str, nlgeom: bool) -> Case {
 
 impl Case {
     /// Force, scale and stiffness after each increment, and the elements that failed in any.
-    fn run(&self, lanes: Lanes, nlgeom: bool) -> (Vec<[Vec<f64>; 3]>, Vec<usize>) {
+    fn run(&self, lanes: Lanes, kinematics: Kinematics) -> (Vec<[Vec<f64>; 3]>, Vec<usize>) {
         let mut problem = Problem::new(self.x.clone(), from_ref(&self.input), &[]).unwrap();
         problem.set_lanes(lanes);
         if self.input.law == "given" {
@@ -145,7 +146,7 @@ impl Case {
         for u in &self.u {
             let mut out = [vec![0.0; n], vec![0.0; n], vec![0.0; nnz]];
             let [force, scale, values] = &mut out;
-            if let Err(which) = problem.assemble(u, nlgeom, force, scale, values) {
+            if let Err(which) = problem.assemble(u, kinematics, force, scale, values) {
                 failed.extend(which.0.iter().map(|f| f.1));
             }
             problem.commit();
@@ -172,19 +173,19 @@ fn packs_give_what_plain_numbers_give() {
     for facts in registry::facts() {
         for law in Law::NAMES {
             for strain in LocalStrain::NAMES {
-                for nlgeom in [false, true] {
-                    let case = case(&facts, law, strain, nlgeom);
+                for kinematics in [Kinematics::Linear, Kinematics::Stressed, Kinematics::Finite] {
+                    let case = case(&facts, law, strain, kinematics == Kinematics::Finite);
                     let d = case.dofs_per_element;
                     // A history may be too much for an element; then it is for every lane.
-                    let (plain, failed) = case.run(Lanes::Scalar, nlgeom);
+                    let (plain, failed) = case.run(Lanes::Scalar, kinematics);
                     assert!(failed.len() <= ELEMENTS / 4, "{} {law} {strain}", facts.name);
                     for lanes in [Lanes::Best, Lanes::Four, Lanes::Eight] {
                         let what = format!(
-                            "{} {law} {strain} nlgeom {nlgeom} {} lanes",
+                            "{} {law} {strain} {kinematics:?} {} lanes",
                             facts.name,
                             lanes.width()
                         );
-                        let (packs, out) = case.run(lanes, nlgeom);
+                        let (packs, out) = case.run(lanes, kinematics);
                         assert_eq!(out, failed, "{what}");
                         for (pack, plain) in packs.iter().zip(&plain) {
                             agree(&pack[0], &plain[0], d, &failed, &what);
@@ -219,7 +220,7 @@ fn every_failed_lane_is_named() {
             let n = problem.dofs.n_dofs();
             let (mut force, mut scale) = (vec![0.0; n], vec![0.0; n]);
             let failed = problem
-                .assemble(&case.u[0], true, &mut force, &mut scale, &mut [])
+                .assemble(&case.u[0], Kinematics::Finite, &mut force, &mut scale, &mut [])
                 .expect_err("mirrored elements fail");
             let named: Vec<usize> = failed.0.iter().map(|f| f.1).collect();
             assert_eq!(named, turned_inside_out, "{} {lanes:?}", facts.name);
@@ -246,8 +247,8 @@ fn a_law_between_two_temperatures_is_the_law_with_the_parameters_between() {
                 wanted.input.parameters = cold.iter().zip(&hot).map(|(a, b)| at(a, b)).collect();
                 // What the block has without temperatures does not matter.
                 found.input.by_temperature = vec![(100.0, cold), (300.0, hot)];
-                let (wanted, failed) = wanted.run(Lanes::Scalar, true);
-                let (found, also) = found.run(Lanes::Best, true);
+                let (wanted, failed) = wanted.run(Lanes::Scalar, Kinematics::Finite);
+                let (found, also) = found.run(Lanes::Best, Kinematics::Finite);
                 assert_eq!(failed, also, "{} {law} {strain}", facts.name);
                 assert!(found == wanted, "{} {law} {strain}", facts.name);
             }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::build::{Block, BlockInput, build, colour};
-use super::chunk::{Chunk, Context, PARTS};
+use super::chunk::{Chunk, Context, Kinematics, PARTS};
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::fixed_dofs::FixedDofs;
@@ -118,14 +118,16 @@ impl Problem {
     pub fn assemble(
         &mut self,
         u: &[f64],
-        nlgeom: bool,
+        kinematics: Kinematics,
         force: &mut [f64],
         scale: &mut [f64],
         values: &mut [f64],
     ) -> Result<(), Failed> {
+        let nlgeom = kinematics == Kinematics::Finite;
+        let stressed = kinematics == Kinematics::Stressed;
         let tangent = !values.is_empty();
-        let context =
-            Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent, lanes: self.lanes };
+        let (x, dofs, lanes) = (&self.x, &self.dofs, self.lanes);
+        let context = Context { x, u, dofs, nlgeom, stressed, tangent, lanes };
         let pool = self.pool_if_apart();
         let (colours, active) = (&mut self.colours, &self.active);
         let work = |pool: bool| {
@@ -171,8 +173,15 @@ impl Problem {
         values: &mut [f64],
     ) {
         let tangent = !values.is_empty();
-        let context =
-            Context { x: &self.x, u, dofs: &self.dofs, nlgeom: true, tangent, lanes: self.lanes };
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            nlgeom: true,
+            stressed: false,
+            tangent,
+            lanes: self.lanes,
+        };
         let sink = Sink {
             force: Shared::new(force),
             scale: Shared::new(scale),
@@ -203,8 +212,15 @@ impl Problem {
             array.fill(0.0);
         }
         let tangent = !values.is_empty();
-        let context =
-            Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent, lanes: self.lanes };
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            nlgeom,
+            stressed: false,
+            tangent,
+            lanes: self.lanes,
+        };
         let sink = Sink {
             force: Shared::new(force),
             scale: Shared::new(scale),
@@ -245,6 +261,7 @@ impl Problem {
             u,
             dofs: &self.dofs,
             nlgeom: true,
+            stressed: false,
             tangent: false,
             lanes: self.lanes,
         };
@@ -273,7 +290,15 @@ impl Problem {
     }
 
     fn at_rest<'a>(&'a self, u: &'a [f64]) -> Context<'a> {
-        Context { x: &self.x, u, dofs: &self.dofs, nlgeom: true, tangent: false, lanes: self.lanes }
+        Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            nlgeom: true,
+            stressed: false,
+            tangent: false,
+            lanes: self.lanes,
+        }
     }
 
     /// Kinetic energy and momenta of a motion.
@@ -394,8 +419,15 @@ impl Problem {
     ) {
         let mut scale = vec![0.0; force.len()];
         let tangent = !values.is_empty();
-        let context =
-            Context { x: &self.x, u, dofs: &self.dofs, nlgeom: true, tangent, lanes: self.lanes };
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            nlgeom: true,
+            stressed: false,
+            tangent,
+            lanes: self.lanes,
+        };
         let sink = Sink {
             force: Shared::new(force),
             scale: Shared::new(&mut scale),
@@ -414,7 +446,15 @@ impl Problem {
         let b = &self.blocks[block];
         let mut out = vec![0.0; b.n_elements * b.facts.n_points * 3];
         let lanes = self.lanes;
-        let context = Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent: false, lanes };
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            nlgeom,
+            stressed: false,
+            tangent: false,
+            lanes,
+        };
         for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
             chunk.strains(&context, committed, &mut out);
         }
@@ -441,7 +481,15 @@ impl Problem {
             let b = &blocks[block];
             Fields::new(n, b.facts.n_points, &b.law, b.outputs().len())
         };
-        let context = Context { x: &self.x, u, dofs: &self.dofs, nlgeom, tangent: false, lanes };
+        let context = Context {
+            x: &self.x,
+            u,
+            dofs: &self.dofs,
+            nlgeom,
+            stressed: false,
+            tangent: false,
+            lanes,
+        };
         let evaluate = |chunk: &&dyn Chunk| {
             let mut part = empty(chunk.block(), chunk.elements().len());
             chunk.recover(&context, &mut part);

@@ -6,6 +6,7 @@ use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
 use crate::materials::Law;
+use crate::model::chunk::Kinematics;
 use crate::model::dynamics::{Between, BodyLoad, Motion};
 use crate::model::problem::{Failed, Problem};
 use crate::model::registry;
@@ -101,7 +102,10 @@ impl PyProblem {
         self.inner.set_active(active);
     }
 
-    /// Fill ``force``, ``scale`` and, unless it is empty, ``values`` (upper triangle).
+    /// Fill ``force``, ``scale`` and, unless it is empty, ``values`` (upper triangle); with
+    /// ``stressed`` the tangent has the stiffness of the stress of a linear state.
+    #[pyo3(signature = (u, nlgeom, force, scale, values, stressed=false))]
+    #[allow(clippy::too_many_arguments)]
     fn assemble(
         &mut self,
         py: Python<'_>,
@@ -110,8 +114,15 @@ impl PyProblem {
         mut force: PyReadwriteArray1<'_, f64>,
         mut scale: PyReadwriteArray1<'_, f64>,
         mut values: PyReadwriteArray1<'_, f64>,
+        stressed: bool,
     ) -> PyResult<()> {
         let n = self.inner.dofs.n_dofs();
+        let kinematics = match (nlgeom, stressed) {
+            (true, true) => return Err(value_error("a linear state has no finite displacements")),
+            (true, false) => Kinematics::Finite,
+            (false, true) => Kinematics::Stressed,
+            (false, false) => Kinematics::Linear,
+        };
         let (u, f, s, v) =
             (u.as_slice()?, force.as_slice_mut()?, scale.as_slice_mut()?, values.as_slice_mut()?);
         let nnz = self.inner.dofs.indices.len();
@@ -119,7 +130,7 @@ impl PyProblem {
             return Err(value_error("array lengths do not fit the problem"));
         }
         let inner = &mut self.inner;
-        py.detach(|| inner.assemble(u, nlgeom, f, s, v)).map_err(failed)
+        py.detach(|| inner.assemble(u, kinematics, f, s, v)).map_err(failed)
     }
 
     /// Add inertia forces and effective tangents (see ``Problem::inertia``).

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: Procedures that find the equilibrium of their own theory.
+EQUILIBRATING = ("static", "dynamic")
 #: Tangents whose memory is kept for the next ones.
 SPARE = 2
 #: Values of a returned tangent.
@@ -60,6 +62,8 @@ class System(NumberedModel):
         more = [term for make in TERMS.values() if (term := make(self)) is not None]
         #: All terms of the equation except inertia and damping; the elements come first.
         self.terms: list[Term] = [self.elements, self.conditions, *more, self.contact_term]
+        #: Whether the last static or dynamic step was geometrically linear.
+        self._linear_state = False
         #: Whether the structure without its loads has no free motion in this step.
         self.free_motion_excluded = False
         self.scales = Scales(self, self.conditions, self.contact_term)
@@ -84,13 +88,31 @@ class System(NumberedModel):
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
         """Activate the loads and supports of a step."""
-        self.nlgeom = step.nlgeom
-        self.constraints.set_nlgeom(step.nlgeom)
+        if step.procedure in EQUILIBRATING:
+            self._linear_state = not step.nlgeom
+            self.set_kinematics(step.nlgeom)
+        else:
+            self.set_kinematics(step.nlgeom, about_linear=self._linear_state and step.nlgeom)
         self.constraints.complete(u)
         for term in self.terms:
             term.begin(step, time, u, reaction)
         self.scales.begin(getattr(step, "tolerance", 1e-9), u)
         self.free_motion_excluded = False
+
+    def set_kinematics(self, nlgeom: bool, about_linear: bool = False) -> None:
+        """Let displacements be finite or infinitesimal from now on.
+
+        Parameters
+        ----------
+        nlgeom : bool
+        about_linear : bool
+            Look at small motions about the state of a geometrically linear step: its stress, on
+            the reference shape, has a stiffness, and so have loads and constraints there. This is
+            then so whatever `nlgeom` says.
+        """
+        self.nlgeom = nlgeom and not about_linear
+        self.about_linear = about_linear
+        self.constraints.set_nlgeom(nlgeom or about_linear, about_linear)
 
     def borrow_tangent(self) -> Floats:
         """Memory for the values of a tangent: allocation costs as much as filling."""

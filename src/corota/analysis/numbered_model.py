@@ -86,6 +86,8 @@ class NumberedModel:
         self.is_rotation = self.component == 2
         self.pattern = AssembledPattern(self.core)
         self.nlgeom = True
+        #: Whether linear procedures look at the state of a geometrically linear step.
+        self.about_linear = False
         #: Largest local strain at the last recovery where it is linear, and the material there.
         self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
         self.constraints = constraints_of(model, self.start, carried, self.pattern)

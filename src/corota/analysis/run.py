@@ -47,11 +47,6 @@ if TYPE_CHECKING:
 #: Largest useful number of threads per core, and in total.
 THREADS_PER_CORE, LEAST_CAP = 4, 64
 
-#: Procedures that find the equilibrium of their own theory.
-EQUILIBRATING = ("static", "dynamic")
-#: Relative difference of strain energies up to which a linear state may carry a linear procedure.
-LINEAR_STATE = 0.02
-
 
 def solve(
     model: Model,
@@ -323,28 +318,14 @@ class Analysis:
     def _begin(self, step: Step, number: int, state: State, reaction: Floats | None) -> None:
         """Start a step from the committed state."""
         system = self.system
-        nlgeom = system.nlgeom
-        # Of a linear state, about which this step is linearized.
-        linear_energy = 0.0
-        if not nlgeom and step.nlgeom and step.procedure not in EQUILIBRATING and state.u.any():
-            linear_energy = system.recover(state.u)[1]["strain energy"]
+        kinematics = system.nlgeom, system.about_linear
         system.mass = self.mass(number)
         self.begun.append(Begun(state.time, reaction is None, system.conditions.end_time))
         system.begin(step, state.time, state.u, reaction)
         state.notes += system.conditions.notes
         system.conditions.notes = []
-        if state.at is None or nlgeom != system.nlgeom:
+        if state.at is None or kinematics != (system.nlgeom, system.about_linear):
             state.at = system.evaluate(state.u, 0.0)
-        if linear_energy:
-            ratio = system.recover(state.u)[1]["strain energy"] / linear_energy
-            if abs(ratio - 1.0) > LINEAR_STATE:
-                self._warn(
-                    f"linear state {number}",
-                    f"step {number} ({step.procedure}) is about the state of a linear step, whose "
-                    f"displacements are too large for that: with their rotations they store "
-                    f"{ratio:.3g} times the energy, and the stress stiffness is as wrong. Set "
-                    "nlgeom (NLGEOM) on the step before",
-                )
         assert state.energies is not None
         state.energies.begin(step, state.at.internal)
         if number == 1:

@@ -199,6 +199,7 @@ class Constraints:
         matrix: SymmetricPattern,
     ) -> None:
         self.n = int(start[-1])
+        self._about_reference = False
         self.start = start
         self.axes = local_axes(model)
         self.builder = Builder(model, start, self.axes)
@@ -296,18 +297,30 @@ class Constraints:
 
     # -- state -------------------------------------------------------------------------
 
-    def set_nlgeom(self, nlgeom: bool) -> None:
-        """Let rotations be finite, or infinitesimal."""
+    def set_nlgeom(self, nlgeom: bool, about_reference: bool = False) -> None:
+        """Let rotations be finite, or infinitesimal.
+
+        With `about_reference` displacements are those of the linear theory, dependent dofs among
+        them, and relations are linearised about the reference, their second derivatives there too.
+        """
+        self._about_reference = about_reference
         for relation in self.relations:
             relation.nlgeom = nlgeom
 
+    def _shape(self, u: Floats) -> Floats:
+        """The displacement about which relations are linearised."""
+        return np.zeros_like(u) if self._about_reference else u
+
     def complete(self, u: Floats) -> None:
         """Set the dependent dofs of `u` from the others, in place."""
+        if self._about_reference:
+            return
         for relation in self.relations:
             u[relation.dependent] = relation.values(u)
 
     def complete_rates(self, u: Floats, v: Floats, a: Floats | None = None) -> None:
         """Set velocities and accelerations of the dependent dofs at `u`, in place."""
+        u = self._shape(u)
         v[self.inert] = 0.0
         for relation in self.relations:
             j = relation.jacobian(u)
@@ -321,6 +334,7 @@ class Constraints:
 
     def link(self, u: Floats) -> LinearizedConstraints:
         """Linearize at `u`."""
+        u = self._shape(u)
         g, direct = self._substituted(lambda r: r.jacobian(u))
         return LinearizedConstraints(self, u, g, direct)
 

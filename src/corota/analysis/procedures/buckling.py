@@ -5,7 +5,8 @@ perturbing load, the factors solve ``(K0 + factor K1) mode = 0``. The derivative
 the whole co-rotational tangent by a central difference: it holds the geometric stiffness of
 the added stresses and the change of shape before buckling. Where nothing turns before it
 buckles, as in a straight column, this is classical linear buckling; where something does,
-it is the path's own first-order prediction.
+it is the path's own first-order prediction. About the state of a geometrically linear step it
+is classical linear buckling in any case: stresses act on the reference shape.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -63,8 +64,9 @@ def buckle_step(
     UnsupportedError
         If loads without a potential or a tangent that jumps leave no eigenvalue problem.
     """
-    nlgeom = system.nlgeom
-    system.nlgeom = True
+    kinematics = system.nlgeom, system.about_linear
+    # Without the preload it is the structure at rest that is followed.
+    system.set_kinematics(True, about_linear=system.about_linear and step.preload)
     base = state.u
     if not step.preload:
         _check_unloaded(system, step)
@@ -74,7 +76,7 @@ def buckle_step(
     finally:
         # A perturbation leaves nothing behind.
         system.conditions.end_time = 0.0
-        system.nlgeom = nlgeom
+        system.set_kinematics(*kinematics)
         state.at = system.evaluate(state.u, 0.0)
     by_node = np.array([system.by_node(shape) for shape in shapes.T])
     state.modes.append(Modes("buckling", number, factors, by_node.reshape(len(factors), -1, 3)))

@@ -68,20 +68,29 @@ def start_motion(
     assert at.damping is not None
     internal, external, damping = at.internal, at.external, at.damping
     # M a = f_ext - f_int - f_I(v) - damping, where supports have their own accelerations.
-    _weigh_as_mass(system, step, inertia, at, u)
+    trace = _weigh_as_mass(system, step, inertia, at, u)
     at.internal = internal + force + damping - resting
     link = at.link
     at.link = link.linear()
-    # Dependent dofs have their centripetal accelerations besides.
-    a = zero + system.predict(at, support_a)[0]
-    # Equilibrium of nodes without mass does not define an acceleration; drilling rotations near
-    # them follow it.
+    solved = system.predict(at, support_a)[0]
     if inertia.massless.any():
-        a[(inertia.massless | system.is_rotation) & ~system.conditions.constrained] = 0.0
+        # What nodes without mass need for their balance is a jump of their place, which they pass
+        # on to their neighbors, and no acceleration: solved again for the momenta of the first
+        # solution, M a = M a1, nothing jumps.
+        solved -= system.solve_with_last_factor(system.product(trace, solved))
+        solved[inertia.massless & ~system.conditions.constrained] = 0.0
+    # Dependent dofs have their centripetal accelerations besides.
+    a = zero + solved
     state.a = a
     if not goes_on:
         system.core.start_motion(system.in_space(u), system.in_space(v))
-    return MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+    now = MotionState(u, v, a, internal, external, inertia.force(u, v, a), damping, link)
+    if inertia.massless.any():
+        # Schemes that weigh both ends of an increment find nothing out of balance at its start.
+        loose = ~system.conditions.constrained
+        loose[system.constraints.eliminated] = False
+        now.inertia[loose] -= (now.reaction() - link.gather(resting))[loose]
+    return now
 
 
 def admissible_velocity(
@@ -112,19 +121,20 @@ def admissible_velocity(
 
 def _weigh_as_mass(
     system: System, step: Dynamic, inertia: Inertia, at: Evaluation, u: Floats
-) -> None:
-    """Put the mass in the place of the tangent, in place.
+) -> Floats:
+    """Put the mass in the place of the tangent, in place; returns what it has of the tangent.
 
     The consistent mass of drilling elements has none for a uniform drilling rotation, which
     follows quasi-statically, as nodes do whose mass others carry; a trace of the stiffness decides
     it.
     """
-    mass = inertia.tangent(u)
+    share = 0.0
     if system.is_rotation.any() or inertia.massless.any():
-        trace = step.period if not step.fixed_increments else step.first_increment
-        mass += (TRACE * trace) ** 2 * at.values
-    at.values[:] = mass
+        share = TRACE * (step.period if not step.fixed_increments else step.first_increment)
+    trace: Floats = share**2 * at.values
+    at.values[:] = inertia.tangent(u) + trace
     at.load_stiffness = None
+    return trace
 
 
 def resting(system: System) -> MotionState:

@@ -320,13 +320,15 @@ class Conditions(Term):
         triplets : tuple of ndarray or None
             Rows, columns and values of the rest of the derivative.
         """
-        nlgeom = self.system.nlgeom
-        force = self._known.get((step_time, nlgeom))
+        follow = self._follow
+        force = self._known.get((step_time, follow))
         if force is None:
             force = self._dead(step_time)
-        following = [load for load in self.distributed.loads if nlgeom and load.force.follows]
+        following = [load for load in self.distributed.loads if follow and load.force.follows]
         if not following:
             return force, None
+        if self.system.about_linear:
+            u = np.zeros_like(u)
         total = LoadSum(force.copy(), values, share, start)
         for load in following:
             if (scale := self._scale(load, step_time)) != 0.0:
@@ -342,19 +344,24 @@ class Conditions(Term):
         """Change of temperature per unit of load factor, shape (n_nodes,)."""
         return self.temperature.end - self.temperature.begin
 
+    @property
+    def _follow(self) -> bool:
+        """Whether loads turn with the structure, or would if it moved on from here."""
+        return self.system.nlgeom or self.system.about_linear
+
     def _dead(self, step_time: float) -> Floats:
         """External forces at a time that do not follow the displacement."""
         force = self._nodal(step_time)
         force += (1.0 - self._ramp(step_time)) * self.fading
-        nlgeom = self.system.nlgeom
+        follow = self._follow
         for load in self.distributed.loads:
-            dead = not (nlgeom and load.force.follows)
+            dead = not (follow and load.force.follows)
             if dead and (scale := self._scale(load, step_time)) != 0.0:
                 force += scale * load.force.unit()
         force.flags.writeable = False
         if len(self._known) >= KNOWN:
             self._known.clear()
-        self._known[step_time, nlgeom] = force
+        self._known[step_time, follow] = force
         return force
 
     def rate(self, u: Floats) -> tuple[Floats, Floats]:

@@ -55,7 +55,8 @@ class Elements(Term):
         here, nlgeom = system.in_space(point.u), system.nlgeom
 
         def assemble() -> None:
-            system.core.assemble(here, nlgeom, at.internal, at.scale, at.values)
+            about = system.about_linear
+            system.core.assemble(here, nlgeom, at.internal, at.scale, at.values, about)
 
         self._run(here, assemble)
         at.internal = system.at_nodes(at.internal)

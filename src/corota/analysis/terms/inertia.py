@@ -104,6 +104,8 @@ class Inertia(Term):
         values = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
         self.matrix: Floats | None = None if coupled else values
         self._own = np.abs(values[system.pattern.diagonal])
+        # Elements of such nodes alone keep their mass.
+        self.massless &= self._own == 0.0
         moves = self._own[~system.is_rotation]
         self._largest = float(moves.max(initial=0.0))
 

@@ -277,7 +277,7 @@ class LinearMotion(Linearized):
         super().__init__(system, u)
         self.kind = kind
         self.inertia = Inertia(system, kind)
-        self.mass_values = self.inertia.tangent(u)
+        self.mass_values = self.inertia.tangent(np.zeros_like(u) if system.about_linear else u)
         self.mass = self.padded(self.reduce(self.mass_values))
         self.turns = False
         system.conditions.reset_mass()
