@@ -305,3 +305,36 @@ def test_a_path_takes_no_temperatures_that_change_the_material() -> None:
     step.temperature(300.0)
     with pytest.raises(ct.ModelError, match="heat in an earlier static step"):
         ct.solve(model, step, threads=1)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
+def test_tables_are_written_to_decks_and_read_again(law: Any, tmp_path: Path) -> None:
+    if law is kinematic:
+        table: Any = ct.MaterialTable(
+            [
+                (
+                    t,
+                    ct.Mises(
+                        e, NU, yield_stress=s, isotropic=ct.Voce(2.0, 9.0), chaboche=[(c, 3.0)]
+                    ),
+                )
+                for t, e, s, c in ((COLD, E0, 5.0, 50.0), (HOT, E1, 2.0, 20.0))
+            ]
+        )
+    else:
+        table = law(rho=2.0, expansion=ct.Expansion((1e-5, 2e-5), (0.0, 300.0), 20.0))
+    model = sheet("Q8R", table)
+    model.fix("left")
+    model.initial_temperature(COLD)
+    step = ct.Static()
+    step.temperature(100.0 + 50.0 * model.mesh.points[:, 0])
+    step.fix("right", x=0.01)
+    model.steps.append(step)
+    again = ct.read(ct.write(model, tmp_path / "a.inp") or tmp_path / "a.inp")
+    got = again.sections[0].material
+    assert isinstance(got, ct.MaterialTable)
+    assert got.rows_of_parameters() == table.rows_of_parameters()
+    assert got.rho == table.rho
+    assert got.expansion == table.expansion
+    other = ct.solve(again, threads=1).frames[-1].U
+    assert pytest.approx(ct.solve(model, threads=1).frames[-1].U, abs=1e-13) == other
