@@ -133,11 +133,15 @@ def differences(old: dict[str, Any], new: dict[str, Any]) -> tuple[list[str], bo
             found.append(f"error: {old[what] or 'none'!r} -> {new[what] or 'none'!r}")
         if what == "values" and old[what] != new[what]:
             same = False
+            before, after = dict(old[what]), dict(new[what])
             found += [
-                f"value {a[0]}: {a[1]!r} -> {b[1]!r}"
-                for a, b in zip(old[what], new[what], strict=False)
-                if a[0] != b[0] or not abs(a[1] - b[1]) <= TOLERANCE * max(abs(a[1]), abs(b[1]))
+                f"value {name}: {before[name]!r} -> {after[name]!r}"
+                for name in before
+                if name in after
+                and not abs(before[name] - after[name])
+                <= TOLERANCE * max(abs(before[name]), abs(after[name]))
             ]
+            found += [f"value {name}: only in one build" for name in before.keys() ^ after.keys()]
     if len(old["runs"]) != len(new["runs"]):
         return [*found, f"analyses: {len(old['runs'])} -> {len(new['runs'])}"], False, np.inf
     for k, (a, b) in enumerate(zip(old["runs"], new["runs"], strict=True)):

@@ -131,9 +131,15 @@ def names_in_conditions(tree: Path, name: re.Pattern[str]) -> int:
     return found
 
 
-def size(tree: Path, part: str) -> int:
-    """Lines of a folder of the package."""
-    return sum(len(t.splitlines()) for p, t in sources(tree) if p.startswith(part + "/"))
+def size(tree: Path, pattern: str) -> int:
+    """Lines of the files of the package whose paths match a pattern."""
+    return sum(len(t.splitlines()) for p, t in sources(tree) if re.match(pattern, p))
+
+
+def rust_lines_with(tree: Path, pattern: str) -> int:
+    """Lines of Rust that match a pattern."""
+    texts = (p.read_text(encoding="utf-8") for p in (tree / "rust" / "src").rglob("*.rs"))
+    return sum(bool(re.search(pattern, line)) for t in texts for line in t.splitlines())
 
 
 #: Facts by their names.
@@ -144,8 +150,10 @@ FACTS: dict[str, Callable[[Path], int]] = {
     "`constraints` or `link` `is (not) None` outside `analysis/constraints`": lambda t: lines_with(
         t, r"\b(constraints|link) is (not )?None", r"^analysis/constraints/"
     ),
-    "`contact_term is (not) None` outside `terms/contact`": lambda t: lines_with(
-        t, r"contact_term is (not )?None", r"^analysis/terms/contact/"
+    "contact `is (not) None` outside its own files": lambda t: lines_with(
+        t,
+        r"\b(contact_term|touching) is (not )?None",
+        r"^analysis/terms/contact/|^drivers/touching_",
     ),
     "`contact_term.joins`, `.pairs` or `.opens` outside `terms/contact`": lambda t: lines_with(
         t, r"contact_term\.(joins|acts|pairs|opens)", r"^analysis/terms/contact/"
@@ -158,8 +166,16 @@ FACTS: dict[str, Callable[[Path], int]] = {
         f"modules in import circles, {part}": lambda t, part=part: in_circles(t, part)
         for part in PARTS
     },
-    "lines of `analysis`": lambda t: size(t, "analysis"),
-    "of these in `terms/contact`": lambda t: size(t, "analysis/terms/contact"),
+    "names of contact discretizations matched in Rust": lambda t: rust_lines_with(
+        t, r"Method::(Mortar|NodeToSegment)"
+    ),
+    "lines of `analysis` (`drivers` in the first version)": lambda t: size(
+        t, r"(analysis|drivers)/"
+    ),
+    "of these contact": lambda t: size(t, r"analysis/terms/contact/|drivers/touching_"),
+    "files of more than 600 lines": lambda t: sum(
+        len(text.splitlines()) > 600 for _, text in sources(t)
+    ),
     'texts "no ... set named"': lambda t: lines_with(
         t, r"no (node|element|edge|cell)?.?set named|no set named"
     ),
