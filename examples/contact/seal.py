@@ -19,7 +19,7 @@ from corota.model.loads import Fixed
 INNER, OUTER, WIDTH, DOWN, RIB = 3.2, 4.0, 4.6, 6.8, 1.5
 
 
-def seal(n: int = 60, ny: int = 4, element: str = "Q4I", unit: float = 1.0) -> ct.Model:
+def seal(n: int = 60, ny: int = 4, element: str = "Q4S", unit: float = 1.0) -> ct.Model:
     """Build half a tube, `n` cells around; `unit` is the length unit in mm."""
     low, high, wide = INNER / unit, OUTER / unit, WIDTH / unit
     half = ct.mesh.annulus(low, high, n_radial=ny, n_around=n, angle=180.0, start=-90.0)

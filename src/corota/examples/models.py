@@ -112,7 +112,7 @@ def seal() -> Model:
     rib = meshes.add_node(mesh, 0.0, 5.5, name="rib")
     model = Model(mesh, name="seal")
     rubber = Elastic(E=5.0, nu=0.45)
-    model.section(element="Q4I", material=rubber, plane="strain", local_strain="logarithmic")
+    model.section(element="Q4S", material=rubber, plane="strain", local_strain="logarithmic")
     model.fix("start", y=None)
     model.fix("end", y=None)
     groove = RigidCurve.polyline([(-4.0, -4.0), (4.6, -4.0), (4.6, 12.0)], fillet=1.0)

@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.results.derived import DERIVED
+from corota.results.scalars import SCALARS, general
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -180,10 +181,8 @@ _DIMENSIONS = {
 }  # fmt: skip
 #: Dimension of quantities of the whole model.
 _OF_THE_WHOLE = {
-    "time": "time", "step time": "time", "dt": "time", "external work": "energy",
-    "internal work": "energy", "plastic work": "energy", "ETOTAL": "energy",
-    "section N": "force", "section V": "force", "section M": "force*length",
-    "frequency": "1/time", "energy balance": "energy", "length": "length",
+    "plastic work": "energy", "section N": "force", "section V": "force",
+    "section M": "force*length", "length": "length",
 }  # fmt: skip
 
 
@@ -199,6 +198,8 @@ def dimension(name: str) -> str:
     """
     if name in _OF_THE_WHOLE:
         return _OF_THE_WHOLE[name]
+    if (scalar := general(name)) in SCALARS:
+        return SCALARS[scalar][1]
     if name.endswith((" energy", " dissipation")) or (name.startswith("ALL") and name.isupper()):
         return "energy"
     variable = name.removeprefix("largest ").split(" ")[0].rstrip(":")

@@ -324,6 +324,12 @@ _CHANGE = "contact pairs and their interactions apply to all steps"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 _HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _PLASTIC = "the material laws are *ELASTIC, *PLASTIC and *DEFORMATION PLASTICITY; use these"
+_RUBBER = (
+    "use *ELASTIC with E = 3 G, G the initial shear modulus (Neo-Hooke: G = 2 C10, Mooney-Rivlin: "
+    "G = 2 (C10 + C01)), a Poisson's ratio of 0.45 to 0.499, PLANE=STRAIN and LOCAL "
+    "STRAIN=LOGARITHMIC in *SOLID SECTION, and elements Q4S; that is good up to moderate strains. "
+    "In Python a law of your own is a UserMaterial"
+)
 _PROCEDURE = "this procedure is not part of this version"
 _LINE = "only planar solids, trusses, beams and springs are part of this version"
 
@@ -368,10 +374,9 @@ UNSUPPORTED: dict[str, str] = {
         ),
         _HEAT,
     ),
+    **dict.fromkeys(("HYPERELASTIC", "HYPERFOAM"), _RUBBER),
     **dict.fromkeys(
         (
-            "HYPERELASTIC",
-            "HYPERFOAM",
             "CREEP",
             "RATEDEPENDENT",
             "DEPVAR",
@@ -552,7 +557,7 @@ def _unknown(deck: Deck, card: Card) -> None:
 
 def _answered(deck: Deck, card: Card, why: str) -> None:
     """Mark the data of a refused card: it is not reported as missing again."""
-    if deck.material is not None and why == _PLASTIC and not deck.material.law:
+    if deck.material is not None and why in (_PLASTIC, _RUBBER) and not deck.material.law:
         deck.material.law = "REFUSED"
     if deck.step is not None and why in (_PROCEDURE, _HEAT) and deck.step.procedure is None:
         deck.step.procedure = card
