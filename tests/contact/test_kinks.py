@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.contact_problems import problem
 from corota.results.observer import BaseObserver
 
 #: Slope of the flanks.
@@ -60,3 +61,15 @@ def test_a_corner_comes_to_rest_at_the_bottom_of_a_groove(aside, near):
     assert abs(force[0]) < math.tan(SLOPE) * abs(force[1])
     assert np.abs(last.RF[:, :2].sum(axis=0) + force).max() < 1e-9 * np.abs(force).max()
     assert any("kink" in note for note in notes)
+
+
+@pytest.mark.parametrize("number", [162, 306])
+def test_increments_go_on_from_an_equilibrium_at_a_kink(number):
+    """A node in the dent that it makes in a yielding block rests on both flanks, over increments.
+
+    One flank alone is no equilibrium: a correction from there went many edges away.
+    """
+    given = problem(number, size=0.5)
+    results = ct.solve(given.model, given.steps, threads=1)
+    assert results.times[-1] == pytest.approx(sum(step.period for step in given.steps))
+    assert max(f.scalars["residual"] for f in results.frames[1:]) < 1e-9

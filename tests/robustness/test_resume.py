@@ -42,6 +42,17 @@ def motion(scheme, **more):
     return beam([ct.Dynamic(period=2.0, increments=6, scheme=scheme, **more)], element="Q4D")
 
 
+def flight(scheme):
+    """A bar that flies to a wall, with automatic increments, and is stopped by it."""
+    model = ct.Model(ct.mesh.rectangle(2.0, 1.0, nx=4, ny=2), name="bar")
+    model.section("all", element="Q4I", material=ELASTIC)
+    model.velocity(x=1.0)
+    model.gravity(y=-0.1)
+    model.contact("right", ct.RigidCurve.line((2.3, -5.0), (2.3, 5.0)), name="wall")
+    model.steps = [ct.Dynamic(period=0.34, scheme=scheme)]
+    return model
+
+
 QUICK = {
     "static": lambda: beam([ct.Static(increments=4)]),
     "static with cut-backs": lambda: beam([ct.Static(increments=1, max_iterations=4)], load=-9.0),
@@ -52,6 +63,8 @@ QUICK = {
     "hht, automatic": lambda: beam([ct.Dynamic(period=2.0, scheme="hht")]),
     "generalized_alpha": lambda: motion("generalized_alpha"),
     "energy_momentum": lambda: motion("energy_momentum"),
+    "first contact, hht": lambda: flight("hht"),
+    "first contact, energy_momentum": lambda: flight("energy_momentum"),
     "central_difference": lambda: beam([ct.Dynamic(period=0.5, scheme="central_difference")]),
     "statics, motion, statics": lambda: beam(
         [ct.Static(increments=2), ct.Dynamic(period=1.0, increments=3), ct.Static(increments=2)]

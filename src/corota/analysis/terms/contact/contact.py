@@ -9,7 +9,7 @@ core as functions of the nodal positions alone, with exact first and second deri
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -133,6 +133,8 @@ class ContactTerm(Term):
         dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
         self._dof = np.append(dof, -1)
         self._stiff = False
+        #: The kink of the surfaces at which the committed equilibrium lies.
+        self.kink: Any = None
         self.told: set[int] = set()  # dropped constraints that were reported
         self.border: SaddlePointSystem | None = (
             None  # linear algebra with the multipliers, made when needed

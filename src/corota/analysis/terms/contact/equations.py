@@ -95,6 +95,8 @@ class ContactEquations:
         #: was tried.
         self.kink: Kink | None = None
         self.kinks = self.beyond = 0
+        #: Whether the kink is that of the committed state, which may lie behind by now.
+        self.inherits = False
         self.places: list[Floats] = []  # displacements of the last three evaluations
         self.time = 0.0
         self.first_move = 0.0  # of the first correction [length]
@@ -188,6 +190,15 @@ class ContactEquations:
         z, negative = self._columns(at, right_sides, self._choose(at.contact_state))
         self.stage = "contact state changed at one node" if self.single > before else ""
         return self._moved(z[:, 0]), negative
+
+    def inherit_kink(self) -> None:
+        """Begin at the kink at which the committed equilibrium lies, if there is one.
+
+        One side of it alone is no equilibrium, and a correction from there may go anywhere.
+        """
+        kink = self.contact_term.kink
+        if kink is not None and self.system.nlgeom and not self.contact_term.persistent:
+            self.kink, self.inherits = replace(kink, base=None), True
 
     def _at_kink(self, u: Floats, multipliers: Floats, step_time: float) -> ContactState | None:
         """Contact on the near side of the kink, with the force that it carries; or None."""
@@ -383,6 +394,7 @@ class ContactEquations:
         """Commit contact with the increment; returns remarks that are new."""
         assert self.contact_state is not None
         self.contact_term.accept(u, self.contact_state, step_time)
+        self.contact_term.kink = None if self.kink is None else replace(self.kink, base=None)
         notes = []
         if self.loose and not self.presses and FLOATS not in self.contact_term.told:
             self.contact_term.told.add(FLOATS)

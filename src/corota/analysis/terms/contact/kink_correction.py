@@ -35,6 +35,9 @@ def keeps_kink(problem: ContactProblem, at: ContactEvaluation) -> bool:
         problem.beyond += problem.kink.excess > 0.0
         if problem.beyond <= MAX_BEYOND:
             return True
+        if problem.inherits:
+            problem.kink, problem.beyond, problem.inherits = None, 0, False
+            return False
         raise GiveUp("no equilibrium at the kink of the contact surfaces")
     if (
         problem.waited < WAITED

@@ -36,6 +36,8 @@ JUMP = 0.25
 WIDTH = 4.0
 #: And before, nearby, in distances that the last correction was to go.
 NEAR = (0.2, 3.0)
+#: Least width in which it is searched, over the rounding of gaps.
+ROUNDED = 1e3
 #: Force beyond a side that is rounding, over the jump.
 BEYOND = 1e-9
 
@@ -167,7 +169,9 @@ def again(problem: ContactProblem, sides: Sides, u: Floats, kink: Kink) -> Conta
 
     The kink takes the new normal, jump and distance.
     """
-    for width in (*(share * abs(kink.distance) for share in NEAR), kink.width):
+    # In a width of rounding either side may come first.
+    least = ROUNDED * max(pair.noise for pair in problem.contact_term.pairs)
+    for width in (*(max(share * abs(kink.distance), least) for share in NEAR), kink.width):
         if width > kink.width:
             continue
 

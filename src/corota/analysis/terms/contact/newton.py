@@ -111,6 +111,7 @@ def solve_increment(
     )
 
     problem = ContactEquations(inner, system)
+    problem.inherit_kink()
     n = system.n_dofs
     z = problem.start(u)
     target = np.concatenate([prescribed, z[n:]])

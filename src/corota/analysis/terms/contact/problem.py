@@ -123,6 +123,7 @@ class ContactProblem(Protocol):
     kink: Any
     kinks: int
     beyond: int
+    inherits: bool
     places: list[Floats]
     time: float
     stage: str
