@@ -75,3 +75,19 @@ def test_the_gap_is_known_before_the_first_increment() -> None:
 def test_a_law_without_first_yield_cannot_be_made() -> None:
     with pytest.raises(TypeError, match="abstract"):
         LawOfTheCore()  # type: ignore[abstract]
+
+
+def test_a_step_that_was_not_called_is_named() -> None:
+    for given in (ct.Static, [ct.Static], [ct.Static(), ct.Dynamic]):
+        with pytest.raises(ct.InputError, match=r"is a class: write (Static|Dynamic)\(\)"):
+            ct.solve(strip(), given)  # type: ignore[arg-type]
+    with pytest.raises(ct.InputError, match="not 'static'"):
+        ct.solve(strip(), ["static"])  # type: ignore[list-item]
+
+
+def test_an_amplitude_that_is_none_is_named() -> None:
+    model = strip()
+    model.amplitudes["up"] = [(0.0, 0.0), (1.0, 1.0)]  # type: ignore[assignment]
+    model.force("right", y=1.0, amplitude="up")
+    with pytest.raises(ct.ModelError, match=r"'up' is no Amplitude but list: .*ct\.Amplitude"):
+        ct.solve(model, ct.Static(), threads=1)

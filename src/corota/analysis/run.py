@@ -146,7 +146,7 @@ class Analysis:
         fields: bool,
         start: Checkpoint | None = None,
     ) -> None:
-        from corota.model.steps import Static, Step
+        from corota.model.steps import Static, listed_steps
 
         if steps is None:
             steps = model.steps or [Static()]
@@ -154,7 +154,7 @@ class Analysis:
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
-        self.steps, notes = keep_nlgeom([steps] if isinstance(steps, Step) else steps)
+        self.steps, notes = keep_nlgeom(listed_steps(steps))
         self.results.steps = self.steps
         for note in notes:
             self.results.notes.append(note)

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from corota.arrays import distinct
 from corota.display import Brief
@@ -428,6 +429,27 @@ class SteadyState(Step):
         marks = distinct([self.lowest, *inside, self.highest])
         parts = [np.linspace(a, b, self.points) for a, b in zip(marks, marks[1:], strict=False)]
         return distinct(np.concatenate(parts))
+
+
+def listed_steps(steps: object) -> list[Step]:
+    """Steps as a list, from one step or several.
+
+    Raises
+    ------
+    InputError
+        If something is no step, such as a class that was not called.
+    """
+    if isinstance(steps, Step):
+        return [steps]
+    found: list[Any] = list(steps) if isinstance(steps, Iterable) else [steps]
+    for item in found:
+        if isinstance(item, type) and issubclass(item, Step):
+            raise InputError(f"{item.__name__} is a class: write {item.__name__}()")
+        if not isinstance(item, Step):
+            raise InputError(
+                f"a step is Static(...), Dynamic(...), ..., or a list of them, not {item!r}"
+            )
+    return found
 
 
 def check_damping(

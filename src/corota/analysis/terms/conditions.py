@@ -27,6 +27,7 @@ from corota.errors import ModelError, UnsupportedError
 from corota.model.dofs import DOFS
 from corota.model.integrated import IntegratedAmplitude
 from corota.model.loads import (
+    Amplitude,
     BodyForce,
     NodalForce,
     Temperature,
@@ -104,6 +105,12 @@ class Conditions(Term):
         self.temperature.begin[:] = self.temperature.end[:] = system.free.start
         #: Notes on the step.
         self.notes: list[str] = []
+        for name, table in system.model.amplitudes.items():
+            if not isinstance(table, Amplitude | IntegratedAmplitude):
+                raise ModelError(
+                    f"amplitude {name!r} is no Amplitude but {type(table).__name__}: write "
+                    f"model.amplitudes[{name!r}] = ct.Amplitude(times, values)"
+                )
         self.names = ["", *system.model.amplitudes]
         #: Amplitudes of total time continue in later steps.
         self._runs_on = np.array([False, *(a.total_time for a in system.model.amplitudes.values())])
