@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from corota.io.deck.cards.step import keeps_preload, open_step, step_times
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.drafts import Draft
-from corota.io.deck.lexer import key
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
@@ -234,8 +233,9 @@ def damping(deck: Deck, card: Card) -> None:
 
 def initial_conditions(deck: Deck, card: Card) -> None:
     """``*INITIAL CONDITIONS, TYPE=``: velocities, temperatures or stresses."""
-    if deck.choice(card, "TYPE", INITIAL, "") in INITIAL:
-        INITIAL[key(card.value("TYPE"))](deck, card)
+    kind = deck.choice(card, "TYPE", INITIAL, "")
+    if kind in INITIAL:
+        INITIAL[kind](deck, card)
     elif not card.has("TYPE"):
         deck.error(card, card.where, f"TYPE= is missing; there are {', '.join(INITIAL)}")
 
