@@ -49,7 +49,7 @@ demo: $(CORE) ## Run the compliant gripper: progress, files and a picture
 test: test-rust test-python ## Set up everything and run all tests
 
 test-rust: $(CORE)
-	RUST_MIN_STACK=33554432 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
+	RUST_MIN_STACK=67108864 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
 
 test-python: $(CORE) test-rust
 	$(BIN)/python -m pytest -n $(JOBS)

@@ -14,7 +14,7 @@ pub struct Contact {
     sides: Sides,
     method: Box<dyn Discretization>,
     joins: bool,
-    /// Whether nobody has asked for the candidates of surfaces that are joined.
+    /// Whether the candidates of joined surfaces were never requested.
     fresh: bool,
 }
 
@@ -65,7 +65,7 @@ impl Contact {
     /// Renews the candidates where needed; tells whether they changed.
     pub fn update(&mut self, x: &[[f64; 3]]) -> bool {
         if self.joins {
-            // Bound at the start for good; asked for the first time they are new.
+            // Bound once, at the start; at the first request they are new.
             return std::mem::take(&mut self.fresh);
         }
         self.renew(x)

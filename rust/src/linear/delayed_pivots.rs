@@ -2,7 +2,7 @@
 //! Fronts that need exchanges: threshold pivoting with 1x1 and 2x2 pivots.
 //!
 //! Columns without an acceptable pivot are held back and eliminated in the parent;
-//! at a root they are what the matrix lacks in rank.
+//! at a root their number is the rank deficiency of the matrix.
 
 use faer::{Accum, MatMut, MatRef};
 

@@ -7,8 +7,8 @@
 //! above them share their tiles. Every front adds its children in a fixed order and
 //! works in tiles of fixed size, so one thread and many give the same bits.
 //! Columns without an acceptable pivot wait for the parent front, so indefinite
-//! matrices keep an exact inertia, and what is left at a root is what the matrix
-//! lacks in rank.
+//! matrices keep an exact inertia, and the columns left at a root count the
+//! rank deficiency of the matrix.
 //!
 //! What was tried, Q4 plane stress, numeric refactorisation on two cores of an AMD
 //! EPYC with AVX-512 (repeat with `python -m benchmarks linear_solver`):
@@ -68,7 +68,7 @@ pub struct Inertia {
 
 /// Three steps every direct solver has; values may change as long as the pattern stays.
 pub trait LinearSolver: Send {
-    /// Threads asked for, 0 for all the machine has.
+    /// Number of threads, 0 for all the machine has.
     fn threads(&self) -> usize {
         1
     }

@@ -1,6 +1,6 @@
 //! Body forces of one element at its current positions: gravity and centrifugal load.
 //!
-//! Both are gradients of a potential of the positions that the inertia knows: those of the
+//! Both are gradients of a potential of the positions in the inertia: those of the
 //! nodes and of the edge bulges of drilling elements, `y_k = (phi_k - phi_k+1) R s_k`, with the
 //! element's own mass matrix `M`. For the acceleration `b + omega^2 x` that is
 //!

@@ -1,7 +1,7 @@
 //! A law whose parameters follow the temperature: linear between the given temperatures, constant
 //! outside, as `*ELASTIC` and `*PLASTIC` with a column of temperatures mean it.
 //!
-//! The law of a point is built anew when its temperature changes; what it remembers (plastic
+//! The law of a point is built again when its temperature changes; what it remembers (plastic
 //! strain, back-stress) stays.
 // SPDX-License-Identifier: BSD-3-Clause
 

@@ -1,5 +1,5 @@
 //! Hardening laws: the yield stress as a function of the accumulated plastic strain, and
-//! back-stresses. The return map of [`super::mises`] knows them only through what is here.
+//! back-stresses. The return map of [`super::mises`] uses them only through this interface.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::Real;

@@ -25,7 +25,7 @@ pub fn block_inputs(blocks: &Bound<'_, PyList>) -> PyResult<Vec<BlockInput>> {
     for block in blocks {
         let d = block.cast::<PyDict>()?;
         let get = |key: &str| -> PyResult<Bound<'_, PyAny>> {
-            d.get_item(key)?.ok_or_else(|| value_error(format!("block lacks {key:?}")))
+            d.get_item(key)?.ok_or_else(|| value_error(format!("a block has no entry {key:?}")))
         };
         let plane: String = get("plane")?.extract()?;
         let nodes: PyReadonlyArray1<'_, u32> = get("nodes")?.extract()?;

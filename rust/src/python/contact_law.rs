@@ -4,6 +4,7 @@
 use super::contact::{bad, rows};
 use crate::contact::ContactLaw as Law;
 use crate::contact::active_set::{Constraints, Gradients};
+use crate::contact::law::pressure::Curve;
 use crate::contact::law::{NORMAL, TANGENTIAL};
 use crate::contact::terms::WIDTH;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1};
@@ -95,18 +96,18 @@ impl ContactLaw {
     /// Overclosure at which a pressure law begins [length].
     #[getter]
     fn start(&self) -> f64 {
-        self.law.curve().map_or(0.0, |curve| curve.start())
+        self.law.curve().map_or(0.0, Curve::start)
     }
 
     /// Pressure, slope and energy per area of a pressure law at overclosures above its start.
     fn curve<'py>(&self, py: Python<'py>, overclosure: Floats<'_>) -> PyResult<[Out<'py>; 3]> {
         let curve = self.law.curve().ok_or_else(|| bad("the law is no pressure law"))?;
-        three(py, overclosure.as_slice()?, |w| curve.at(w))
+        Ok(three(py, overclosure.as_slice()?, |w| curve.at(w)))
     }
 
     /// Pressure, slope and energy per area at gaps [length]; none where the law has not begun.
     fn pressure<'py>(&self, py: Python<'py>, gap: Floats<'_>) -> PyResult<[Out<'py>; 3]> {
-        three(py, gap.as_slice()?, |gap| self.law.pressure(gap))
+        Ok(three(py, gap.as_slice()?, |gap| self.law.pressure(gap)))
     }
 
     /// Mean pressure between two gaps [length], whose work is the change of energy, and its slope by
@@ -217,10 +218,10 @@ impl ContactLaw {
     }
 }
 
-fn three<'py>(py: Python<'py>, at: &[f64], f: impl Fn(f64) -> [f64; 3]) -> PyResult<[Out<'py>; 3]> {
+fn three<'py>(py: Python<'py>, at: &[f64], f: impl Fn(f64) -> [f64; 3]) -> [Out<'py>; 3] {
     let found: Vec<[f64; 3]> = at.iter().map(|&x| f(x)).collect();
     let column = |i: usize| found.iter().map(|v| v[i]).collect::<Vec<f64>>().into_pyarray(py);
-    Ok([column(0), column(1), column(2)])
+    [column(0), column(1), column(2)]
 }
 
 /// Names of the laws across and along the surfaces.
@@ -255,7 +256,7 @@ fn add_contact_forces(
     };
     let (p, q) = (p.as_slice()?, q.as_ref().map(|q| q.as_slice()).transpose()?);
     let force = force.as_slice_mut()?;
-    let mut size = size.as_mut().map(|s| s.as_slice_mut()).transpose()?;
+    let size = size.as_mut().map(|s| s.as_slice_mut()).transpose()?;
     let m = gradients.constraint.len();
     for n in [gradients.dofs.len(), gradients.gap.len(), gradients.slip.len()] {
         same(n, m)?;
@@ -267,7 +268,7 @@ fn add_contact_forces(
     if !gradients.constraint.iter().all(inside) || !gradients.dofs.as_flattened().iter().all(dof) {
         return Err(bad("a constraint or a dof is out of range"));
     }
-    gradients.add_forces(p, q, force, size.as_deref_mut());
+    gradients.add_forces(p, q, force, size);
     Ok(())
 }
 

@@ -349,11 +349,10 @@ impl NodeToSegment {
         let before = before.as_ref().map(|(ends, m)| (*ends, m));
         let (gap, slip) = round_gap_and_slip([[v[0], v[1]], [v[2], v[3]]], &master, before);
         let own = if besides { self.of_facet[k].expect("a facet of a round") } else { k };
-        self.share(sides, pair, own, variables, &gap, slip.as_ref())
+        Self::share(sides, pair, own, variables, &gap, slip.as_ref())
     }
 
     fn share<const D: usize>(
-        &self,
         sides: &Sides,
         pair: usize,
         constraint: usize,
@@ -384,6 +383,6 @@ impl NodeToSegment {
         });
         let before = before.as_ref().map(|(p, m)| (*p, m));
         let (gap, slip) = gap_and_slip([v[0], v[1]], &master, before);
-        self.share(sides, pair, k, variables, &gap, slip.as_ref())
+        Self::share(sides, pair, k, variables, &gap, slip.as_ref())
     }
 }

@@ -35,7 +35,7 @@ fn an_open_gap_without_tractions_fulfills_all_conditions() {
         for (tangential, _) in TANGENTIAL {
             let (law, at) = (law(normal, tangential), constraint(1.0, 0.0, 0.0));
             assert_eq!(law.state(&at, None), State::Open, "{normal} {tangential}");
-            assert_eq!(law.residual(&at), 0.0, "{normal} {tangential}");
+            assert!(law.residual(&at).abs() < 1e-300, "{normal} {tangential}");
         }
     }
 }
@@ -100,7 +100,7 @@ fn friction_slips_beyond_its_bound_and_goes_on_at_it() {
     assert_eq!(state(2.9, None), State::Closed);
     assert_eq!(state(3.1, None), State::Slipping);
     assert_eq!(state(3.0, Some(State::Slipping)), State::Slipping);
-    assert_eq!(law.residual(&constraint(0.0, 10.0, 3.0)), 0.0);
+    assert!(law.residual(&constraint(0.0, 10.0, 3.0)).abs() < 1e-300);
     assert!((law.residual(&constraint(0.0, 10.0, 4.0)) - 0.5).abs() < 1e-12);
 }
 
@@ -111,7 +111,7 @@ fn constraints_without_the_other_side_ask_for_no_traction() {
         let mut at = constraint(-1.0, 0.0, 0.0);
         at.area = 0.0;
         assert_eq!(law.state(&at, Some(State::Closed)), State::Open);
-        assert_eq!(law.residual(&at), 0.0);
+        assert!(law.residual(&at).abs() < 1e-300);
         at.p = 2.0;
         assert!(law.residual(&at) >= 1.0);
     }
