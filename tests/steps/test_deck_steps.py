@@ -155,8 +155,8 @@ def test_constants_at_the_temperature_of_the_model(tmp_path: Path) -> None:
     assert (material.E, material.nu) == pytest.approx((150000.0, 0.25))
     part = warm.replace("nall, 50.", "3, 50.")
     heated = warm.replace("*CLOAD", "*TEMPERATURE\nnall, 60.\n*CLOAD")
-    for bad in (part, heated):
-        assert any("need one temperature" in d.message for d in faults(tmp_path, bad))
+    for varying in (part, heated):
+        assert isinstance(read(tmp_path, varying).sections[0].material, ct.MaterialTable)
 
 
 def test_axes_about_a_point_matter_to_orthotropic_materials_only(tmp_path: Path) -> None:
