@@ -44,9 +44,22 @@ QUICK: dict[str, Callable[[Any, float], ct.Results]] = {
 
 @pytest.mark.parametrize("name", QUICK)
 def test_units_do_not_matter(load: Load, name: str) -> None:
+    """The same course to the bit in a unit 1024 times as long, in which all numbers round alike.
+
+    `python -m benchmarks contact_units` does it with all examples in full, in mm and in m.
+    """
+    example = load(f"contact/{name}.py")
+    small, large = (QUICK[name](example, unit) for unit in (1.0, 1024.0))
+    assert iterations(small) == iterations(large)
+    assert small.info.get("cut-backs") == large.info.get("cut-backs")
+    np.testing.assert_array_equal(small.frame().U, 1024.0 * large.frame().U)
+
+
+@pytest.mark.parametrize("name", [name for name in QUICK if name != "bistable_beam"])
+def test_millimeters_or_meters_do_not_matter(load: Load, name: str) -> None:
     """The same increments and iterations in mm and in m, and displacements to rounding.
 
-    `python -m benchmarks contact_units` does it with all examples in full.
+    The snap of the bistable beam magnifies rounding: its times of contact differ in the 6th digit.
     """
     example = load(f"contact/{name}.py")
     small, large = (QUICK[name](example, unit) for unit in (1.0, 1000.0))

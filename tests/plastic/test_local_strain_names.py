@@ -70,7 +70,11 @@ def test_decks_take_the_names_and_keep_them(spelled, name, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("material", "advised"), [(ELASTIC, "green_lagrange"), (FLOWING, "take local_strain='logarith")]
+    ("material", "advised"),
+    [
+        (ELASTIC, "green_lagrange"),
+        (FLOWING, "use local_strain='logarithmic' for materials that flow"),
+    ],
 )
 def test_large_strain_under_the_linear_measure_is_said_once_with_the_remedy(material, advised):
     with pytest.warns(UserWarning, match="local strain reaches") as caught:
