@@ -48,7 +48,7 @@ class Browser:
     console : list of str
         Errors and warnings of the console, and uncaught exceptions.
     requests : list of str
-        Addresses that the page asked for, data and blobs left out.
+        Addresses that the page requested, data and blobs left out.
     """
 
     def __init__(self, width: int = 1400, height: int = 1000, dark: bool = False) -> None:

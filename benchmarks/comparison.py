@@ -4,7 +4,7 @@ Runs every case of ``benchmarks/studies`` (a module there is a study, one more f
 on a sequence of meshes, one thread each, and draws the error over the number of dofs and over
 processor time. ``--studies`` and ``--cases`` choose, ``--write`` puts tables and figures into
 ``docs/comparison.md``; the page's conclusions are written by hand. Measured values are kept in
-``results/comparison.json``, and only what is asked for is run again; ``--redraw`` runs nothing.
+``results/comparison.json``, and only the studies named are run again; ``--redraw`` runs nothing.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -55,7 +55,7 @@ class Run:
 
 
 class Watch:
-    """Lets every analysis note its balance error; cuts its increments where asked to."""
+    """Records the balance error of every analysis and cuts its increments where requested."""
 
     def __init__(self) -> None:
         self.found: list[Run | None] = []

@@ -2,9 +2,9 @@
 
 A steel plate of 100 x 10 mm, 8 x 2 ``CPE8``, held at one end or at both: a static step with
 a preload, then ``*STEP, PERTURBATION`` and ``*FREQUENCY``; the same deck in both programs.
-CalculiX's elastic material is linear in Green-Lagrange strain, so the same is asked for here. Its
-answers are stored; ``--store`` runs ``ccx`` again, ``--write`` puts the table between the marks in
-docs/dynamics.md.
+CalculiX's elastic material is linear in Green-Lagrange strain, so Corota uses it
+here too. Its answers are stored; ``--store`` runs ``ccx`` again, ``--write`` puts the table
+between the marks in docs/dynamics.md.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 SIZES = {400: 4, 2000: 9, 10000: 21}
 INCREMENTS = 50
 CLASSES = ("Problem", "Ldlt", "Lu", "EdgeLoads")
-#: Processor time between two samples that is asked for [s]; systems give what they have.
+#: Requested processor time between two samples [s]; systems round it.
 TICK = 1e-3
 
 

@@ -116,6 +116,6 @@ def run(mechanism: Mechanism, cells: int, increments: int) -> dict[str, np.ndarr
     time = data[0][0][:, 0]
     expected = np.linspace(0.0, mechanism.period, SAMPLES + 1)
     if len(time) != len(expected) or np.abs(time - expected).max() > 1e-6 * mechanism.period:
-        raise RuntimeError(f"exudyn wrote other times than were asked for: {time}")
+        raise RuntimeError(f"exudyn wrote other times than were requested: {time}")
     x = [np.stack([d[:, 1:3] for d in own], axis=1) for own in data]
     return measured(mechanism, time, x)

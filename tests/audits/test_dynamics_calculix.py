@@ -73,7 +73,7 @@ def test_frequencies_beside_calculix(tmp_path):
 
 def test_spinning_preload_beside_calculix(tmp_path):
     # CalculiX 2.20: static NLGEOM step under CENTRIF, then *STEP, PERTURBATION, *FREQUENCY. Its
-    # material is linear in Green-Lagrange strain, so the same is asked for here.
+    # material is linear in Green-Lagrange strain, so the same measure is used here.
     spin = "*DLOAD\nE, CENTRIF, 4.e6, 0., 5., 0., 0., 0., 1.\n"
     text = plate_deck(", LOCAL STRAIN=GREEN LAGRANGE") + (
         f"*STEP, NLGEOM\n*STATIC\n{spin}*END STEP\n*STEP, PERTURBATION\n*FREQUENCY\n6\n*END STEP\n"

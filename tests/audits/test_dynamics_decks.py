@@ -31,7 +31,7 @@ HELD = "*BOUNDARY\n1, 1\n"
 
 
 def run(text, folder):
-    """Results, .dat (empty where none was asked for) and rows of .csv."""
+    """Results, .dat (empty where none was requested) and rows of .csv."""
     path, tables = folder / "job.inp", folder / "job.dat"
     path.write_text(text)
     results = ct.solve(ct.read(path), observers=[ct.JobFiles(str(folder))])

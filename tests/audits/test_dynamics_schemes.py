@@ -436,7 +436,7 @@ def test_particle_between_springs_that_yield_no_more(scheme):
 @pytest.mark.parametrize("scheme", IMPLICIT)
 def test_error_of_automatic_increments_follows_the_tolerance(scheme):
     # A pendulum on a spring: a tighter tolerance costs increments and buys accuracy in proportion;
-    # half of the points a fixed run would need is the least that is asked here.
+    # half of the points a fixed run would need is the least that is required here.
     k, length, m = 80.0, 1.0, 1.0
 
     def rate(_, z):

@@ -1,4 +1,4 @@
-"""The same numbers in every file, and along the axes that they are asked for in."""
+"""The same numbers in every file, and along the requested axes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

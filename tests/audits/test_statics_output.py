@@ -292,7 +292,7 @@ def j2(E: float, nu: float, sy: float, H: float) -> Any:
     G, bulk = E / (2 + 2 * nu), E / (3 - 6 * nu)
 
     def law(strain: Any, state: Any, plane: str) -> Any:
-        if plane == "stress":  # asked for once, at rest, to scale the tangent
+        if plane == "stress":  # called once, at rest, to scale the tangent
             c = E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
             return strain @ c, np.broadcast_to(c, (*strain.shape, 3)), state
         ep, p = state[..., :4], state[..., 4]

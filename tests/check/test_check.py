@@ -116,7 +116,7 @@ def test_supports_are_those_of_every_step() -> None:
 
 def test_cells_need_one_section_that_fits() -> None:
     model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2))
-    # A bare mesh is no faulty model: what it lacks is a note.
+    # A bare mesh is no faulty model: what is missing is a note.
     assert errors(model) == []
     assert "note: element 1 and 39 others have no section" in "\n".join(map(str, check(model)))
     model.section([0], element="Q4I", material=ct.Elastic(1.0))

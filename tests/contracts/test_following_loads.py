@@ -105,7 +105,7 @@ def test_load_stiffness_is_the_derivative_of_the_load(element: str, kind: str) -
 @pytest.mark.parametrize("kind", ["gravity", "centrifugal"])
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_what_is_worked_out_once_holds_at_every_displacement(element: str, kind: str) -> None:
-    """Body loads against the core, asked for all elements at that displacement and mass.
+    """Body loads against the core, evaluated for all elements at that displacement and mass.
 
     Masses and who carries them change after the first evaluation.
     """

@@ -58,7 +58,7 @@ def test_refused_with_a_message(tmp_path: Path, text: str, words: str) -> None:
 
 
 def test_reading_reserves_no_more_memory_than_the_deck_has(tmp_path: Path) -> None:
-    """It asked for the eight gigabytes that a deck may have at most."""
+    """It allocated the eight gigabytes that a deck may have at most."""
     (tmp_path / "deck.inp").write_text(SEEDS[0])
 
     def small() -> None:

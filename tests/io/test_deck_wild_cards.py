@@ -1,4 +1,4 @@
-"""Cards that decks hold and CalculiX lacks: the same answer as that of a deck without them."""
+"""Cards of decks that CalculiX does not have: the same answer as that of a deck without them."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

@@ -34,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(script: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """Run a script with a ParaView that notes what it is asked for."""
+    """Run a script with a ParaView that records what is requested."""
     simple = ModuleType("paraview.simple")
     names = ("OpenDataFile", "GetAnimationScene", "GetActiveViewOrCreate", "Show", "ColorBy")
     names += ("WarpByVector", "GetColorTransferFunction", "GetScalarBar", "AnnotateTimeFilter")

@@ -1,4 +1,4 @@
-"""The doctests of the package are collected, not only asked for."""
+"""The doctests of the package are collected, not only requested."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations

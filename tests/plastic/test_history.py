@@ -62,7 +62,7 @@ def test_cut_increment_ends_where_the_short_ones_end() -> None:
     results = ct.solve(perforated_strip("Q4I", 3, pull=0.1), cut, **SETTINGS)
     assert results.info["cut-backs"] >= 1
     times = np.array([f.step_time for f in results.frames])
-    # The same increments, asked for one step at a time.
+    # The same increments, one step at a time.
     model = perforated_strip("Q4I", 3, pull=0.1)
     steps = []
     top = find(model.mesh, 1, 18.0)

@@ -75,8 +75,8 @@ export class Charts {
     const { history } = this;
     if (!history.count) return;
     const names = history.names.filter((name) => !constant(history.column(name)));
-    const asked = names.filter((name) => /^U[12] /.test(name));
-    const x = asked.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
+    const displacements = names.filter((name) => /^U[12] /.test(name));
+    const x = displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
     const forces = names.filter((name) => /^RF[12] (?!all)/.test(name));
     const y = this.#driver(names, forces);
     const chart = this.#chart({ title: "Load–displacement", pick: this.pick, height: 260 });

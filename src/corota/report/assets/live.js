@@ -64,7 +64,7 @@ export async function follow(source, scene, take) {
         break;
       }
     }
-    // What takes long to answer is asked for less often: the run needs the processor.
+    // Slow requests are made less often: the run needs the processor.
     const pause = Math.max(BEAT, 2 * (performance.now() - begin));
     await new Promise((resolve) => setTimeout(resolve, Math.min(pause, 10 * BEAT)));
   }
