@@ -668,7 +668,7 @@ def test_a_turn_between_plastic_cycles_changes_nothing(element: str, strain: str
 
 
 def test_fixed_increments_are_kept_or_the_run_stops() -> None:
-    """A plastic strip whose grips turn by 10 degrees at once: DIRECT stops, and does not go on
+    """A plastic strip whose grips turn by 80 degrees at once: DIRECT stops, and does not go on
     along the path with increments of its own, in which the chord of the way makes it flow.
     """
     L = 4.0
@@ -683,7 +683,7 @@ def test_fixed_increments_are_kept_or_the_run_stops() -> None:
     bent = ct.Static(increments=8, fixed_increments=True)
     bent.fix([a], rotation=0.0)
     bent.fix([b], x=-0.1, y=0.5, rotation=0.25)
-    angle = math.radians(10.0)
+    angle = math.radians(80.0)
     place = rotation(angle) @ np.array([L - 0.1, 0.5]) - np.array([L, 0.0])
     turned = ct.Static(increments=1, fixed_increments=True)
     turned.fix([a], rotation=angle)

@@ -8,6 +8,7 @@ import warnings
 import pytest
 
 import corota as ct
+from corota.io import formats
 
 ELASTIC = ct.Elastic(E=70.0, nu=0.3)
 FLOWING = ct.Mises(E=70.0, nu=0.3, yield_stress=0.243, isotropic=0.1)
@@ -61,11 +62,11 @@ def test_an_unknown_name_is_refused_with_the_nearest(wrong, meant):
 )
 def test_decks_take_the_names_and_keep_them(spelled, name, tmp_path):
     path = tmp_path / "deck.inp"
-    ct.io.formats.write(strip(ELASTIC, "logarithmic"), path)
+    formats.write(strip(ELASTIC, "logarithmic"), path)
     path.write_text(path.read_text().replace("LOCAL STRAIN=LOGARITHMIC", f"LOCAL STRAIN={spelled}"))
     model = ct.read(path)
     assert model.sections[0].local_strain == name
-    ct.io.formats.write(model, path)
+    formats.write(model, path)
     assert ct.read(path).sections[0].local_strain == name
 
 

@@ -30,6 +30,9 @@ DIVERGED = 1e6
 CHORD = 0.01
 #: Shortest line search step.
 SHORTEST = 1.0 / 64.0
+#: Work of the residual at the end of a correction, relative to that at its start, up to which a
+#: strict line search accepts it.
+SLACK = 0.8
 #: Share of the smallest residual so far that a new one must be below to count as progress.
 PROGRESS = 0.9
 
@@ -107,6 +110,10 @@ class Settings:
     reuse: Callable[[Any], Floats] | None = None
     #: Iterations without a clearly smaller residual after which the attempt is given up; 0: never.
     patience: int = 0
+    #: Line search in every iteration in which supports do not move.
+    search: bool = False
+    #: Residual after the first iteration above which the attempt is given up.
+    first: float = math.inf
 
 
 @dataclass
@@ -211,7 +218,8 @@ def newton(
             outcome.reason = "the linear solution is not finite"
             return outcome
         before = size
-        trial = _search(system, u, du, at, step_time, before, iteration)
+        strict = settings.search and not moved
+        trial = _search(system, u, du, at, step_time, before, iteration, strict)
         if isinstance(trial, str):
             outcome.reason = trial
             return outcome
@@ -242,6 +250,9 @@ def newton(
             outcome.converged = True
             if settled:
                 outcome.note = f"residual {size:.1e} is at the rounding floor"
+            return outcome
+        if iteration == 1 and size > settings.first:
+            outcome.reason = f"the first iteration leaves a residual of {size:.1e}"
             return outcome
         if iteration > 1 and size > DIVERGED * max(best, 1e-6):
             outcome.reason = f"diverges: the residual grew to {size:.1e}"
@@ -278,11 +289,13 @@ def _search(
     step_time: float,
     before: float,
     iteration: int,
+    strict: bool = False,
 ) -> tuple[Floats, E, float] | str:
     """Take the step; shorten it where elements fail or the residual grows.
 
     Early growth of the residual is accepted: in slender structures it is stretching that
-    the next iteration removes.
+    the next iteration removes. A strict search refuses it (M. A. Crisfield, *Non-linear Finite
+    Element Analysis of Solids and Structures* 1, 1991, section 9.2).
     """
     length = 1.0
     problem = ""
@@ -293,6 +306,16 @@ def _search(
         except ElementFailure as error:
             problem = str(error)
             length *= 0.5
+            continue
+        if strict:
+            first, last = float(du @ start.residual), float(du @ at.residual)
+            if not (first < 0.0 and last > SLACK * abs(first)):
+                return trial, at, length
+            shorter = length * min(max(first / (first - last), 0.1), 0.9)
+            if shorter < SHORTEST:
+                return trial, at, length
+            length = shorter
+            system.return_tangent(at)
             continue
         if iteration <= 4 or length < 1.0:
             return trial, at, length

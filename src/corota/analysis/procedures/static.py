@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +22,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.equations import System
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.increment_loop import Report
+    from corota.analysis.newton import ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
+    from corota.analysis.terms.contact.newton import ContactIncrement
     from corota.model.steps import Static
 
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
@@ -36,6 +41,10 @@ RELAXED = (1e-3, 1e-2)
 FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.3)
 #: Attempt from which an increment is tried by relaxation before it is cut further.
 RESTS = 4
+#: Residual after a first iteration with the elastic tangent up to which an increment unloads.
+ELASTIC = 0.01
+#: Note of the iterations of a second attempt.
+UNLOADING = "line search from the elastic tangent"
 
 
 def static_step(
@@ -86,6 +95,9 @@ class StaticStepper(NewtonStepper):
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
         self.path_took_over = False
+        blocks = loop.system.blocks
+        #: Whether the stress of any material depends on the strain path.
+        self.remembers = any(block.section.material.remembers for block in blocks)
 
     @property
     def finished(self) -> bool:
@@ -106,26 +118,15 @@ class StaticStepper(NewtonStepper):
     def solve(self, target: float) -> Attempt:
         """Newton's method, and reasons to refuse an equilibrium state."""
         system, state, step = self.system, self.state, self.step
-        prescribed = system.conditions.prescribed(target, state.u)
-        contact = None
-        try:
-            outcome, contact = solve_increment(
-                system,
-                system,
-                state.u,
-                prescribed,
-                target,
-                self.settings,
-                self.report,
-                known=state.at if system.holds(target) else None,
-                last_chance=step.fixed_increments,
-            )
-        except SingularError as error:
-            if self.loop.number == 1 and self.control.number == 0:
-                raise
-            outcome = Outcome(False, state.u, None, reason=f"the tangent is singular: {error}")
-        if outcome.converged:
-            outcome.reason = system.scales.senseless(outcome.u)
+        known = state.at if system.holds(target) else None
+        outcome, contact = self.equilibrium(target, known)
+        if outcome.reason and self.control.attempt == 1 and self.remembers:
+            again, its_contact = self.equilibrium(target, None, outcome)
+            if again.reason:
+                outcome.iterations += again.iterations
+            else:
+                again.iterations += outcome.iterations
+                outcome, contact = again, its_contact
         self.grown = 0.0
         if outcome.converged and not outcome.reason and step.plastic_increment:
             self.grown = system.elements.plastic_increment()
@@ -137,6 +138,66 @@ class StaticStepper(NewtonStepper):
         outcome.converged = outcome.converged and not outcome.reason
         reason = "" if outcome.converged else outcome.reason or "no convergence"
         return Attempt(target, outcome, contact, reason)
+
+    def equilibrium(
+        self,
+        target: float,
+        known: Evaluation | None,
+        failed: Outcome[Evaluation] | None = None,
+    ) -> tuple[Outcome[Evaluation], ContactIncrement | None]:
+        """Newton's method from the committed state.
+
+        Parameters
+        ----------
+        target : float
+            Step time at the end of the increment [time].
+        known : Evaluation or None
+            At that state, with the tangent of the first iteration; None for that of unloading.
+        failed : Outcome, optional
+            Of an attempt without line search.
+
+        Returns
+        -------
+        outcome : Outcome
+            With a reason if it is no acceptable equilibrium.
+        contact : ContactIncrement or None
+            None where nothing was solved.
+
+        Notes
+        -----
+        After plastic flow the tangent of the last iteration is that of further loading. When the
+        load of a body that flows everywhere turns, it is far too soft, and the first correction far
+        too large. A committed state is on the yield surface and has the elastic tangent.
+        """
+        system, state = self.system, self.state
+        settings, report, contact = self.settings, self.report, None
+        if failed is not None:
+            # Where an increment can be cut, only elastic unloading is worth a second attempt: a
+            # long increment of a softening body may end on another equilibrium path.
+            first = math.inf if self.step.fixed_increments else ELASTIC
+            settings = replace(settings, search=True, first=first)
+            report = _continued(report, failed.iterations)
+        try:
+            outcome, contact = solve_increment(
+                system,
+                system,
+                state.u,
+                system.conditions.prescribed(target, state.u),
+                target,
+                settings,
+                report,
+                known=known,
+                last_chance=self.step.fixed_increments,
+            )
+        except SingularError as error:
+            if self.loop.number == 1 and self.control.number == 0:
+                raise
+            outcome = Outcome(False, state.u, None, reason=f"the tangent is singular: {error}")
+        if outcome.converged:
+            outcome.reason = system.scales.senseless(outcome.u)
+        elif not outcome.reason:
+            outcome.reason = "no convergence"
+        return outcome, contact
 
     def rescue(self, failed: Attempt, end: str) -> Attempt | None:
         """The increment by relaxation, or the rest of the step along the path."""
@@ -339,6 +400,18 @@ class StaticStepper(NewtonStepper):
         if limit is None:
             return True
         raise ConvergenceError(at_limit(system, step, number, limit.factor, state))
+
+
+def _continued(report: Report | None, before: int) -> Report | None:
+    """A report of the iterations of a second attempt, which follow those of the first."""
+    if report is None:
+        return None
+
+    def continued(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
+        said = f"{UNLOADING}; {note}" if note else UNLOADING
+        report(before + iteration, norms, correction, said)
+
+    return continued
 
 
 __all__ = ["StaticStepper", "static_step"]
