@@ -305,3 +305,53 @@ def test_preloaded_strips_vibrate_as_in_calculix(kind):
     found = modes_of(model, modes=4)[0].factors
     # CalculiX' CPS8 are solids whose middle plane stays plane: shear makes .3 % at this mesh.
     assert found == pytest.approx(CALCULIX[kind], rel=4e-3)
+
+
+def taut_particle(beta):
+    """A particle between two taut bars: across them all of its stiffness is that of their tension.
+
+    Unit lengths and areas, E = 100, tension 2, mass 0.5.
+    """
+    mesh = lines([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], ("line2", [[0, 1], [1, 2]]))
+    model = ct.Model(mesh)
+    wire = ct.Elastic(E=100.0, rho=1e-9, rayleigh=(0.0, beta))
+    model.truss([0, 1], material=wire, area=1.0)
+    model.initial_stress("", xx=2.0)
+    model.point_mass([1], 0.5)
+    model.fix([0, 2])
+    return model
+
+
+def test_tension_dissipates_nothing_in_complex_modes():
+    """Rayleigh damping is that of the elastic stiffness alone, as in direct integration.
+
+    Across, k = 2 N / L = 4 and c = 0; along, k = 2 E A / L = 200 and c = beta k.
+    """
+    beta = 0.01
+    modes = ct.solve(taut_particle(beta), ct.Frequency(modes=2, complex_modes=True)).modes[-1]
+    along = np.roots([0.5, 200.0 * beta, 200.0])
+    assert modes.growth == pytest.approx([0.0, along.real[0]], rel=1e-6, abs=1e-9)
+    w = [np.sqrt(8.0), abs(along.imag[0])]
+    assert 2.0 * np.pi * modes.factors == pytest.approx(w, rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["modal", "direct", "harmonic"])
+def test_tension_dissipates_nothing_in_responses(kind):
+    """The particle swings across its wires without decay, in every linear and nonlinear motion."""
+    model, w, beta = taut_particle(0.0), np.sqrt(8.0), 0.05
+    if kind == "harmonic":
+        step = ct.SteadyState(lowest=1.0, highest=2.0, points=2, direct=True, rayleigh=(0.0, beta))
+        step.force([1], y=1.0)
+        frame = ct.solve(model, step).frames[-1]
+        assert frame.U[1, 1] == pytest.approx(1.0 / (4.0 - 0.5 * (4.0 * np.pi) ** 2), rel=1e-6)
+        assert abs(frame.V[1, 1]) < 1e-9
+        return
+    model.velocity([1], y=1e-4)
+    end = 10.0 * 2.0 * np.pi / w
+    keys = {"period": end, "increments": 2000, "rayleigh": (0.0, beta)}
+    if kind == "modal":
+        steps = [ct.Frequency(modes=2), ct.ModalDynamic(**keys)]
+    else:
+        steps = [ct.Dynamic(scheme="newmark", **keys)]
+    frame = ct.solve(model, steps).frames[-1]
+    assert frame.V[1, 1] == pytest.approx(1e-4, rel=1e-3)

@@ -44,6 +44,23 @@ def test_cantilever_has_the_forces_of_statics(element, x):
     assert np.allclose(cut.center, [x, 0.5])
 
 
+@pytest.mark.parametrize("element", ["T3", "Q4I", "Q9"])
+def test_center_of_a_cut_with_nodal_thickness_is_the_centroid_of_its_area(element):
+    """Thickness 1 + 0.4 y over 0 <= y <= 1: the centroid is at (1/2 + 0.4/3) / 1.2.
+
+    A force on the end is distributed over its area, so that it acts there and bends nothing.
+    """
+    mesh = ct.mesh.rectangle(4.0, 1.0, nx=8, ny=2, cell=KINDS.get(element, "quad4"))
+    model = ct.Model(mesh)
+    material = ct.Elastic(E=1e3, nu=0.3)
+    model.section("all", element=element, material=material, thickness=1 + 0.4 * mesh.points[:, 1])
+    model.fix("left")
+    model.force("right", x=2.0)
+    cut = ct.solve(model, ct.Static(nlgeom=False)).section((1.75, 0.0), (1.75, 1.0))
+    assert np.allclose(cut.center, [1.75, (0.5 + 0.4 / 3.0) / 1.2])
+    assert pytest.approx(0.0, abs=EXACT) == cut.M
+
+
 def test_a_cut_the_other_way_has_the_same_forces_but_for_the_sides():
     results = cantilever()
     one, other = results.section((4, 0), (4, 1)), results.section((4, 1), (4, 0))

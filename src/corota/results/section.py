@@ -251,10 +251,12 @@ class Cut:
             ]
         )
         length = np.concatenate([c.length for c in self.crossings])
-        weight = length * np.concatenate([_depth(self.results, c) for c in self.crossings])
+        depth = np.concatenate([_depth(self.results, c) for c in self.crossings])
+        # The centroid of the area: along a piece the thickness is linear.
+        weight = length[:, None] * (depth + depth[:, ::-1] / 2.0) / 3.0
         if weight.sum() <= 0.0:
-            weight = np.ones(len(length))
-        center = (ends.mean(axis=1) * weight[:, None]).sum(axis=0) / weight.sum()
+            weight = np.ones(weight.shape)
+        center = np.einsum("nei,ne->i", ends, weight) / weight.sum()
         middle = np.concatenate([c.middle for c in self.crossings])
         chord = ends[middle.argmax(), 1] - ends[middle.argmin(), 0]
         size = float(np.hypot(*chord))
@@ -468,10 +470,10 @@ def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> NDArray[np.bool_]:
 
 
 def _depth(results: Results, crossing: _Crossing) -> Floats:
-    """Mean thickness of the part of each cell that is cut, shape (n,)."""
+    """Thickness at both ends of the part of each cell that is cut, shape (n, 2)."""
     ends = crossing.ends
     first, last = (_thickness(results, crossing, ends[..., i]) for i in (0, 1))
-    return np.asarray((first * (1.0 - crossing.share) + last * crossing.share).mean(axis=1))
+    return np.asarray(first * (1.0 - crossing.share) + last * crossing.share)
 
 
 def _thickness(results: Results, crossing: _Crossing, nodes: Ints) -> Floats:

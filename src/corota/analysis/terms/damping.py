@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.term import Term
+from corota.analysis.terms.viscous import ViscousElements
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.inertia import Inertia
     from corota.analysis.terms.term import StatePoint
-    from corota.analysis.terms.viscous import ViscousElements
 
     Floats = NDArray[np.float64]
 
@@ -78,13 +78,16 @@ def material_pairs(system: System) -> list[tuple[float, float]]:
 def damping_matrix(
     system: System, u: Floats, per_stiffness: float = 0.0, mass: str = "consistent"
 ) -> Floats | None:
-    """Damping by the stiffness of the model, and all damping of materials, at a displacement.
+    """Damping of the model per stiffness and all damping of materials, at a displacement.
+
+    As in direct integration the stiffness is the elastic one in the frames of the elements: stress
+    and loads, which change the tangent, dissipate nothing.
 
     Parameters
     ----------
     system : System
     u : ndarray, shape (n_dofs,)
-        The committed displacement: the tangent there is the stiffness.
+        The committed displacement.
     per_stiffness : float
         Of the whole model [time].
     mass : str
@@ -95,18 +98,12 @@ def damping_matrix(
     ndarray, shape (nnz,), or None
         Upper triangle [force*time/length]; None where nothing is damped.
     """
-    parts = [per_stiffness * system.evaluate(u, 0.0).values] if per_stiffness else []
-    for pair in material_pairs(system):
-        alpha, beta = pair
-        system.core.set_active([b.section.material.rayleigh == pair for b in system.blocks])
-        try:
-            if beta:
-                parts.append(beta * system.evaluate(u, 0.0).values)
-            if alpha:
-                parts.append(alpha * _mass(system, u, mass))
-        finally:
-            system.core.set_active([])
-    return sum(parts[1:], start=parts[0]) if parts else None
+    values = mass_damping(system, u, mass)
+    elements = ViscousElements(system, per_stiffness)
+    if elements.blocks:
+        values = system.pattern.zeros() if values is None else values
+        elements.add(u, u, np.zeros(system.n_dofs), 0.0, 1.0, values)
+    return values
 
 
 def mass_damping(system: System, u: Floats, mass: str) -> Floats | None:
