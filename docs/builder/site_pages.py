@@ -14,9 +14,17 @@ import thumbnails
 from svg import STYLE
 
 import corota as ct
+from corota.model.materials import Material
 
 DOCS = Path(__file__).resolve().parents[1]
 ROOT = DOCS.parent
+
+
+def is_material(value: object) -> bool:
+    """Whether a public name is a class of materials."""
+    return inspect.isclass(value) and issubclass(value, Material)
+
+
 #: Sections of the reference, and what of the public names stands in each.
 REFERENCE = {
     "Model": "Model Section Findings Amplitude Output Mesh Cells",
@@ -24,8 +32,9 @@ REFERENCE = {
     "InitialTemperature InitialStress PointMass Dashpot",
     "Steps": "Static Dynamic Frequency Buckle ModalDynamic SteadyState ArcLength "
     "DisplacementControl",
-    "Materials": "Elastic Orthotropic Expansion Mises Voce RambergOsgood MaterialTable "
-    "UserMaterial",
+    "Materials": " ".join(
+        ["Expansion", "Voce", *(n for n in ct.__all__ if is_material(getattr(ct, n)))]
+    ),
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",

@@ -12,7 +12,7 @@ import corota as ct
 from corota.check import check
 from corota.cli.info import model_lines, model_record
 from corota.io.deck.elements import why_unsupported
-from corota.io.deck.keywords import REFUSED_PARAMETERS, UNSUPPORTED
+from corota.io.deck.refused import REFUSED_PARAMETERS, UNSUPPORTED
 
 if TYPE_CHECKING:
     from pathlib import Path

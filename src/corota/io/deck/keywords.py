@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from corota.io.deck.cards import amplitudes as amplitudes
@@ -24,7 +25,7 @@ from corota.io.deck.cards import step as step
 from corota.io.deck.cards import supports as supports
 from corota.io.deck.cards import thermal as thermal
 from corota.io.deck.cards import tie as tie
-from corota.io.deck.deck import nearest
+from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 
 if TYPE_CHECKING:
@@ -97,7 +98,12 @@ KEYWORDS: dict[str, Keyword] = {
     ),
     "MATERIAL": Keyword(material.material, "NAME", place="model"),
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
-    "DEFORMATIONPLASTICITY": Keyword(material.deformation_plasticity, place="model"),
+    # Laws with a card of their own.
+    **{
+        name: Keyword(partial(material.constants, law=name), place="model")
+        for name, law in LAWS.items()
+        if key(law.card) == name
+    },
     "DENSITY": Keyword(material.density, place="model"),
     "EXPANSION": Keyword(thermal.expansion, "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"),
@@ -269,308 +275,7 @@ KEYWORDS: dict[str, Keyword] = {
     "ENDINSTANCE": Keyword(assembly.end_instance, place="model"),
 }
 
-#: Cards without effect here; each is listed in ``Model.notes``.
-IGNORED: dict[str, str] = {
-    "PREPRINT": "it controls the echo of the input",
-    "MONITOR": "progress shows every increment",
-    "ENERGYPRINT": "energies are in the history",
-    "ENERGYOUTPUT": "energies are in the history",
-    "ENERGYFILE": "energies are in the history",
-    "SECTIONCONTROLS": "no hourglass control is needed",
-    "NOANALYSIS": "use the command check",
-    "PRINT": "it controls the message file",
-    "FILEFORMAT": "it controls the result file of another program",
-    "USERSUBROUTINE": "no user subroutine is called",
-    **dict.fromkeys(
-        (
-            "CONDUCTIVITY",
-            "SPECIFICHEAT",
-            "LATENTHEAT",
-            "PHYSICALCONSTANTS",
-            "INELASTICHEATFRACTION",
-            "JOULEHEATFRACTION",
-            "ELECTRICALCONDUCTIVITY",
-        ),
-        "it contains no stresses; temperatures are given by *TEMPERATURE",
-    ),
-    **dict.fromkeys(
-        (
-            "SECTIONPRINT",
-            "SECTIONFILE",
-            "INTEGRATEDOUTPUT",
-            "INTEGRATEDOUTPUTSECTION",
-            "INCREMENTATIONOUTPUT",
-            "SURFACEOUTPUT",
-            "MODALOUTPUT",
-            "MODALFILE",
-            "MODALPRINT",
-            "RADIATIONOUTPUT",
-            "FILTER",
-            "FILEOUTPUT",
-            "NODALENERGYRATE",
-        ),
-        "this output is not written; forces on a section are the sum of RF on its nodes",
-    ),
-    "DIAGNOSTICS": "the run prints progress and events",
-    "PRINTLEVEL": "it controls the message file",
-    "CONTACTDIAGNOSTICS": "the run prints progress and events",
-    "BULKVISCOSITY": "explicit dynamics has no artificial viscosity here",
-    "HOURGLASSSTIFFNESS": "the hourglass is stabilized by the elements themselves",
-    "DISPLAYBODY": "it affects pictures only",
-}
-
-_CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
-_CHANGE = "contact pairs and their interactions apply to all steps"
-_MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
-_HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
-_PLASTIC = "the material laws are *ELASTIC, *PLASTIC and *DEFORMATION PLASTICITY; use these"
-_RUBBER = (
-    "use *ELASTIC with E = 3 G, G the initial shear modulus (Neo-Hooke: G = 2 C10, Mooney-Rivlin: "
-    "G = 2 (C10 + C01)), a Poisson's ratio of 0.45 to 0.499, PLANE=STRAIN and LOCAL "
-    "STRAIN=LOGARITHMIC in *SOLID SECTION, and elements Q4S; that is good up to moderate strains. "
-    "In Python a law of your own is a UserMaterial"
-)
-_PROCEDURE = "this procedure is not part of this version"
-_LINE = "only planar solids, trusses, beams and springs are part of this version"
-
-#: Cards that change the answer and are refused by name.
-UNSUPPORTED: dict[str, str] = {
-    **dict.fromkeys(
-        (
-            "CONTACTEXCLUSIONS",
-            "CONTACTINITIALIZATIONDATA",
-            "CONTACTINITIALIZATIONASSIGNMENT",
-            "GAP",
-        ),
-        _CONTACT,
-    ),
-    **dict.fromkeys(
-        ("CHANGEFRICTION", "CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR", "MODELCHANGE"), _CHANGE
-    ),
-    "CONTACTDAMPING": "contact has no damping of its own; damp the bodies by *DAMPING",
-    "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
-    "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
-    **dict.fromkeys(
-        (
-            "EMBEDDEDELEMENT",
-            "CYCLICSYMMETRYMODEL",
-        ),
-        _MPC,
-    ),
-    **dict.fromkeys(
-        (
-            "HEATTRANSFER",
-            "CFLUX",
-            "DFLUX",
-            "DSFLUX",
-            "FILM",
-            "SFILM",
-            "RADIATE",
-            "SRADIATE",
-            "COUPLEDTEMPERATURE-DISPLACEMENT",
-            "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
-            "COUPLEDTHERMAL-ELECTRICAL",
-            "HEATGENERATION",
-        ),
-        _HEAT,
-    ),
-    **dict.fromkeys(("HYPERELASTIC", "HYPERFOAM"), _RUBBER),
-    **dict.fromkeys(
-        (
-            "CREEP",
-            "RATEDEPENDENT",
-            "DEPVAR",
-            "USERMATERIAL",
-            "MOHRCOULOMB",
-            "CHANGEPLASTIC",
-            "VISCOELASTIC",
-            "DAMAGEINITIATION",
-            "DAMAGEEVOLUTION",
-            "UMAT",
-            "DRUCKERPRAGER",
-            "CAPPLASTICITY",
-            "CONCRETE",
-            "CONCRETEDAMAGEDPLASTICITY",
-            "HYPOELASTIC",
-            "SWELLING",
-            "POTENTIAL",
-            "NOTENSION",
-            "NOCOMPRESSION",
-            "SUPERELASTIC",
-        ),
-        _PLASTIC,
-    ),
-    **dict.fromkeys(
-        (
-            "VISCO",
-            "GREEN",
-            "SENSITIVITY",
-            "CRACKPROPAGATION",
-        ),
-        _PROCEDURE,
-    ),
-    **dict.fromkeys(
-        (
-            "FLUIDSECTION",
-            "USERELEMENT",
-            "USERSECTION",
-            "ROTARYINERTIA",
-            "TRUSSSECTION",
-        ),
-        _LINE,
-    ),
-    "SUBMODEL": "submodels are not part of this version",
-    "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
-    "CHANGESOLIDSECTION": "sections cannot change between steps",
-    "CHANGEMATERIAL": "materials cannot change between steps",
-    "DISTRIBUTION": "values given by element are not part of this version",
-    "NORMAL": "planar elements have no normals of their own",
-    "CONNECTORSECTION": "use *MPC, *EQUATION or *COUPLING",
-    "COHESIVESECTION": "cohesive elements are not part of this version; join the parts by *TIE",
-    "COHESIVEBEHAVIOR": "surfaces with adhesion are not part of this version; use *TIE",
-    "GEOSTATIC": "use *STATIC with *INITIAL CONDITIONS, TYPE=STRESS",
-    "SOILS": "pore pressure is not part of this version; use *STATIC",
-    "FIXEDMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
-    "VARIABLEMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
-    "IMPERFECTION": "give the imperfect coordinates by *NODE",
-    "FIELD": "fields are not part of this version; give temperatures by *TEMPERATURE",
-    "INERTIARELIEF": "fix the body by *BOUNDARY in three dofs",
-    "BASEMOTION": "prescribe the motion by *BOUNDARY with an amplitude",
-    "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",
-    "FASTENER": "use *MPC or *COUPLING",
-    "RELEASE": "join only the displacements of two nodes by *MPC, PIN",
-    "VALUESATINFINITY": "it belongs to fluid dynamics",
-}
-
-#: Parameters that change the answer and are refused by name.
-REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
-    ("STATIC", "TOTALTIMEATSTART"): "the total time starts at zero",
-    ("BOUNDARY", "USER"): "no user subroutine is called; use *AMPLITUDE",
-    ("BOUNDARY", "TIMEDELAY"): "shift the amplitude by SHIFTX",
-    ("BOUNDARY", "SUBMODEL"): "submodels are not part of this version",
-    ("CLOAD", "USER"): "no user subroutine is called; use *AMPLITUDE",
-    ("CLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
-    ("CLOAD", "SUBMODEL"): "submodels are not part of this version",
-    ("TEMPERATURE", "FILE"): "give the temperatures on data lines",
-    ("TEMPERATURE", "USER"): "no user subroutine is called; use *AMPLITUDE",
-    ("TEMPERATURE", "TIMEDELAY"): "shift the amplitude by SHIFTX",
-    ("TEMPERATURE", "SUBMODEL"): "submodels are not part of this version",
-    ("EXPANSION", "USER"): "no user subroutine is called; give a table",
-    ("INITIALCONDITIONS", "USER"): "no user subroutine is called; write the values",
-    ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
-    ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
-    ("NFILL", "SINGULAR"): "move the nodes beside the crack tip by *NODE",
-    ("NFILL", "TWOSTEP"): "give BIAS for single intervals",
-    ("NGEN", "SYSTEM"): "give the point of the curve in global axes",
-    ("NCOPY", "POLE"): "give the center of an arc by *NGEN, LINE=C",
-    ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
-    ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
-    ("SPRING", "ORIENTATION"): "give the springs global directions",
-    ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
-    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces in contact may separate; join them by *TIE",
-    ("FRICTION", "ROUGH"): "give a large friction coefficient",
-    ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
-    ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
-    ("FRICTION", "TAUMAX"): "there is no separate limit of the shear traction",
-    ("FRICTION", "USER"): "no user subroutine is called",
-    ("CLEARANCE", "TABULAR"): "give one VALUE",
-    ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
-    ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
-    **{
-        (keyword, "DEPENDENCIES"): "field variables are not part of this version; constants may "
-        "depend on the temperature alone"
-        for keyword in (
-            "ELASTIC",
-            "DENSITY",
-            "EXPANSION",
-            "PLASTIC",
-            "CYCLICHARDENING",
-            "DEFORMATIONPLASTICITY",
-        )
-    },
-}
-
-
-def interpret(deck: Deck, card: Card) -> None:
-    """Read one card into the deck."""
-    entry = KEYWORDS.get(card.keyword)
-    if entry is None:
-        _unknown(deck, card)
-        return
-    known = set(entry.parameters.split())
-    ignored = set(entry.ignored.split())
-    refused = {name for keyword, name in REFUSED_PARAMETERS if keyword == card.keyword}
-    card.scope = deck.scope
-    _spell_out(card, known | ignored | refused)
-    for name, parameter in card.parameters.items():
-        if name in known:
-            continue
-        if name in ignored:
-            deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
-            continue
-        place = type(card.where)(card.where.file, card.where.line, parameter.column)
-        reason = REFUSED_PARAMETERS.get((card.keyword, name))
-        if reason:
-            deck.error(card, place, f"{parameter.name} is not supported", hint=reason)
-        elif deck.lenient:
-            deck.warning(card, place, f"unknown parameter {parameter.name} is ignored")
-        else:
-            hint = nearest(name, known | ignored)
-            deck.error(card, place, f"unknown parameter {parameter.name}", hint=hint)
-    if entry.place == "model" and deck.step is not None:
-        deck.error(
-            card,
-            card.where,
-            f"{card.spelled} inside a step",
-            hint="model data stand before the first *STEP",
-        )
-        return
-    entry.function(deck, card)
-
-
-def _spell_out(card: Card, words: set[str]) -> None:
-    """Give abbreviated parameters (``GEN``, ``FREQ``) their full names, where one fits."""
-    for name in [n for n in card.parameters if n not in words and len(n) > 2]:
-        fits = sorted((w for w in words if w.startswith(name)), key=len)
-        if fits and all(w.startswith(fits[0]) for w in fits) and fits[0] not in card.parameters:
-            card.parameters[fits[0]] = card.parameters.pop(name)
-
-
-def _unknown(deck: Deck, card: Card) -> None:
-    if card.keyword.startswith("HEADING"):
-        deck.heading.append(card.text.strip()[len("*HEADING") :].strip())
-        heading(deck, card)
-        return
-    if card.keyword in IGNORED:
-        deck.note(f"{card.where}: {card.spelled} is ignored: {IGNORED[card.keyword]}")
-        return
-    if card.keyword in UNSUPPORTED:
-        _answered(deck, card, UNSUPPORTED[card.keyword])
-        deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
-        return
-    hint = nearest(card.keyword, [*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"])
-    if deck.lenient:
-        deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
-    else:
-        deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
-
-
-def _answered(deck: Deck, card: Card, why: str) -> None:
-    """Mark the data of a refused card: it is not reported as missing again."""
-    if deck.material is not None and why in (_PLASTIC, _RUBBER) and not deck.material.law:
-        deck.material.law = "REFUSED"
-    if deck.step is not None and why in (_PROCEDURE, _HEAT) and deck.step.procedure is None:
-        deck.step.procedure = card
-
-
-def _pretty(hint: str) -> str:
-    """Hint with the usual spelling: ``*END STEP`` for ``ENDSTEP``."""
-    for plain in (*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"):
-        if hint == f"did you mean {plain}?":
-            return f"did you mean *{SPELLED.get(plain, plain)}?"
-    return hint
-
-
+#: Usual spelling of names of several words.
 SPELLED = {
     key(name): name
     for name in (
@@ -600,6 +305,8 @@ SPELLED = {
         "INITIAL CONDITIONS",
         "SECTION PRINT",
         "NODAL THICKNESS",
-        "DEFORMATION PLASTICITY",
+        *(law.card for law in LAWS.values()),
     )
 }
+
+__all__ = ["KEYWORDS", "SPELLED", "Keyword"]

@@ -76,7 +76,8 @@ def _stiffness(*constants: float, **common: Any) -> Material:
     return Orthotropic(*constants, **common)
 
 
-#: Laws by the name that drafts have; those of ``*ELASTIC`` by its ``TYPE=``.
+#: Laws by the keyword of their card without blanks, which `KEYWORDS` takes from here; those of
+#: ``*ELASTIC`` by its ``TYPE=``.
 LAWS: dict[str, DeckLaw] = {
     "ISOTROPIC": DeckLaw(
         "ELASTIC",

@@ -13,7 +13,7 @@ from corota.io.deck.build.model import ModelBuilder
 from corota.io.deck.cards.assembly import close_part
 from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.elements import ELEMENTS, OWN
-from corota.io.deck.keywords import interpret
+from corota.io.deck.interpret import interpret
 from corota.io.deck.lexer import Lexer, key
 from corota.io.deck.restart import card_that_reads, with_earlier_steps
 from corota.model.units import Units

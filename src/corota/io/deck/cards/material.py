@@ -47,30 +47,25 @@ def elastic(deck: Deck, card: Card) -> None:
     if law is None:
         deck.choice(card, "TYPE", ("ISO", "ORTHO", "ENGINEERING CONSTANTS", "LAMINA"), "")
         return
-    _law(deck, card, law)
+    constants(deck, card, law)
 
 
-def deformation_plasticity(deck: Deck, card: Card) -> None:
-    """``*DEFORMATION PLASTICITY``: E, nu, yield stress, exponent, offset."""
-    _law(deck, card, "DEFORMATIONPLASTICITY")
-
-
-def _law(deck: Deck, card: Card, name: str) -> None:
-    """Read the constants of a law into the open material."""
+def constants(deck: Deck, card: Card, law: str) -> None:
+    """The constants of a law of :data:`LAWS`, for the open material."""
     found = open_material(deck, card)
     if found is None:
         return
-    rows, law = list(card.rows()), LAWS[name]
+    rows, entry = list(card.rows()), LAWS[law]
     if not rows:
-        deck.error(card, card.where, f"a data line is missing: {', '.join(law.constants)}")
+        deck.error(card, card.where, f"a data line is missing: {', '.join(entry.constants)}")
         return
     if found.law:
         deck.error(
             card, card.where, f"material {found.name} already has constants ({found.law_where})"
         )
         return
-    found.law, found.law_where, found.law_card = name, rows[0].where, card
-    _constants(deck, card, rows, found, law)
+    found.law, found.law_where, found.law_card = law, rows[0].where, card
+    _constants(deck, card, rows, found, entry)
 
 
 def _constants(deck: Deck, card: Card, rows: list[Row], found: MaterialDraft, law: DeckLaw) -> None:

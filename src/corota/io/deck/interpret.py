@@ -1,0 +1,105 @@
+"""Reading a card by its entry in the table of keywords, or saying why it is not read."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from corota.io.deck.deck import nearest
+from corota.io.deck.keywords import KEYWORDS, SPELLED
+from corota.io.deck.refused import (
+    HEAT,
+    IGNORED,
+    PLASTIC,
+    PROCEDURE,
+    REFUSED_PARAMETERS,
+    RUBBER,
+    UNSUPPORTED,
+)
+
+if TYPE_CHECKING:
+    from corota.io.deck.deck import Deck
+    from corota.io.deck.lexer import Card
+
+
+def interpret(deck: Deck, card: Card) -> None:
+    """Read one card into the deck."""
+    entry = KEYWORDS.get(card.keyword)
+    if entry is None:
+        _unknown(deck, card)
+        return
+    known = set(entry.parameters.split())
+    ignored = set(entry.ignored.split())
+    refused = {name for keyword, name in REFUSED_PARAMETERS if keyword == card.keyword}
+    card.scope = deck.scope
+    _spell_out(card, known | ignored | refused)
+    for name, parameter in card.parameters.items():
+        if name in known:
+            continue
+        if name in ignored:
+            deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
+            continue
+        place = type(card.where)(card.where.file, card.where.line, parameter.column)
+        reason = REFUSED_PARAMETERS.get((card.keyword, name))
+        if reason:
+            deck.error(card, place, f"{parameter.name} is not supported", hint=reason)
+        elif deck.lenient:
+            deck.warning(card, place, f"unknown parameter {parameter.name} is ignored")
+        else:
+            hint = nearest(name, known | ignored)
+            deck.error(card, place, f"unknown parameter {parameter.name}", hint=hint)
+    if entry.place == "model" and deck.step is not None:
+        deck.error(
+            card,
+            card.where,
+            f"{card.spelled} inside a step",
+            hint="model data stand before the first *STEP",
+        )
+        return
+    entry.function(deck, card)
+
+
+def _spell_out(card: Card, words: set[str]) -> None:
+    """Give abbreviated parameters (``GEN``, ``FREQ``) their full names, where one fits."""
+    for name in [n for n in card.parameters if n not in words and len(n) > 2]:
+        fits = sorted((w for w in words if w.startswith(name)), key=len)
+        if fits and all(w.startswith(fits[0]) for w in fits) and fits[0] not in card.parameters:
+            card.parameters[fits[0]] = card.parameters.pop(name)
+
+
+def _unknown(deck: Deck, card: Card) -> None:
+    if card.keyword.startswith("HEADING"):
+        deck.heading.append(card.text.strip()[len("*HEADING") :].strip())
+        KEYWORDS["HEADING"].function(deck, card)
+        return
+    if card.keyword in IGNORED:
+        deck.note(f"{card.where}: {card.spelled} is ignored: {IGNORED[card.keyword]}")
+        return
+    if card.keyword in UNSUPPORTED:
+        _answered(deck, card, UNSUPPORTED[card.keyword])
+        deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
+        return
+    hint = nearest(card.keyword, [*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"])
+    if deck.lenient:
+        deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
+    else:
+        deck.error(card, card.where, f"unknown keyword {card.spelled[:60]}", hint=_pretty(hint))
+
+
+def _answered(deck: Deck, card: Card, why: str) -> None:
+    """Mark the data of a refused card: it is not reported as missing again."""
+    if deck.material is not None and why in (PLASTIC, RUBBER) and not deck.material.law:
+        deck.material.law = "REFUSED"
+    if deck.step is not None and why in (PROCEDURE, HEAT) and deck.step.procedure is None:
+        deck.step.procedure = card
+
+
+def _pretty(hint: str) -> str:
+    """Hint with the usual spelling: ``*END STEP`` for ``ENDSTEP``."""
+    for plain in (*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"):
+        if hint == f"did you mean {plain}?":
+            return f"did you mean *{SPELLED.get(plain, plain)}?"
+    return hint
+
+
+__all__ = ["interpret"]

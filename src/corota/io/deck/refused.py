@@ -1,0 +1,237 @@
+"""Cards and parameters of other programs that have no effect here or are refused, with reasons."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from corota.io.deck.laws import LAWS
+
+#: Cards without effect here; each is listed in ``Model.notes``.
+IGNORED: dict[str, str] = {
+    "PREPRINT": "it controls the echo of the input",
+    "MONITOR": "progress shows every increment",
+    "ENERGYPRINT": "energies are in the history",
+    "ENERGYOUTPUT": "energies are in the history",
+    "ENERGYFILE": "energies are in the history",
+    "SECTIONCONTROLS": "no hourglass control is needed",
+    "NOANALYSIS": "use the command check",
+    "PRINT": "it controls the message file",
+    "FILEFORMAT": "it controls the result file of another program",
+    "USERSUBROUTINE": "no user subroutine is called",
+    **dict.fromkeys(
+        (
+            "CONDUCTIVITY",
+            "SPECIFICHEAT",
+            "LATENTHEAT",
+            "PHYSICALCONSTANTS",
+            "INELASTICHEATFRACTION",
+            "JOULEHEATFRACTION",
+            "ELECTRICALCONDUCTIVITY",
+        ),
+        "it contains no stresses; temperatures are given by *TEMPERATURE",
+    ),
+    **dict.fromkeys(
+        (
+            "SECTIONPRINT",
+            "SECTIONFILE",
+            "INTEGRATEDOUTPUT",
+            "INTEGRATEDOUTPUTSECTION",
+            "INCREMENTATIONOUTPUT",
+            "SURFACEOUTPUT",
+            "MODALOUTPUT",
+            "MODALFILE",
+            "MODALPRINT",
+            "RADIATIONOUTPUT",
+            "FILTER",
+            "FILEOUTPUT",
+            "NODALENERGYRATE",
+        ),
+        "this output is not written; forces on a section are the sum of RF on its nodes",
+    ),
+    "DIAGNOSTICS": "the run prints progress and events",
+    "PRINTLEVEL": "it controls the message file",
+    "CONTACTDIAGNOSTICS": "the run prints progress and events",
+    "BULKVISCOSITY": "explicit dynamics has no artificial viscosity here",
+    "HOURGLASSSTIFFNESS": "the hourglass is stabilized by the elements themselves",
+    "DISPLAYBODY": "it affects pictures only",
+}
+
+_CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACTION"
+_CHANGE = "contact pairs and their interactions apply to all steps"
+_MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
+HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
+PLASTIC = "the material laws are *ELASTIC, *PLASTIC and *DEFORMATION PLASTICITY; use these"
+RUBBER = (
+    "use *ELASTIC with E = 3 G, G the initial shear modulus (Neo-Hooke: G = 2 C10, Mooney-Rivlin: "
+    "G = 2 (C10 + C01)), a Poisson's ratio of 0.45 to 0.499, PLANE=STRAIN and LOCAL "
+    "STRAIN=LOGARITHMIC in *SOLID SECTION, and elements Q4S; that is good up to moderate strains. "
+    "In Python a law of your own is a UserMaterial"
+)
+PROCEDURE = "this procedure is not part of this version"
+_LINE = "only planar solids, trusses, beams and springs are part of this version"
+
+#: Cards that change the answer and are refused by name.
+UNSUPPORTED: dict[str, str] = {
+    **dict.fromkeys(
+        (
+            "CONTACTEXCLUSIONS",
+            "CONTACTINITIALIZATIONDATA",
+            "CONTACTINITIALIZATIONASSIGNMENT",
+            "GAP",
+        ),
+        _CONTACT,
+    ),
+    **dict.fromkeys(
+        ("CHANGEFRICTION", "CHANGECONTACTTYPE", "CHANGESURFACEBEHAVIOR", "MODELCHANGE"), _CHANGE
+    ),
+    "CONTACTDAMPING": "contact has no damping of its own; damp the bodies by *DAMPING",
+    "SURFACESMOOTHING": "give round rigid surfaces by *SURFACE, TYPE=SEGMENTS with CIRCL",
+    "RIGIDSURFACE": "use *SURFACE, TYPE=SEGMENTS and *RIGID BODY, ANALYTICAL SURFACE=",
+    **dict.fromkeys(
+        (
+            "EMBEDDEDELEMENT",
+            "CYCLICSYMMETRYMODEL",
+        ),
+        _MPC,
+    ),
+    **dict.fromkeys(
+        (
+            "HEATTRANSFER",
+            "CFLUX",
+            "DFLUX",
+            "DSFLUX",
+            "FILM",
+            "SFILM",
+            "RADIATE",
+            "SRADIATE",
+            "COUPLEDTEMPERATURE-DISPLACEMENT",
+            "UNCOUPLEDTEMPERATURE-DISPLACEMENT",
+            "COUPLEDTHERMAL-ELECTRICAL",
+            "HEATGENERATION",
+        ),
+        HEAT,
+    ),
+    **dict.fromkeys(("HYPERELASTIC", "HYPERFOAM"), RUBBER),
+    **dict.fromkeys(
+        (
+            "CREEP",
+            "RATEDEPENDENT",
+            "DEPVAR",
+            "USERMATERIAL",
+            "MOHRCOULOMB",
+            "CHANGEPLASTIC",
+            "VISCOELASTIC",
+            "DAMAGEINITIATION",
+            "DAMAGEEVOLUTION",
+            "UMAT",
+            "DRUCKERPRAGER",
+            "CAPPLASTICITY",
+            "CONCRETE",
+            "CONCRETEDAMAGEDPLASTICITY",
+            "HYPOELASTIC",
+            "SWELLING",
+            "POTENTIAL",
+            "NOTENSION",
+            "NOCOMPRESSION",
+            "SUPERELASTIC",
+        ),
+        PLASTIC,
+    ),
+    **dict.fromkeys(
+        (
+            "VISCO",
+            "GREEN",
+            "SENSITIVITY",
+            "CRACKPROPAGATION",
+        ),
+        PROCEDURE,
+    ),
+    **dict.fromkeys(
+        (
+            "FLUIDSECTION",
+            "USERELEMENT",
+            "USERSECTION",
+            "ROTARYINERTIA",
+            "TRUSSSECTION",
+        ),
+        _LINE,
+    ),
+    "SUBMODEL": "submodels are not part of this version",
+    "SUBSTRUCTUREGENERATE": "substructures are not part of this version",
+    "CHANGESOLIDSECTION": "sections cannot change between steps",
+    "CHANGEMATERIAL": "materials cannot change between steps",
+    "DISTRIBUTION": "values given by element are not part of this version",
+    "NORMAL": "planar elements have no normals of their own",
+    "CONNECTORSECTION": "use *MPC, *EQUATION or *COUPLING",
+    "COHESIVESECTION": "cohesive elements are not part of this version; join the parts by *TIE",
+    "COHESIVEBEHAVIOR": "surfaces with adhesion are not part of this version; use *TIE",
+    "GEOSTATIC": "use *STATIC with *INITIAL CONDITIONS, TYPE=STRESS",
+    "SOILS": "pore pressure is not part of this version; use *STATIC",
+    "FIXEDMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
+    "VARIABLEMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
+    "IMPERFECTION": "give the imperfect coordinates by *NODE",
+    "FIELD": "fields are not part of this version; give temperatures by *TEMPERATURE",
+    "INERTIARELIEF": "fix the body by *BOUNDARY in three dofs",
+    "BASEMOTION": "prescribe the motion by *BOUNDARY with an amplitude",
+    "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",
+    "FASTENER": "use *MPC or *COUPLING",
+    "RELEASE": "join only the displacements of two nodes by *MPC, PIN",
+    "VALUESATINFINITY": "it belongs to fluid dynamics",
+}
+
+#: Parameters that change the answer and are refused by name.
+REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
+    ("STATIC", "TOTALTIMEATSTART"): "the total time starts at zero",
+    ("BOUNDARY", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("BOUNDARY", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("BOUNDARY", "SUBMODEL"): "submodels are not part of this version",
+    ("CLOAD", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("CLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("CLOAD", "SUBMODEL"): "submodels are not part of this version",
+    ("TEMPERATURE", "FILE"): "give the temperatures on data lines",
+    ("TEMPERATURE", "USER"): "no user subroutine is called; use *AMPLITUDE",
+    ("TEMPERATURE", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("TEMPERATURE", "SUBMODEL"): "submodels are not part of this version",
+    ("EXPANSION", "USER"): "no user subroutine is called; give a table",
+    ("INITIALCONDITIONS", "USER"): "no user subroutine is called; write the values",
+    ("DLOAD", "TIMEDELAY"): "shift the amplitude by SHIFTX",
+    ("AMPLITUDE", "USER"): "no user subroutine is called; give a table",
+    ("NFILL", "SINGULAR"): "move the nodes beside the crack tip by *NODE",
+    ("NFILL", "TWOSTEP"): "give BIAS for single intervals",
+    ("NGEN", "SYSTEM"): "give the point of the curve in global axes",
+    ("NCOPY", "POLE"): "give the center of an arc by *NGEN, LINE=C",
+    ("SOLIDSECTION", "COMPOSITE"): "layers are not part of this version",
+    ("SHELLSECTION", "COMPOSITE"): "layers are not part of this version",
+    ("SPRING", "ORIENTATION"): "give the springs global directions",
+    ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
+    ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces in contact may separate; join them by *TIE",
+    ("FRICTION", "ROUGH"): "give a large friction coefficient",
+    ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
+    ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
+    ("FRICTION", "TAUMAX"): "there is no separate limit of the shear traction",
+    ("FRICTION", "USER"): "no user subroutine is called",
+    ("CLEARANCE", "TABULAR"): "give one VALUE",
+    ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
+    ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
+    **{
+        (keyword, "DEPENDENCIES"): "field variables are not part of this version; constants may "
+        "depend on the temperature alone"
+        for keyword in (
+            "ELASTIC",
+            "DENSITY",
+            "EXPANSION",
+            "PLASTIC",
+            "CYCLICHARDENING",
+            *LAWS,
+        )
+    },
+}
+
+__all__ = [
+    "HEAT",
+    "IGNORED",
+    "PLASTIC",
+    "PROCEDURE",
+    "REFUSED_PARAMETERS",
+    "RUBBER",
+    "UNSUPPORTED",
+]
