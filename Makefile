@@ -22,7 +22,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python test-view lint clippy format bench docs wheel try-wheel \
+.PHONY: help setup demo test test-rust test-python test-view test-petsc lint clippy format bench docs wheel try-wheel \
 	meshes lock clean
 
 help: ## Say what the targets do
@@ -62,6 +62,10 @@ $(VIEW): $(CORE) requirements-view.txt
 
 test-view: $(VIEW) ## Run the tests against VTK, PyVista, xarray, pandas, meshio and ccx2paraview
 	$(BIN)/python -m pytest -n $(JOBS) tests/output tests/interface
+
+test-petsc: $(CORE) ## Install PETSc (Debian 12, as root) and test runs on two processes
+	scripts/install_petsc.sh $(abspath $(BIN)/python)
+	$(BIN)/python -m pytest tests/scale tests/contracts/test_petsc.py tests/contracts/test_linear_solvers.py
 
 lint: $(DEPS) clippy ## Check style, types and lints of both languages
 	$(BIN)/ruff check .

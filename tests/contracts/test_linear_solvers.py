@@ -19,7 +19,13 @@ if TYPE_CHECKING:
 
 #: Those whose library is here; the refusal of the others is tested too.
 NEEDED = {"pardiso": pardiso.find_mkl, "petsc": lambda: find_spec("petsc4py")}
-NAMES = [name for name in SOLVERS if name not in NEEDED or NEEDED[name]() is not None]
+#: Iterates to a tolerance, without inertia; see tests/scale.
+ITERATIVE = {"petsc:gamg"}
+NAMES = [
+    name
+    for name in SOLVERS
+    if name not in ITERATIVE and (name not in NEEDED or NEEDED[name]() is not None)
+]
 
 
 def chain(n: int, *, held: bool = True) -> sp.csc_array:

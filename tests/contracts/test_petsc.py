@@ -138,7 +138,7 @@ def test_a_run_that_is_started_many_times_is_refused(
 ) -> None:
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     assert main(["run", str(tmp_path / "job.inp")]) == 2
-    assert "mpiexec started 2 processes" in capsys.readouterr().err
+    assert "this solver runs on one: add --solver petsc" in capsys.readouterr().err
 
 
 def test_missing_petsc_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,15 +3,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from corota.analysis.state_tree import Reader, Writer, digest_of
+from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
+    from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.state import State
     from corota.analysis.terms.moving_mass import MovingMass
     from corota.model.model import Model
@@ -34,6 +36,10 @@ class Checkpoint:
         See :mod:`corota.analysis.state_tree`.
     arrays : list of ndarray
         Numbers of the tree.
+    leave_step : bool
+        Whether a run that starts here leaves the rest of the step out.
+    processes : list of int
+        With several processes `tree` holds one tree for each; the first array of each.
     """
 
     step: int
@@ -44,13 +50,34 @@ class Checkpoint:
     kind: str
     tree: dict[str, Any]
     arrays: list[Any]
-    #: Whether a run that starts here leaves the rest of the step out.
     leave_step: bool = False
+    processes: list[int] = field(default_factory=list)
 
     @property
     def where(self) -> str:
         """The increment in words."""
         return f"step {self.step}, increment {self.increment}, time {self.time:.6g}"
+
+    def part(self, communicator: Communicator) -> Checkpoint:
+        """The state of one process.
+
+        Raises
+        ------
+        UnsupportedError
+            If it was taken by another number of processes.
+        """
+        count = max(len(self.processes), 1)
+        if count != communicator.size:
+            raise UnsupportedError(
+                f"the checkpoint has the states of {count} processes, and there are "
+                f"{communicator.size}: continue with as many as have written it"
+                + (f" (mpiexec -n {count}, solver 'petsc')" if count > 1 else "")
+            )
+        if count == 1:
+            return self
+        first = self.processes[communicator.rank]
+        own = self.tree["processes"][communicator.rank]
+        return replace(self, tree=own, arrays=self.arrays[first:], processes=[])
 
 
 @dataclass
@@ -80,6 +107,7 @@ class Analysis(Protocol):
     warned: set[str]
     begun: list[Begun]
     as_built: dict[str, str]
+    communicator: Communicator
 
     def known(self) -> dict[str, Any]:
         """Objects stored by reference in checkpoints."""
@@ -128,7 +156,14 @@ def take(analysis: Analysis, state: State, where: tuple[int, int], factor: float
     """The state as it is now, in copies."""
     assert state.loop is not None
     writer = Writer(analysis.known(), analysis.as_built)
-    tree = writer.write(root(analysis, state), "")
+    tree, arrays = writer.write(root(analysis, state), ""), writer.arrays
+    processes: list[int] = []
+    if analysis.communicator.size > 1:
+        parts = analysis.communicator.gather((tree, arrays))
+        tree, arrays = {"processes": [own for own, _ in parts]}, []
+        for _, own in parts:
+            processes.append(len(arrays))
+            arrays += own
     return Checkpoint(
         *where,
         state.time + state.step_time,
@@ -136,7 +171,8 @@ def take(analysis: Analysis, state: State, where: tuple[int, int], factor: float
         factor,
         state.loop["kind"],
         tree,
-        writer.arrays,
+        arrays,
+        processes=processes,
     )
 
 

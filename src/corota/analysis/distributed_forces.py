@@ -111,23 +111,23 @@ class BodyLoad:
                 raise ModelError(error.message, item.where) from None
             inside[:] = False
             inside[mesh.cell_sets[name]] = True
-        self.masks = [inside[b.cells] for b in system.blocks]
-        facts = [elements.find(b.section.element) for b in system.blocks]
-        for block, mask in zip(system.blocks, self.masks, strict=True):
+        self.masks = [inside[b.cells] for b in system.own_blocks]
+        for block in system.blocks:
             massless = elements.find(block.section.element).spring
-            if mask.any() and block.section.material.rho <= 0.0 and not massless:
+            if inside[block.cells].any() and block.section.material.rho <= 0.0 and not massless:
                 name = block.section.material.name or block.section.material.law
                 raise ModelError(
                     f"material {name!r} has no density for a body force; add one (*DENSITY)",
                     item.where,
                 )
+        facts = [elements.find(b.section.element) for b in system.own_blocks]
         drilling = [f.drilling and mask.any() for f, mask in zip(facts, self.masks, strict=True)]
         #: Elements whose force follows their rotation: sides of drilling elements have mass.
         self.nlgeom = [
             mask if turns else np.zeros_like(mask)
             for mask, turns in zip(self.masks, drilling, strict=True)
         ]
-        self.turns = any(drilling)
+        self.turns = system.communicator.any(any(drilling))
         self.follows = item.kind == "centrifugal" or self.turns
         self._unit: Floats | None = None
         self._linear: tuple[Floats, Floats] | None = None
@@ -175,7 +175,9 @@ class BodyLoad:
             masks = self.masks
             if self._couples:
                 masks = [m & ~t for m, t in zip(masks, self.nlgeom, strict=True)]
-            spins = self.item.kind == "centrifugal" and any(m.any() for m in masks)
+            spins = self.system.communicator.any(
+                self.item.kind == "centrifugal" and any(m.any() for m in masks)
+            )
             stiffness = self.system.pattern.zeros() if spins else EMPTY
             self._linear = self._at_rest(masks, stiffness), stiffness
         return self._linear
@@ -200,9 +202,13 @@ class BodyLoad:
         # Of a centrifugal force the scale is that of the square of the angular velocity.
         item, first = self.item, 2 if self.item.kind == "gravity" else 1
         value = [scale * v for v in item.value[:first]] + list(item.value[first:])
+        communicator = self.system.communicator
+        own = force if communicator.size == 1 else np.zeros_like(force)
         self.system.core.body_force(
-            item.kind, value, self.mass, masks, u, start, share, force, values
+            item.kind, value, self.mass, masks, u, start, share, own, values
         )
+        if own is not force:
+            force += communicator.sum(own)
 
 
 class Traction:
@@ -238,7 +244,8 @@ class Traction:
         # Symmetric, between nodes of one element: the pattern contains it.
         if self._places is None:
             upper = np.flatnonzero(rows <= columns)
-            self._places = (upper, self.system.pattern.places(rows[upper], columns[upper])[0])
+            places, _, mine = self.system.pattern.owned_places(rows[upper], columns[upper])
+            self._places = (upper[mine], places[mine])
         upper, at = self._places
         np.add.at(to.values, at, -to.share * values[upper])
 

@@ -311,18 +311,22 @@ class System(NumberedModel):
         skew = (extra - extra.T).multiply(inside[:, None]).multiply(inside[None, :])
         size = abs(extra).max() if extra.nnz else 0.0
         if skew.nnz and abs(skew).max() > 1e-9 * size:
-            return False, self._full.build(at.values, rows, columns, -values)
+            return False, self._full.build(self._gathered(at), rows, columns, -values)
         upper_extra = sp.triu(0.5 * (extra + extra.T)).tocoo()
-        places, known = self.pattern.places(upper_extra.row, upper_extra.col)
+        places, known, mine = self.pattern.owned_places(upper_extra.row, upper_extra.col)
         if not known.all():
             # Nodes without a common element: not in the pattern.
-            return False, self._full.build(at.values, rows, columns, -values)
-        at.values[places] += upper_extra.data
+            return False, self._full.build(self._gathered(at), rows, columns, -values)
+        at.values[places[mine]] += upper_extra.data[mine]
         return True, None
+
+    def _gathered(self, at: Evaluation) -> Floats:
+        """Values of the whole tangent."""
+        return self.pattern.gathered(at.values)
 
     @cached_property
     def _full(self) -> FullMatrix:
-        return FullMatrix(self.pattern)
+        return FullMatrix(self.pattern.whole)
 
     def _solve_unsymmetric(
         self,

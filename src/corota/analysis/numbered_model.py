@@ -17,6 +17,8 @@ from corota.analysis.constraints.setup import carry_curves, extra_dofs
 from corota.analysis.linear.matrix import AssembledPattern
 from corota.analysis.linear.system import LinearSystem
 from corota.analysis.memory import require_model
+from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.partition import own_blocks
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains, start_temperatures
 from corota.errors import ModelError
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
     from corota.model.materials import Material
     from corota.model.model import Model
@@ -56,6 +59,8 @@ class NumberedModel:
 
     def __init__(self, model: Model, solver: LinearSolver, threads: int = 1) -> None:
         self.model = model
+        #: The processes that run this analysis; each has its own elements.
+        self.communicator: Communicator = getattr(solver, "communicator", ALONE)
         self.blocks = blocks_of(model)
         #: Mass for gravity in static steps.
         self.mass = MovingMass()
@@ -63,8 +68,10 @@ class NumberedModel:
         mesh = model.mesh
         check_shapes(model, self.blocks)
         start = start_temperatures(model)
-        inputs = [core_input(b, start) for b in self.blocks]
-        require_model(self.blocks, mesh.n_nodes)
+        #: Blocks of the own elements, and their numbers in `blocks`.
+        self.own_blocks, self.own_numbers = own_blocks(self.blocks, mesh.points, self.communicator)
+        inputs = [core_input(b, start) for b in self.own_blocks]
+        require_model(self.own_blocks, mesh.n_nodes)
         carried = np.zeros(mesh.n_nodes, np.int64)
         for b in self.blocks:
             own = elements.find(b.section.element).dofs_per_node
@@ -72,19 +79,22 @@ class NumberedModel:
         extra = extra_dofs(model, carried > 0)
         if model.contacts:
             extra = carry_curves(model, carried, extra)
+        if self.communicator.size > 1:
+            # All processes number the dofs of all elements.
+            extra = np.maximum(extra if len(extra) else 0, carried).astype(np.uint8)
         try:
             self.core = _core.Problem(mesh.points, inputs, extra)
         except ValueError as error:
             raise ModelError(str(error)) from None
         self.core.set_threads(threads)
-        self.free = FreeStrains(self.core, model, self.blocks)
+        self.free = FreeStrains(self.core, model, self.own_blocks, self.communicator)
         self.n_dofs: int = self.core.n_dofs
         self.start = self.core.dof_start.astype(np.int64)
         self.per_node = np.diff(self.start)
         self.node_of_dof = self.core.node_of_dof.astype(np.int64)
         self.component = np.arange(self.n_dofs) - self.start[self.node_of_dof]
         self.is_rotation = self.component == 2
-        self.pattern = AssembledPattern(self.core)
+        self.pattern = AssembledPattern(self.core, self.communicator)
         self.nlgeom = True
         #: Whether linear procedures look at the state of a geometrically linear step.
         self.about_linear = False
@@ -93,8 +103,19 @@ class NumberedModel:
         self.constraints = constraints_of(model, self.start, carried, self.pattern)
         #: The constraints as they were linearized for the last correction.
         self.link = self.constraints.link(np.zeros(self.n_dofs))
+        if hasattr(solver, "motions"):
+            solver.motions = self.rigid_motions()[self.constraints.free]
         self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
         self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
+
+    def rigid_motions(self) -> Floats:
+        """Two displacements and a rotation about the middle of all nodes, shape (n_dofs, 3)."""
+        points = self.model.mesh.points
+        arm = points - points.mean(axis=0)
+        one, zero = np.ones(len(points)), np.zeros(len(points))
+        x, y = np.stack([one, zero, zero], axis=1), np.stack([zero, one, zero], axis=1)
+        spin = np.stack([-arm[:, 1], arm[:, 0], one], axis=1)
+        return np.stack([self.from_nodes(motion) for motion in (x, y, spin)], axis=1)
 
     # -- numbering ---------------------------------------------------------------------
 
@@ -144,7 +165,7 @@ class NumberedModel:
             self.core.assemble(here, self.nlgeom, force, scale, np.empty(0))
             forces.append(force)
         self.free.apply(now)
-        return self.at_nodes(forces[0] - forces[1])
+        return self.at_nodes(self.communicator.sum(forces[0] - forces[1]))
 
     @property
     def counted(self) -> NDArray[np.bool_]:

@@ -5,10 +5,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from corota.analysis.parallel.communicator import ALONE
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from corota.analysis.checkpoint import Checkpoint
+    from corota.analysis.parallel.communicator import Communicator
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.observer import Iteration, Observer
@@ -24,22 +27,25 @@ class Observers:
 
     def __init__(self, each: Iterable[Observer]) -> None:
         self.each = list(each)
+        #: Processes whose observers decide together.
+        self.communicator: Communicator = ALONE
 
     @property
     def stop_requested(self) -> bool:
         """Whether any observer requests a stop."""
-        return any(getattr(o, "stop", False) for o in self.each)
+        return self.communicator.any(any(getattr(o, "stop", False) for o in self.each))
 
     @property
     def takes_checkpoints(self) -> bool:
         """Whether any observer keeps checkpoints."""
-        return any(hasattr(o, "checkpoint") for o in self.each)
+        return self.communicator.any(any(hasattr(o, "checkpoint") for o in self.each))
 
     @property
     def checkpoint_due(self) -> bool:
         """Whether a checkpoint is due after the current increment."""
         takers: list[Any] = [o for o in self.each if hasattr(o, "checkpoint")]
-        return any(o.checkpoint_due for o in takers) or (bool(takers) and self.stop_requested)
+        due = self.communicator.any(any(o.checkpoint_due for o in takers))
+        return due or (self.takes_checkpoints and self.stop_requested)
 
     def checkpoint(self, checkpoint: Checkpoint, keep: str = "") -> None:
         """Pass a checkpoint to observers that store them; `keep`: ending of a permanent file."""

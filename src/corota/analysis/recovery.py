@@ -24,12 +24,41 @@ if TYPE_CHECKING:
 def recover(
     system: NumberedModel, user: UserBlocks, u: Floats
 ) -> tuple[list[PointFields], dict[str, float]]:
-    """Fields at the quadrature points, and sums over them."""
+    """Fields at the quadrature points of the own elements, and sums over all.
+
+    Raises
+    ------
+    ElementFailure
+        If a value is not a number.
+    """
+    communicator = system.communicator
+    failure: Exception | None = None
+    try:
+        fields, sums, largest = _own(system, user, u)
+    except Exception as error:
+        if communicator.size == 1:
+            raise
+        failure = error
+    if communicator.size > 1:
+        if (failure := communicator.agree(failure)) is not None:
+            raise failure
+        sums = communicator.sum(sums)
+        found = communicator.gather(largest)
+        largest = communicator.broadcast(max(found, key=lambda f: f[0], default=None))
+    system.largest_linear_strain = largest
+    names = ("strain energy", "artificial energy", "plastic work", "thermal work")
+    return fields, dict(zip(names, sums.tolist(), strict=True))
+
+
+def _own(
+    system: NumberedModel, user: UserBlocks, u: Floats
+) -> tuple[list[PointFields], Floats, tuple[float, Material | None]]:
+    """Fields, sums and largest local strain of the own elements."""
     fields, energy = [], 0.0
     largest: tuple[float, Material | None] = (0.0, None)
     artificial = plastic = 0.0
     raw = system.core.recover(system.in_space(u), system.nlgeom)
-    for index, (block, own) in enumerate(zip(system.blocks, raw, strict=True)):
+    for index, (block, own) in enumerate(zip(system.own_blocks, raw, strict=True)):
         for name, values in own["values"].items():
             if not np.isfinite(values).all():
                 bad = int(np.argwhere(~np.isfinite(values))[0][0])
@@ -66,13 +95,7 @@ def recover(
         )
         add_derived(found)
         fields.append(found)
-    system.largest_linear_strain = largest
-    return fields, {
-        "strain energy": energy,
-        "artificial energy": artificial,
-        "plastic work": plastic,
-        "thermal work": system.free.work,
-    }
+    return fields, np.array([energy, artificial, plastic, system.free.work]), largest
 
 
 __all__ = ["recover"]

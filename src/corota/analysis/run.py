@@ -18,6 +18,7 @@ from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
+from corota.analysis.parallel.communicator import ALONE
 from corota.analysis.procedures.localization import localised
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.checkpoint import Checkpoint
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.terms.moving_mass import MovingMass
     from corota.model.model import Model
     from corota.model.steps import Step
@@ -170,6 +172,11 @@ class Analysis:
             self.solver: LinearSolver = make_solver(solver)
         else:
             self.solver = solver
+        #: The processes of this analysis; those of one machine share its cores.
+        self.communicator: Communicator = getattr(self.solver, "communicator", ALONE)
+        if self.communicator.size > 1 and not threads:
+            self.threads = 1
+        self.observers.communicator = self.communicator
         if hasattr(self.solver, "threads"):
             self.solver.threads = self.threads
         self.system: System
@@ -178,7 +185,8 @@ class Analysis:
         #: checkpoint that the run continues from.
         self.begun: list[Begun] = []
         self.as_built: dict[str, str] = {}
-        self.start = self.resumed = start
+        self.start = None if start is None else start.part(self.communicator)
+        self.resumed = self.start
 
     def run(self) -> Results:
         """Run all steps; observers are always notified of the end."""
@@ -219,6 +227,7 @@ class Analysis:
                     warnings.warn(remark, stacklevel=3)
         except CorotaError as caught:
             error = caught
+            self.communicator.leave(caught, caught.exit_code)
             if hasattr(caught, "results"):
                 caught.results = results
                 if stands is not None and stands.failed is not None:
@@ -226,6 +235,7 @@ class Analysis:
             raise
         except BaseException as caught:
             error = caught
+            self.communicator.leave(caught)
             raise
         finally:
             info = results.info
@@ -309,6 +319,7 @@ class Analysis:
         system = self.system
         found |= {"constraints": system.constraints, "pattern": system.pattern}
         found |= {"linear": system.linear, "identity": IDENTITY}
+        found |= {"communicator": self.communicator}
         return found
 
     def mass(self, number: int) -> MovingMass:
@@ -354,6 +365,17 @@ class Analysis:
             system.by_node(failed.at.external),
         )
 
+    def _localised(self, fields: list[PointFields]) -> tuple[int, str] | None:
+        """The first element in which plastic flow localizes, and why it matters."""
+        blocks = self.system.own_blocks
+        found = (localised(block, own) for block, own in zip(blocks, fields, strict=True))
+        own = next((each for each in found if each), None)
+        every = [each for each in self.system.communicator.gather(own) if each]
+        first: tuple[int, str] | None = self.system.communicator.broadcast(
+            every[0] if every else None
+        )
+        return first
+
     def _warn(self, kind: str, note: str) -> None:
         """Issue a warning once, and keep it."""
         if kind not in self.warned:
@@ -391,13 +413,12 @@ class Analysis:
                     f"local strain reaches {strain:.1%} in step {number}, increment {increment}. "
                     + ADVICE,
                 )
-            for block, own in zip(system.blocks, fields, strict=True):
-                if "flow" not in self.warned and (found := localised(block, own)):
-                    label = self.model.mesh.cell_labels[found[0]]
-                    self._warn(
-                        "flow",
-                        f"element {label}, step {number}, increment {increment}: " + found[1],
-                    )
+            if "flow" not in self.warned and (found := self._localised(fields)):
+                label = self.model.mesh.cell_labels[found[0]]
+                self._warn(
+                    "flow", f"element {label}, step {number}, increment {increment}: " + found[1]
+                )
+            fields = system.communicator.fields(fields, system.own_numbers)
         kind = self.steps[number - 1].procedure
         if kind == "dynamic" or (kind == "static" and elements is not None):
             assert state.energies is not None

@@ -87,8 +87,7 @@ class Scales:
         self.ratio = self.stiffest / float(some.min()) if len(some) else 1.0
 
     def _diagonal(self, values: Floats) -> Floats:
-        out: Floats = values[self.system.pattern.diagonal]
-        return out
+        return self.system.pattern.diagonal_of(values)
 
     def commit(self) -> None:
         """Accept the last checked state."""

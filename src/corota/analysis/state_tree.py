@@ -28,7 +28,11 @@ if TYPE_CHECKING:
 #: Attributes that follow from others, by class: linear solvers, memory, clocks, caches.
 DERIVED: dict[str, frozenset[str]] = {
     "Model": frozenset({"start"}),
-    "System": frozenset({"model", "blocks", "largest_linear_strain", "_spare"}),
+    "System": frozenset(
+        {"model", "blocks", "own_blocks", "own_numbers", "largest_linear_strain", "_spare"}
+        | {"communicator"}
+    ),
+    "SymmetricPattern": frozenset({"whole"}),
     "Conditions": frozenset({"_known", "names", "_runs_on", "_moves_on"}),
     "SaddlePointSystem": frozenset({"_resolve", "_link"}),
     "State": frozenset({"resumption", "recover"}),

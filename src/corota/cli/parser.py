@@ -7,7 +7,7 @@ import argparse
 from typing import NoReturn
 
 #: Names of :data:`corota.analysis.linear.solvers.SOLVERS`, which would load numerics.
-SOLVERS = ("multifrontal", "pardiso", "petsc", "superlu")
+SOLVERS = ("multifrontal", "pardiso", "petsc", "petsc:gamg", "superlu")
 
 EPILOG = """\
 exit codes:
@@ -312,7 +312,7 @@ def _solver(parser: argparse.ArgumentParser) -> None:
         "--solver",
         choices=SOLVERS,
         default=SOLVERS[0],
-        help=f"direct solver of linear systems (default: {SOLVERS[0]})",
+        help=f"solver of linear systems (default: {SOLVERS[0]})",
     )
 
 

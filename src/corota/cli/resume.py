@@ -8,14 +8,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.run import carry_out
+from corota.cli.together import together
 from corota.errors import FileError
 
 if TYPE_CHECKING:
+    from corota.analysis.parallel.communicator import Communicator
     from corota.cli.terminal import Terminal
 
 
 def run(args: Any, terminal: Terminal) -> int:
     """Resume a job; return the exit code."""
+    with together(args, terminal) as communicator:
+        return _run(args, terminal, communicator)
+
+
+def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
     from corota import __version__
     from corota.analysis.state_tree import UnsuitableState
     from corota.io.checkpoint import newest, rebuilt
@@ -39,6 +46,8 @@ def run(args: Any, terminal: Terminal) -> int:
     terminal.line(f"From {saved.path}: {saved.state.where}")
     files = files_of(saved)
     try:
-        return carry_out(model, steps, files, terminal, args, begin, saved.state)
+        return carry_out(
+            model, steps, files, terminal, args, begin, saved.state, communicator=communicator
+        )
     except UnsuitableState as error:
         raise foreign(saved, error) from None

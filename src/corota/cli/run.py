@@ -15,13 +15,15 @@ from typing import TYPE_CHECKING, Any
 
 from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
-from corota.errors import CorotaError, ModelError, UnsupportedError
+from corota.cli.together import together
+from corota.errors import CorotaError, ModelError
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.analysis.checkpoint import Checkpoint
+    from corota.analysis.parallel.communicator import Communicator
     from corota.cli.terminal import Terminal
     from corota.io.job import JobFiles
     from corota.model.model import Model
@@ -108,13 +110,17 @@ def _second(numbers: set[int]) -> Iterator[None]:
 
 def run(args: Any, terminal: Terminal) -> int:
     """Run a deck; return the exit code."""
+    with together(args, terminal) as communicator:
+        return _run(args, terminal, communicator)
+
+
+def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
     from corota import __version__
     from corota.io.job import CHECKPOINT_SECONDS, JobFiles
     from corota.io.provenance import place_of, write_provenance
     from corota.io.writers import STREAMS
 
     begin = time.perf_counter()
-    check_alone()
     terminal.line(terminal.color(f"Corota {__version__}", "bold") + f"  {args.deck}")
     model = read_input(args.deck, args)
     read = time.perf_counter() - begin
@@ -128,7 +134,7 @@ def run(args: Any, terminal: Terminal) -> int:
         terminal.line(f"  note: {note}")
     if not model.steps:
         raise ModelError(f"{args.deck}: there is no *STEP, so there is nothing to solve")
-    if args.provenance:
+    if args.provenance and communicator.first:
         write_provenance(Path(args.output), model.name, args.deck)
     every = args.checkpoint_every
     streams = [f for f in args.formats or ["vtkhdf"] if f in STREAMS]
@@ -146,24 +152,7 @@ def run(args: Any, terminal: Terminal) -> int:
         checkpoint_seconds=CHECKPOINT_SECONDS if every is None else 0.0,
         source=place_of(args.deck),
     )
-    return carry_out(model, None, files, terminal, args, begin)
-
-
-def check_alone() -> None:
-    """Refuse a run that was started several times: all would write the same files.
-
-    Raises
-    ------
-    UnsupportedError
-        If the starter of MPI programs says so.
-    """
-    for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
-        count = os.environ.get(name, "")
-        if count.isdigit() and int(count) > 1:
-            raise UnsupportedError(
-                f"mpiexec started {count} processes, and a run takes one: start it without "
-                "mpiexec, or run many variants by corota sweep"
-            )
+    return carry_out(model, None, files, terminal, args, begin, communicator=communicator)
 
 
 def carry_out(
@@ -174,6 +163,8 @@ def carry_out(
     args: Any,
     begin: float,
     start: Checkpoint | None = None,
+    *,
+    communicator: Communicator,
 ) -> int:
     """Solve, from a checkpoint if there is one, and report; return the exit code."""
     from corota.analysis.run import solve
@@ -184,9 +175,16 @@ def carry_out(
     observers: list[Any] = [files, progress, stop]
     if terminal.json:
         observers.insert(1, Events(terminal.record))
+    if not communicator.first:
+        observers = [stop]
     whole = any(f in ("npz", "vtu") for f in formats)
     with (
-        _served(files, model.name, terminal, getattr(args, "serve", None)),
+        _served(
+            files,
+            model.name,
+            terminal,
+            getattr(args, "serve", None) if communicator.first else None,
+        ),
         files,
         stop.listening(),
         warnings.catch_warnings(),
@@ -212,7 +210,7 @@ def carry_out(
         if files.error is not None:
             raise files.error
     for ending in formats:
-        if ending in ("npz", "vtu"):
+        if ending in ("npz", "vtu") and communicator.first:
             files.paths.append(results.write(files.folder / f"{model.name}.{ending}"))
     for note in results.notes:
         terminal.line(f"  note: {note}")

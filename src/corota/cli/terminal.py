@@ -30,11 +30,15 @@ class Terminal:
     def __init__(self, quiet: bool = False, json: bool = False) -> None:
         self.quiet, self.json = quiet, json
         self._failed: OSError | None = None
-        self._gone = False
+        self._gone = self._mute = False
         self.live = self._is_terminal(sys.stdout) and not quiet and not json
         plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
         self.colored = self.live and not plain
         self._open = False
+
+    def mute(self) -> None:
+        """Print nothing from now on, errors included: another process prints them."""
+        self.quiet, self.json, self.live, self._mute = True, False, False, True
 
     def _is_terminal(self, stream: TextIO | None) -> bool:
         try:
@@ -86,6 +90,8 @@ class Terminal:
     def _stderr(self, kind: str, text: str) -> None:
         if self._open:
             self._write(self._clear())
+        if self._mute:
+            return
         with contextlib.suppress(OSError, ValueError, AttributeError):
             sys.stderr.write(f"corota: {kind}: {_printable(_plain(text, False), sys.stderr)}\n")
             sys.stderr.flush()

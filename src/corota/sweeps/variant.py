@@ -62,11 +62,14 @@ class Outcome:
 
 def calculate(job: Job, row: Mapping[str, Any]) -> Outcome:
     """Run one row; errors are part of the outcome."""
+    from corota.analysis.parallel.communicator import separate_runs
+
     outcome, begin = Outcome(), time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            results = solved(job.build(**row))
+            with separate_runs():
+                results = solved(job.build(**row))
             outcome.values = {name: number(name, m(results)) for name, m in job.measures.items()}
             outcome.notes += [*results.model.notes, *results.notes]
         except Exception as error:

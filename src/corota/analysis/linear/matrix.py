@@ -2,6 +2,9 @@
 
 Tangents, masses and dampings share the pattern of the elements. Their values are plain arrays of
 shape (nnz,); the pattern provides all operations that depend on positions.
+
+On several processes each has a pattern and values of its own elements, and the matrix is their sum.
+What all processes compute, such as point masses, is added by one of them.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -12,10 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.parallel.communicator import ALONE
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
+    from corota.analysis.parallel.communicator import Communicator
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -34,11 +40,23 @@ class SymmetricPattern:
         Node of each equation; equations of one node are contiguous.
     after : ndarray of int, optional
         Equations of multipliers, to be eliminated after what they connect.
+    communicator : Communicator, optional
+        Processes whose values add up to the matrix.
     """
 
+    #: One process has the whole matrix.
+    communicator: Communicator = ALONE
+
     def __init__(
-        self, indptr: NDArray[Any], indices: NDArray[Any], node: Ints, after: Ints | None = None
+        self,
+        indptr: NDArray[Any],
+        indices: NDArray[Any],
+        node: Ints,
+        after: Ints | None = None,
+        communicator: Communicator = ALONE,
     ) -> None:
+        if communicator is not ALONE:
+            self.communicator = communicator
         self.indptr, self.indices, self.node, self.after = indptr, indices, node, after
         self.n, self.nnz = len(indptr) - 1, len(indices)
         self._constrained: NDArray[np.bool_] | None = None
@@ -74,7 +92,55 @@ class SymmetricPattern:
         found = np.searchsorted(self.keys, wanted)
         return found, np.take(self.keys, found, mode="clip") == wanted
 
+    def owned_places(
+        self, rows: Ints, columns: Ints
+    ) -> tuple[Ints, NDArray[np.bool_], NDArray[np.bool_]]:
+        """Places of entries (row <= column) that all processes want to add.
+
+        Returns
+        -------
+        places : ndarray of int
+        known : ndarray of bool
+            Whether the pattern of any process has the entry.
+        mine : ndarray of bool
+            Whether this process adds it.
+        """
+        places, known = self.places(rows, columns)
+        size, rank = self.communicator.size, self.communicator.rank
+        if size == 1:
+            return places, known, known
+        code = self.communicator.largest(np.where(known, size - rank, 0))
+        return places, code > 0, code == size - rank
+
+    @cached_property
+    def whole(self) -> SymmetricPattern:
+        """The pattern of the sum, on every process."""
+        if self.communicator.size == 1:
+            return self
+        keys = self.communicator.concatenate(self.keys)
+        keys = np.unique(keys)
+        counts = np.bincount(keys // self.n, minlength=self.n)
+        start = np.concatenate([[0], np.cumsum(counts)])
+        return SymmetricPattern(start, keys % self.n, self.node, self.after)
+
     # -- values ------------------------------------------------------------------------
+
+    def gathered(self, values: Floats) -> Floats:
+        """Values of the sum for the pattern :attr:`whole`, on every process."""
+        if self.communicator.size == 1:
+            return values
+        out = self.whole.zeros()
+        out[np.searchsorted(self.whole.keys, self.keys)] = values
+        return self.communicator.sum(out)
+
+    def diagonal_of(self, values: Floats) -> Floats:
+        """The diagonal of the sum, shape (n,)."""
+        return self.communicator.sum(values[self.diagonal])
+
+    def add_diagonal(self, values: Floats, more: Floats) -> None:
+        """Add to the diagonal, in place, what all processes have computed."""
+        if self.communicator.first:
+            values[self.diagonal] += more
 
     def zeros(self) -> Floats:
         """Values of a matrix of zeros."""
@@ -85,9 +151,9 @@ class SymmetricPattern:
         found = np.zeros(self.n)
         np.maximum.at(found, self.rows, np.abs(values))
         np.maximum.at(found, self.columns, np.abs(values))
-        return found
+        return self.communicator.largest(found)
 
-    def upper(self, values: Floats) -> Any:
+    def _upper(self, values: Floats) -> Any:
         """The upper triangle, scipy CSC."""
         import scipy.sparse as sp
 
@@ -95,17 +161,17 @@ class SymmetricPattern:
         return sp.csc_array(entries, shape=(self.n, self.n))
 
     def full(self, values: Floats) -> Any:
-        """The whole matrix, scipy sparse."""
+        """Both triangles of the sum, scipy sparse, on every process."""
         import scipy.sparse as sp
 
-        upper = self.upper(values)
+        upper = self.whole._upper(self.gathered(values))
         return upper + sp.triu(upper, 1).T
 
     def multiply(self, values: Floats, x: Floats) -> Floats:
         """Product with a vector."""
-        upper = self.upper(values)
+        upper = self._upper(values)
         out: Floats = upper @ x + upper.T @ x - values[self.diagonal] * x
-        return out
+        return self.communicator.sum(out)
 
     def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:
         """Replace rows and columns of constrained unknowns by a positive diagonal, in place."""
@@ -149,21 +215,26 @@ class AssembledPattern(SymmetricPattern):
     Parameters
     ----------
     core : corota._core.Problem
+    communicator : Communicator
     """
 
-    def __init__(self, core: Any) -> None:
-        super().__init__(core.indptr, core.indices, core.node_of_dof.astype(np.int64))
+    def __init__(self, core: Any, communicator: Communicator = ALONE) -> None:
+        node = core.node_of_dof.astype(np.int64)
+        super().__init__(core.indptr, core.indices, node, communicator=communicator)
         self._core = core
 
     def multiply(self, values: Floats, x: Floats) -> Floats:
         """Product with a vector."""
         out: Floats = self._core.multiply(values, x)
-        return out
+        return self.communicator.sum(out)
 
     def impose(
         self, values: Floats, rhs: Floats, moved: Floats, constrained: NDArray[np.bool_]
     ) -> None:
         """See :meth:`SymmetricPattern.impose`."""
+        if self.communicator.size > 1:
+            super().impose(values, rhs, moved, constrained)
+            return
         self._core.reduce(values, rhs, moved, constrained)
 
     def mask(self, values: Floats, constrained: NDArray[np.bool_]) -> None:

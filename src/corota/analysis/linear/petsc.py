@@ -8,10 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.linear.rows import Rows
+from corota.analysis.parallel.communicator import ALONE
+from corota.analysis.parallel.mpi import processes
 from corota.errors import ResourceError, SingularError, UnsupportedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from corota.analysis.parallel.communicator import Communicator
 
     Inertia = tuple[int, int, int]
     Floats = NDArray[np.float64]
@@ -60,12 +65,17 @@ def load_petsc() -> Any:
 
 
 class Petsc:
-    """MUMPS in PETSc, on this process: LDLᵀ with inertia, or LU if not symmetric.
+    """MUMPS in PETSc: LDLᵀ with inertia, or LU if not symmetric; on all processes together.
+
+    With several processes each gives the values of its own elements; see
+    :class:`corota.analysis.linear.rows.Rows`. Right-hand sides and solutions are whole on each.
 
     Parameters
     ----------
     symmetric : bool
         Whether the matrix comes as an upper triangle; then with inertia.
+    communicator : Communicator, optional
+        By default that of all processes that were started together.
 
     Raises
     ------
@@ -73,12 +83,25 @@ class Petsc:
         PETSc is not installed.
     """
 
-    def __init__(self, symmetric: bool = True) -> None:
+    #: Whether PETSc gets both triangles of a symmetric matrix.
+    both = False
+
+    def __init__(self, symmetric: bool = True, communicator: Communicator | None = None) -> None:
         self._petsc = load_petsc()
+        if communicator is None:
+            communicator = ALONE if self._petsc.COMM_WORLD.getSize() == 1 else processes()
+        self.communicator = communicator
         self._symmetric = symmetric
         self._n = 0
         self._matrix: Any = None
         self._solver: Any = None
+
+    @property
+    def _handle(self) -> Any:
+        """Communicator of PETSc's objects."""
+        if self.communicator.size > 1:
+            return self.communicator.handle  # type: ignore[attr-defined]
+        return self._petsc.COMM_SELF
 
     def analyze(
         self,
@@ -88,23 +111,14 @@ class Petsc:
         after: NDArray[Any] | None = None,
     ) -> None:
         """Keep the pattern (see `LinearSolver`); MUMPS orders it with the first factorization."""
-        import scipy.sparse as sp
-
         self._release()
-        n = self._n = len(indptr) - 1
-        # Rows instead of columns, with every diagonal entry: PETSc needs both.
-        starts: NDArray[np.int64] = np.asarray(indptr, dtype=np.int64)
-        columns = np.repeat(np.arange(n), starts[1:] - starts[:-1])
-        rows, every = np.asarray(indices, np.int64), np.arange(n)
-        number = np.concatenate([np.arange(1, len(rows) + 1), np.zeros(n, np.int64)])
-        where = np.concatenate([rows, every]), np.concatenate([columns, every])
-        place = sp.coo_array((number, where), shape=(n, n)).tocsr()
-        place.sort_indices()
-        self._place = place.data  # 0: an entry that the caller does not have
+        self._n = len(indptr) - 1
+        self._rows = Rows(
+            self.communicator, indptr, indices, node_of_dof, self._symmetric, self.both
+        )
         kind = self._petsc.IntType
-        self._rows = place.indptr.astype(kind), place.indices.astype(kind)
-        self._row = np.repeat(every, np.diff(place.indptr).astype(np.int64))
-        self._column = place.indices.astype(np.int64)
+        self._starts = self._rows.indptr.astype(kind)
+        self._columns = self._rows.indices.astype(kind)
 
     def factorize(self, data: Floats) -> Inertia | None:
         """Factorize values of shape (nnz,); returns the inertia if symmetric.
@@ -116,20 +130,7 @@ class Petsc:
         ResourceError
             MUMPS has not enough memory.
         """
-        if not np.all(np.isfinite(data)):
-            raise SingularError("the matrix has entries that are not finite")
-        values = np.concatenate([[0.0], data])[self._place]
-        self._scale = self._scale_of(values) if self._symmetric else np.ones(self._n)
-        values = self._values = values * self._scale[self._row] * self._scale[self._column]
-        if self._matrix is None:
-            make = self._petsc.Mat()
-            make = make.createSBAIJ if self._symmetric else make.createAIJ
-            shape, block = (self._n, self._n), ((1,) if self._symmetric else ())
-            own = self._petsc.COMM_SELF
-            self._matrix = make(shape, *block, csr=(*self._rows, values), comm=own)
-        else:
-            self._matrix.setValuesCSR(*self._rows, values)
-            self._matrix.assemble()
+        self._fill(data)
         factor = self._factorized()
         if found := factor.getMumpsInfog(_FOUND_NULL):
             motions = [self._null_vector(factor, k + 1) for k in range(min(found, _MOST))]
@@ -139,6 +140,33 @@ class Petsc:
         self._refuse_singular()
         negative, zero, positive = (int(count) for count in factor.getInertia())
         return positive, negative, zero
+
+    def _fill(self, data: Floats) -> None:
+        """Put values into the matrix, scaled if it is symmetric.
+
+        Raises
+        ------
+        SingularError
+            There is a value that is not finite.
+        """
+        if self.communicator.any(not np.all(np.isfinite(data))):
+            raise SingularError("the matrix has entries that are not finite")
+        rows = self._rows
+        values = rows.values(data)
+        self._scale = self._scale_of(values) if self._symmetric else np.ones(self._n)
+        values = self._values = values * self._scale[rows.rows] * self._scale[rows.indices]
+        csr = self._starts, self._columns, values
+        if self._matrix is None:
+            self._matrix = self._new_matrix((rows.last - rows.first, self._n), csr)
+        else:
+            self._matrix.setValuesCSR(*csr)
+            self._matrix.assemble()
+
+    def _new_matrix(self, shape: tuple[int, int], csr: tuple[Any, Any, Any]) -> Any:
+        make = self._petsc.Mat()
+        make = make.createSBAIJ if self._symmetric else make.createAIJ
+        block = (1,) if self._symmetric else ()
+        return make((shape, shape), *block, csr=csr, comm=self._handle)
 
     def _factorized(self) -> Any:
         """The factor of the matrix as it stands, with as much memory as pivoting needs."""
@@ -167,7 +195,7 @@ class Petsc:
         raise SingularError(f"MUMPS stopped with error {error}")
 
     def _new_solver(self, share: int) -> Any:
-        solver = self._petsc.KSP().create(self._petsc.COMM_SELF)
+        solver = self._petsc.KSP().create(self._handle)
         solver.setType("preonly")
         solver.setOperators(self._matrix)
         factorization = solver.getPC()
@@ -191,33 +219,38 @@ class Petsc:
         SingularError
             The residual is not that of a solution.
         """
-        b = (np.asarray(rhs, dtype=float).T * self._scale).T
+        order = self._rows.order
+        b = (np.asarray(rhs, dtype=float)[order].T * self._scale).T
         x = self._solve_scaled(b)
         self._check_growth(x, b)
-        scaled: Floats = (x.T * self._scale).T
-        return scaled
+        out = np.empty_like(x)
+        out[order] = (x.T * self._scale).T
+        return out
 
     def _scale_of(self, values: Floats) -> Floats:
         """Powers of two that bring the diagonal, or the largest coupling, of equations near one.
 
         So singular and soft are told apart in any system of units.
         """
-        diagonal, size = np.zeros(self._n), np.abs(values)
-        on = self._row == self._column
-        diagonal[self._row[on]] = size[on]
+        rows, communicator = self._rows, self.communicator
+        size = np.abs(values)
+        own = np.zeros(self._n)
+        on = rows.rows == rows.indices
+        own[rows.rows[on]] = size[on]
+        diagonal = communicator.sum(own)
         scale = np.where(diagonal > 0.0, _inverse_power(np.sqrt(diagonal)), 0.0)
         bare = scale == 0.0
         if bare.any():
             coupling = np.zeros(self._n)
-            np.maximum.at(coupling, self._row, size * scale[self._column])
-            np.maximum.at(coupling, self._column, size * scale[self._row])
-            scale[bare] = _inverse_power(coupling[bare])
+            np.maximum.at(coupling, rows.rows, size * scale[rows.indices])
+            np.maximum.at(coupling, rows.indices, size * scale[rows.rows])
+            scale[bare] = _inverse_power(communicator.largest(coupling)[bare])
         return scale
 
     def _refuse_singular(self) -> None:
         """Refuse a matrix that lets a motion go at no cost beyond rounding."""
         motion = np.random.default_rng(1).uniform(-1.0, 1.0, self._n)
-        norm = float(np.abs(self._values).max(initial=0.0))
+        norm = self._norm()
         for step in range(_STEPS):
             before = float(np.abs(motion).max(initial=0.0))
             motion = self._solve_scaled(motion)
@@ -241,38 +274,51 @@ class Petsc:
 
     def _singular(self, why: str, motions: list[Floats]) -> SingularError:
         """The refusal, with motions of the scaled equations that cost nothing."""
-        modes = np.array(motions) * self._scale
+        modes = np.empty((len(motions), self._n))
+        modes[:, self._rows.order] = np.array(motions) * self._scale
         modes /= np.abs(modes).max(axis=1, initial=1e-300)[:, None]
         equation = int(np.argmax(np.abs(modes[0])))
         return SingularError(f"matrix is singular: {why}", equation, modes[0], modes)
 
     def _solve_scaled(self, b: Floats) -> Floats:
-        b = np.array(b, dtype=float, order="F")
+        rows, handle = self._rows, self._handle
         x = np.zeros_like(b, order="F")
-        own = self._petsc.COMM_SELF
-        for given, found in zip(b.reshape(self._n, -1).T, x.reshape(self._n, -1).T, strict=True):
-            right = self._petsc.Vec().createWithArray(given, comm=own)
-            left = self._petsc.Vec().createWithArray(found, comm=own)
-            self._solver.solve(right, left)
+        for given, found in zip(_columns(b), _columns(x), strict=True):
+            own = np.array(given[rows.first : rows.last])
+            result = np.zeros_like(own)
+            right = self._petsc.Vec().createWithArray(own, (len(own), self._n), comm=handle)
+            left = self._petsc.Vec().createWithArray(result, (len(own), self._n), comm=handle)
+            self._solve_vector(right, left)
             left.destroy()
             right.destroy()
+            found[:] = rows.whole(result)
         return x
+
+    def _solve_vector(self, right: Any, left: Any) -> None:
+        self._solver.solve(right, left)
 
     def _product(self, x: Floats) -> Floats:
         """Scaled matrix times vectors of shape (n,) or (n, k)."""
         import scipy.sparse as sp
 
-        starts, columns = self._rows
-        matrix = sp.csr_array((self._values, columns, starts), shape=(self._n, self._n))
-        product: Floats = matrix @ x
-        if self._symmetric:
-            product += matrix.T @ x
-            product -= (matrix.diagonal() * x.T).T
-        return product
+        rows = self._rows
+        shape = rows.last - rows.first, self._n
+        matrix = sp.csr_array((self._values, self._columns, self._starts), shape=shape)
+        own = slice(rows.first, rows.last)
+        product = np.zeros_like(x)
+        product[own] = matrix @ x
+        if self._symmetric and not self.both:
+            product += matrix.T @ x[own]
+            product[own] -= (matrix.diagonal(rows.first) * x[own].T).T
+        return self.communicator.sum(product)
+
+    def _norm(self) -> float:
+        """Largest entry."""
+        return self.communicator.greatest(float(np.abs(self._values).max(initial=0.0)))
 
     def _check_growth(self, x: Floats, b: Floats) -> None:
         product = self._product(x)
-        largest = np.max(np.abs(self._values), initial=0.0)
+        largest = self._norm()
         size = largest * np.max(np.abs(x), initial=0.0) + np.max(np.abs(b), initial=0.0)
         if not np.max(np.abs(b - product), initial=0.0) <= _REFUSE_ABOVE * size:
             raise SingularError("matrix is singular: the residual of the solution is too large")
@@ -282,6 +328,11 @@ class Petsc:
             if held is not None:
                 held.destroy()
         self._solver = self._matrix = None
+
+
+def _columns(x: Floats) -> list[Floats]:
+    """Views of the columns of a vector or matrix."""
+    return [x] if x.ndim == 1 else list(x.T)
 
 
 def _inverse_power(size: Floats) -> Floats:

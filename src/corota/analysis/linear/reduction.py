@@ -153,7 +153,12 @@ class Reduction:
         counts = np.bincount(unique // m, minlength=m)
         start = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint64)
         #: Of the matrix of the dofs that stay.
-        self.pattern = SymmetricPattern(start, (unique % m).astype(np.uint32), whole.node[free])
+        self.pattern = SymmetricPattern(
+            start,
+            (unique % m).astype(np.uint32),
+            whole.node[free],
+            communicator=whole.communicator,
+        )
         self.plain_target = np.searchsorted(unique, keys[0])
         self.terms = self._terms(raw[0], unique, some)
         self.geometric_terms = self._terms(raw[1], unique, None)
@@ -180,7 +185,8 @@ class Reduction:
         out = self.pattern.zeros()
         out[self.plain_target] = values[self.plain]
         self.terms.add(out, values, self.turned.numbers(turned.matrix))
-        self.geometric_terms.add(out, geometric_stiffness, self.tied.numbers(g))
+        if self.pattern.communicator.first:
+            self.geometric_terms.add(out, geometric_stiffness, self.tied.numbers(g))
         return out
 
     def whole(self, rows: Rows) -> Any:

@@ -20,6 +20,7 @@ import numpy as np
 from corota.analysis.linear.matrix import SymmetricPattern
 from corota.analysis.linear.reduction import _union
 from corota.analysis.linear.triplets import Triplets
+from corota.analysis.parallel.communicator import ALONE
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.system import LinearSystem
+    from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
 
     Floats = NDArray[np.float64]
@@ -107,8 +109,13 @@ class SaddlePointSystem:
         Multipliers.
     """
 
+    #: Processes whose values add up to the matrix.
+    communicator: Communicator = ALONE
+
     def __init__(self, system: Reduced, n: int) -> None:
         self.system, self.n = system, n
+        if system.constraints.pattern.communicator is not ALONE:
+            self.communicator = system.constraints.pattern.communicator
         self.free, base = system.constraints.free, system.constraints.pattern
         self.nf = len(self.free)
         self.size = self.nf + n
@@ -135,7 +142,7 @@ class SaddlePointSystem:
         wanted = columns * self.size + rows
         if len(self.keys):
             at = np.minimum(np.searchsorted(self.keys, wanted), len(self.keys) - 1)
-            if np.array_equal(self.keys[at], wanted):
+            if self.communicator.all(np.array_equal(self.keys[at], wanted)):
                 return at
         self._grow(np.concatenate([wanted, spare()]))
         return np.searchsorted(self.keys, wanted)
@@ -152,7 +159,7 @@ class SaddlePointSystem:
         self.columns = self.keys // self.size
         counts = np.bincount(self.columns, minlength=self.size)
         start = np.concatenate([[0], np.cumsum(counts)])
-        self.pattern = SymmetricPattern(start, self.rows, self.node, self.after)
+        self.pattern = SymmetricPattern(start, self.rows, self.node, self.after, self.communicator)
         self.diagonal = self.pattern.diagonal
         self._held = None
 
@@ -207,7 +214,8 @@ class SaddlePointSystem:
             places = self._place(upper.rows, upper.columns, lambda: self._spare(coupling, link))
             data = np.zeros(len(self.keys))
             data[self._target] = values
-            np.add.at(data, places, upper.values)
+            if self.communicator.first:
+                np.add.at(data, places, upper.values)
             moved = np.zeros_like(b)
             moved[: self.nf] = du_prescribed[self.free]
             for column, move in zip(b.T, moved.T, strict=True):
@@ -254,6 +262,17 @@ class SaddlePointSystem:
 
     def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
         """Remove redundant constraints, in place; returns their multipliers."""
+        # The first process has their rows.
+        eliminated = self.communicator.broadcast(self._dependent(data))
+        if len(eliminated):
+            mine = np.isin(self.columns, eliminated + self.nf)
+            data[mine] = 0.0
+            data[self.diagonal[eliminated + self.nf]] = 1.0
+            b[eliminated + self.nf] = 0.0
+        return [int(k) for k in eliminated]
+
+    def _dependent(self, data: Floats) -> Ints:
+        """Multipliers of constraints that follow from others."""
         import scipy.linalg
 
         own = self.columns >= self.nf
@@ -261,7 +280,7 @@ class SaddlePointSystem:
         bare = data[self.diagonal[self.nf :]] == 0.0
         chosen = np.flatnonzero(bare)
         if not len(chosen) or len(chosen) > MOST_DENSE:
-            return []
+            return np.zeros(0, np.int64)
         place = np.full(self.n, -1, np.int64)
         place[chosen] = np.arange(len(chosen))
         column = place[self.columns[inner] - self.nf]
@@ -274,13 +293,7 @@ class SaddlePointSystem:
         _, r, order = scipy.linalg.qr(table, mode="economic", pivoting=True)
         size = np.zeros(len(chosen))
         size[: min(r.shape)] = np.abs(np.diag(r))
-        eliminated = chosen[order[size <= DEPENDENT]]
-        if len(eliminated):
-            mine = np.isin(self.columns, eliminated + self.nf)
-            data[mine] = 0.0
-            data[self.diagonal[eliminated + self.nf]] = 1.0
-            b[eliminated + self.nf] = 0.0
-        return [int(k) for k in eliminated]
+        return chosen[order[size <= DEPENDENT]]
 
     def _named(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
@@ -344,7 +357,7 @@ class SaddlePointSystem:
         np.add.at(out, r, v * x[c])
         off = r != c
         np.add.at(out, c[off], v[off] * x[r[off]])
-        return out
+        return self.communicator.sum(out)
 
     def _solve(self, data: Floats, rest: Triplets, b: Floats) -> tuple[Floats, int]:
         linear = self.system.linear
@@ -375,6 +388,7 @@ class SaddlePointSystem:
         r, c = self.rows, self.columns
         np.add.at(size, r, np.abs(data * v[c]))
         np.add.at(size, c, np.abs(data * v[r]))
+        size = self.communicator.sum(size)
         left = np.abs(self._multiply(data, v))
         return bool((left <= NULL * size.max()).all())
 
@@ -461,8 +475,9 @@ class SaddlePointSystem:
         """A power of two for all multipliers that makes their rows as large as the tangent."""
         scale = np.ones(self.size)
         inner = self.columns < self.nf
-        tangent = float(np.abs(data[inner]).max(initial=0.0))
-        border = float(np.abs(data[~inner & (self.rows < self.nf)]).max(initial=0.0))
+        borders = ~inner & (self.rows < self.nf)
+        tangent = self.communicator.greatest(float(np.abs(data[inner]).max(initial=0.0)))
+        border = self.communicator.greatest(float(np.abs(data[borders]).max(initial=0.0)))
         if min(tangent, border) > 0.0:
             scale[self.nf :] = 2.0 ** round(math.log2(tangent / border))
         return scale

@@ -185,6 +185,7 @@ SOLVERS: dict[str, Callable[..., LinearSolver]] = {
     "superlu": SuperLU,
     "pardiso": lazy("corota.analysis.linear.pardiso:Pardiso"),
     "petsc": lazy("corota.analysis.linear.petsc:Petsc"),
+    "petsc:gamg": lazy("corota.analysis.linear.multigrid:PetscMultigrid"),
 }
 
 

@@ -49,7 +49,7 @@ def diagonal(system: System) -> Floats:
     """Lumped mass by dof, shape (n_dofs,) [mass], [mass*length^2] for rotations."""
     values = Inertia(system, "lumped").matrix
     assert values is not None
-    return values[system.pattern.diagonal]
+    return system.pattern.diagonal_of(values)
 
 
 def stable_increment(system: System, u: Floats, mass: Floats) -> float:

@@ -112,7 +112,7 @@ class Attachments:
         system = self.system
         u, v = system.in_space(u), system.in_space(v)
         force: Floats = self.ground * v
-        values[system.pattern.diagonal] += weight * self.ground
+        system.pattern.add_diagonal(values, weight * self.ground)
         if not len(self.c):
             return system.at_nodes(force), None
         axis = self._axes(u)

@@ -56,7 +56,7 @@ class Damping(Term):
         if self.mass is not None:
             force += system.product(self.mass, v)
             values += weight * self.mass
-        if self.elements.blocks:
+        if self.elements.any:
             begin, end, dt = point.between or (point.u, point.u, 0.0)
             force += self.elements.add(begin, end, v, dt, weight, values)
         attached = self.inertia.attached
@@ -100,7 +100,7 @@ def damping_matrix(
     """
     values = mass_damping(system, u, mass)
     elements = ViscousElements(system, per_stiffness)
-    if elements.blocks:
+    if elements.any:
         values = system.pattern.zeros() if values is None else values
         elements.add(u, u, np.zeros(system.n_dofs), 0.0, 1.0, values)
     return values
@@ -110,7 +110,7 @@ def mass_damping(system: System, u: Floats, mass: str) -> Floats | None:
     """Damping of materials per mass, upper triangle; None where there is none."""
     parts = []
     for alpha in sorted({b.section.material.rayleigh[0] for b in system.blocks} - {0.0}):
-        chosen = [b.section.material.rayleigh[0] == alpha for b in system.blocks]
+        chosen = [b.section.material.rayleigh[0] == alpha for b in system.own_blocks]
         system.core.set_active(chosen)
         try:
             parts.append(alpha * _mass(system, u, mass))

@@ -40,7 +40,7 @@ class Elements(Term):
 
     def __init__(self, system: NumberedModel, conditions: Conditions) -> None:
         self.system, self.conditions = system, conditions
-        self.user = UserBlocks(system.core, system.blocks)
+        self.user = UserBlocks(system.core, system.own_blocks)
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Fill in forces, their sizes and, unless it is empty, the tangent.
@@ -59,7 +59,8 @@ class Elements(Term):
             system.core.assemble(here, nlgeom, at.internal, at.scale, at.values, about)
 
         self._run(here, assemble)
-        at.internal = system.at_nodes(at.internal)
+        at.internal = system.at_nodes(system.communicator.sum(at.internal))
+        at.scale = system.communicator.sum(at.scale)
 
     def add_conserving(self, point: StatePoint, begun: Floats, mass: str, at: Evaluation) -> Floats:
         """Fill in the mid-point forces of the energy-momentum scheme; the tangent is with inertia.
@@ -92,8 +93,9 @@ class Elements(Term):
             )
 
         self._run(x1, assemble, at.values)
-        at.internal = system.at_nodes(at.internal)
-        return system.at_nodes(both)
+        at.internal = system.at_nodes(system.communicator.sum(at.internal))
+        at.scale = system.communicator.sum(at.scale)
+        return system.at_nodes(system.communicator.sum(both))
 
     def _run(
         self, here: Floats, assemble: Callable[[], None], between: Floats | None = None
@@ -102,6 +104,25 @@ class Elements(Term):
 
         Forces `between` two states have the tangent that is given.
         """
+        if self.system.communicator.size > 1:
+            self._run_together(here, assemble, between)
+            return
+        self._run_own(here, assemble, between)
+
+    def _run_together(
+        self, here: Floats, assemble: Callable[[], None], between: Floats | None
+    ) -> None:
+        """The same on several processes: all fail if one does."""
+        failure: Exception | None = None
+        try:
+            self._run_own(here, assemble, between)
+        except Exception as error:
+            failure = error
+        if (failure := self.system.communicator.agree(failure)) is not None:
+            raise failure
+
+    def _run_own(self, here: Floats, assemble: Callable[[], None], between: Floats | None) -> None:
+        """The same for the own elements."""
         system, user = self.system, self.user
         try:
             with system.timed("assemble"):
@@ -113,7 +134,7 @@ class Elements(Term):
 
     def _failure(self, why: str, failed: list[tuple[int, int]]) -> ElementFailure:
         labels = self.system.model.mesh.cell_labels
-        found = [str(labels[self.system.blocks[b].cells[e]]) for b, e in failed]
+        found = [str(labels[self.system.own_blocks[b].cells[e]]) for b, e in failed]
         shown = ", ".join(found[:5]) + (", ..." if len(found) > 5 else "")
         known = why if why == NO_NUMBER else "inverted or not converged"
         return ElementFailure(f"{known}: element {shown}")
@@ -135,7 +156,8 @@ class Elements(Term):
 
     def plastic_increment(self) -> float:
         """Largest growth of the equivalent plastic strain since the last commit."""
-        return max(float(self.system.core.plastic_increment()), self.user.plastic_increment())
+        own = max(float(self.system.core.plastic_increment()), self.user.plastic_increment())
+        return self.system.communicator.greatest(own)
 
     def commit(self) -> None:
         """Accept the last evaluated state."""

@@ -103,7 +103,7 @@ class Inertia(Term):
         zero = np.zeros(system.n_dofs)
         values = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
         self.matrix: Floats | None = None if coupled else values
-        self._own = np.abs(values[system.pattern.diagonal])
+        self._own = np.abs(system.pattern.diagonal_of(values))
         # Elements of such nodes alone keep their mass.
         self.massless &= self._own == 0.0
         moves = self._own[~system.is_rotation]
@@ -152,7 +152,7 @@ class Inertia(Term):
         mass = self.attached.mass
         force = mass * point.a
         at.scale += np.abs(force)
-        at.values[self.system.pattern.diagonal] += point.weights[2] * mass
+        self.system.pattern.add_diagonal(at.values, point.weights[2] * mass)
         return force
 
     def tangent(self, u: Floats) -> Floats:
@@ -174,13 +174,15 @@ class Inertia(Term):
             system.core.inertia(x, rate, growth, self.kind, list(weights), force, scale, values)
         own = self.attached.mass * a
         if tangent:
-            values[system.pattern.diagonal] += weights[2] * self.attached.mass
+            system.pattern.add_diagonal(values, weights[2] * self.attached.mass)
+        force, scale = system.communicator.sum(force), system.communicator.sum(scale)
         return system.at_nodes(force) + own, scale + np.abs(own), values
 
     def momenta(self, u: Floats, v: Floats, carried: bool) -> Floats:
         """Kinetic energy, linear and angular momentum and mass, shape (5,)."""
         x, rate = (self.system.in_space(x) for x in (u, v))
-        core = np.array(self.system.core.momenta(x, rate, self.kind, carried))
+        own = np.array(self.system.core.momenta(x, rate, self.kind, carried))
+        core = self.system.communicator.sum(own)
         return core + self.attached.momenta(u, v) if self.attached.mass.any() else core
 
 

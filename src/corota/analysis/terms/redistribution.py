@@ -44,22 +44,27 @@ def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) 
     """
     core, none = system.core, np.zeros(0)
     core.set_massless(np.zeros(0, bool))
-    for number in range(len(system.blocks)):
+    for number in range(len(system.own_blocks)):
         core.set_mass_factors(number, none)
     if massless is None:
         return ""
     before = _moments(system, kind)
     core.set_massless(np.ascontiguousarray(massless))
     after = _moments(system, kind)
-    body = part_of_cells(system.model.mesh)[np.concatenate([b.cells for b in system.blocks])]
+    own = np.concatenate([b.cells for b in system.own_blocks])
+    communicator = system.communicator
+    body = communicator.concatenate(part_of_cells(system.model.mesh)[own])
+    before, after = communicator.concatenate(before), communicator.concatenate(after)
+    process = communicator.concatenate(np.full(len(own), communicator.rank))
     factors = np.ones(len(body))
     moved = 0.0
     for number in np.unique(body[(before != after).any(axis=1)]):
-        own = (body == number) & (after[:, 0] > 0.0)
-        factors[own], aside = _kept(before[own], after[own])
+        heavy = (body == number) & (after[:, 0] > 0.0)
+        factors[heavy], aside = _kept(before[heavy], after[heavy])
         moved = max(moved, aside)
+    factors = factors[process == communicator.rank]
     first = 0
-    for number, block in enumerate(system.blocks):
+    for number, block in enumerate(system.own_blocks):
         core.set_mass_factors(number, factors[first : first + len(block.cells)])
         first += len(block.cells)
     if moved <= SMALL:
@@ -85,7 +90,7 @@ def _moments(system: Any, kind: str) -> Floats:
 
     def twice(rates: Floats) -> Floats:
         v = system.in_space(system.from_nodes(rates))
-        blocks = range(len(system.blocks))
+        blocks = range(len(system.own_blocks))
         each = [system.core.kinetic(number, rest, v, kind, False) for number in blocks]
         return 2.0 * np.concatenate(each)
 

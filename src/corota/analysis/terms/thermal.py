@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.parallel.communicator import ALONE
 from corota.errors import ModelError
 from corota.model import elements
 from corota.model.material_table import MaterialTable
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.blocks import BlockOfCells
+    from corota.analysis.parallel.communicator import Communicator
     from corota.model.model import Model
 
     Floats = NDArray[np.float64]
@@ -82,6 +84,9 @@ class FreeStrains:
     core : corota._core.Problem
     model : Model
     blocks : sequence of BlockOfCells
+        Of the elements in the core.
+    communicator : Communicator
+        Processes that have the other elements.
 
     Attributes
     ----------
@@ -95,8 +100,19 @@ class FreeStrains:
         Whether any material expands or has constants that follow the temperature.
     """
 
-    def __init__(self, core: Any, model: Model, blocks: Sequence[BlockOfCells]) -> None:
+    #: One process has all elements.
+    communicator: Communicator = ALONE
+
+    def __init__(
+        self,
+        core: Any,
+        model: Model,
+        blocks: Sequence[BlockOfCells],
+        communicator: Communicator = ALONE,
+    ) -> None:
         self.core, self.model = core, model
+        if communicator is not ALONE:
+            self.communicator = communicator
         self.start = start_temperatures(model)
         self.offset: Floats | None = None
         #: Work of changing thermal strain so far [force*length].
@@ -111,7 +127,7 @@ class FreeStrains:
                 if own.stress is not None:
                     own.at_start = own.compliance(own.start)
                 self._blocks.append(own)
-        self.responds = any(block.responds for block in self._blocks)
+        self.responds = communicator.any(any(block.responds for block in self._blocks))
         self.now = self.start.copy()
         for own in self._blocks:
             self._set(own, self.start)
@@ -198,7 +214,7 @@ class FreeStrains:
             for block in self._blocks
             if block.expansion
         ]
-        return float(max(found, default=0.0))
+        return self.communicator.greatest(float(max(found, default=0.0)))
 
     def _wanted(self, temperature: Floats) -> Floats:
         return temperature + self.offset if self.offset is not None else temperature.copy()

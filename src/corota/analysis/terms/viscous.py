@@ -71,7 +71,9 @@ class ViscousElements:
         self.system = system
         self.blocks: list[_Block] = []
         facts = {e["name"]: e for e in _core.elements()}
-        for block in system.blocks:
+        #: Whether any element of the model is damped.
+        self.any = any(per_stiffness + b.section.material.rayleigh[1] for b in system.blocks)
+        for block in system.own_blocks:
             factor = per_stiffness + block.section.material.rayleigh[1]
             if factor:
                 turns = bool(facts[block.section.element]["turns"])
@@ -144,7 +146,7 @@ class ViscousElements:
                 values += weight * np.bincount(
                     block.places, own[block.chosen], minlength=len(values)
                 )
-        return system.at_nodes(force)
+        return system.at_nodes(system.communicator.sum(force))
 
 
 def _change(block: _Block, begin: Floats, end: Floats, v: Floats, dt: float) -> Floats:

@@ -380,7 +380,7 @@ class ContactTerm(Term):
     def _measure(self, values: Floats) -> None:
         """Pressure per gap of each node: stiffness of the node over its area."""
         system = self.system
-        diagonal = self.nodal = np.abs(values[system.pattern.diagonal])
+        diagonal = self.nodal = np.abs(system.pattern.diagonal_of(values))
         by_node = np.zeros((len(system.per_node), 3))
         by_node[system.node_of_dof, system.component] = diagonal
         nodal = by_node[:, :2].mean(axis=1)

@@ -124,7 +124,7 @@ class ContactEquations:
             at.internal = at.internal + stiffness * (u - since)
             at.added = stiffness if at.added is None else at.added + stiffness
         if at.added is not None:
-            at.values[self.system.pattern.diagonal] += at.added
+            self.system.pattern.add_diagonal(at.values, at.added)
         return ContactEvaluation(at, at.contact)
 
     def residual_norms(self, at: ContactEvaluation, z: Floats) -> ResidualNorms:

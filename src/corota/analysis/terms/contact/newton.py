@@ -126,7 +126,7 @@ def solve_increment(
             # Stabilizing damping of this increment.
             for added, sign in ((known.added, -1.0), (start.at.added, 1.0)):
                 if added is not None:
-                    start.at.values[system.pattern.diagonal] += sign * added
+                    system.pattern.add_diagonal(start.at.values, sign * added)
     found = newton(problem, z, target, step_time, more, start, report)
     return problem.settle(found), problem
 

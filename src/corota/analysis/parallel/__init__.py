@@ -1,0 +1,3 @@
+"""Analyses on several processes: communication and the partition of the elements."""
+
+# SPDX-License-Identifier: BSD-3-Clause
