@@ -22,7 +22,7 @@ from scale import cases
 #: Newton's method stops at a relative residual of 1e-9; the last correction is far below that.
 AGREE = 1e-9
 #: A path is a sequence of solutions near singular points: their errors grow.
-SENSITIVE = {"snap_through": 1e-7, "unstable": 1e-8}
+SENSITIVE = {"snap_through": 1e-8, "unstable": 1e-8}
 #: Time that a started program may take on a busy machine [s].
 PATIENCE = 240.0
 
