@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 import corota as ct
-from corota.errors import CorotaError
+from corota.analysis.linear.solvers import make_solver
+from corota.errors import CorotaError, SingularError
 
 Job = tuple[ct.Model, Any]
 
@@ -235,6 +236,31 @@ def run(build: Callable[[], Job]) -> dict[str, Any]:
     return found | {"cells": cells, "all cells": every}
 
 
+def chain_without_support(process: int) -> list[float]:
+    """Motion that the solver names where springs in a row are free; each process has every other.
+
+    Other values first: the order and the memory of the solver are then those of later iterations.
+    """
+    n = 12
+    indptr = np.concatenate([[0], 1 + 2 * np.arange(n)])
+    indices = np.concatenate([[0], *([i - 1, i] for i in range(1, n))])
+    solver = make_solver("petsc")
+    solver.analyze(indptr, indices, np.arange(n))
+    for ground in (1.0, 0.0):
+        values = np.zeros(len(indices))
+        values[0] = ground
+        for i in range(1 + process, n, 2):
+            values[indptr[i] - 1] += 1.0
+            values[indptr[i + 1] - 1] += 1.0
+            values[indptr[i]] -= 1.0
+        try:
+            solver.factorize(values)
+        except SingularError as error:
+            assert error.mode is not None
+            return [float(x) for x in np.asarray(error.mode).ravel()]
+    return []
+
+
 def main(path: Path) -> None:
     from mpi4py import MPI
 
@@ -248,6 +274,7 @@ def main(path: Path) -> None:
     model, step = drilling()
     large = ct.solve(model, step, solver="petsc:gamg")
     found["multigrid"] = difference(ct.solve(model, step, threads=1), large)
+    found["chain"] = chain_without_support(MPI.COMM_WORLD.rank)
     every = MPI.COMM_WORLD.gather(found)
     if every is not None:
         path.write_text(json.dumps(every))

@@ -100,6 +100,12 @@ def test_an_unconstrained_body_is_named_on_both(found: list[dict[str, Any]]) -> 
 
 
 @needs_mpi
+def test_the_motion_of_a_vanished_pivot_is_found(found: list[dict[str, Any]]) -> None:
+    assert found[0]["chain"] == found[1]["chain"]
+    np.testing.assert_allclose(np.abs(found[0]["chain"]), np.ones(12), rtol=1e-6)
+
+
+@needs_mpi
 def test_multigrid_with_rotations_gives_the_same_results(found: list[dict[str, Any]]) -> None:
     assert found[0]["multigrid"] == found[1]["multigrid"]
     assert max(found[0]["multigrid"].values()) <= 1e-7

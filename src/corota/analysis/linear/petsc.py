@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 #: Controls of MUMPS: memory above the estimate [percent], detection of null pivots, vector of the
 #: null space to solve for, parallel factorization of the root, which hides the inertia (1: none).
 _MEMORY, _NULL_PIVOTS, _NULL_SPACE, _ROOT = 14, 24, 25, 13
+#: Option for right-hand sides (0: on one process), which the search for null vectors needs.
+_RIGHT_SIDES = "mat_mumps_icntl_20"
 #: Share of memory to begin with, and what it is raised to where pivoting needs more [percent].
 _SHARES = (30, 100, 400)
 #: Answers of MUMPS: the error, its detail; null pivots that were found.
@@ -198,6 +200,9 @@ class Petsc:
         solver = self._petsc.KSP().create(self._handle)
         solver.setType("preonly")
         solver.setOperators(self._matrix)
+        options = self._petsc.Options()
+        if not options.hasName(_RIGHT_SIDES):
+            options[_RIGHT_SIDES] = 0
         factorization = solver.getPC()
         factorization.setType("cholesky" if self._symmetric else "lu")
         try:
@@ -295,7 +300,11 @@ class Petsc:
         return x
 
     def _solve_vector(self, right: Any, left: Any) -> None:
-        self._solver.solve(right, left)
+        try:
+            self._solver.solve(right, left)
+        except self._petsc.Error as caught:
+            error = self._solver.getPC().getFactorMatrix().getMumpsInfog(_ERROR)
+            raise SingularError(f"MUMPS could not solve: error {error}") from caught
 
     def _product(self, x: Floats) -> Floats:
         """Scaled matrix times vectors of shape (n,) or (n, k)."""
