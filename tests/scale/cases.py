@@ -256,8 +256,7 @@ def chain_without_support(process: int) -> list[float]:
         try:
             solver.factorize(values)
         except SingularError as error:
-            assert error.mode is not None
-            return [float(x) for x in np.asarray(error.mode).ravel()]
+            return [float(x) for x in np.ravel(np.asarray(error.mode, float))]
     return []
 
 
