@@ -1,7 +1,7 @@
 """A sparse matrix by rows on several processes, from the entries that each process adds.
 
 Every process has a pattern of its own and values for it; the matrix is the sum. A node belongs
-to the process that adds most of its entries. Unknowns are numbered anew by process, and each
+to the process that adds most of its entries. Unknowns are numbered by process, and each
 process owns the rows of its unknowns; entries of other rows are sent to their owner.
 """
 
