@@ -89,3 +89,58 @@ def test_faults_of_sections(tmp_path: Path, old: str, new: str, said: str) -> No
     with pytest.raises(ct.DeckError) as caught:
         read(tmp_path, text.replace(old, new))
     assert said in str(caught.value)
+
+
+def heated(angle: float, cut: bool) -> str:
+    """The bar with temperature and thickness by a set of all nodes, its cut locked or absent."""
+    text = bolt("quad4", angle, "", "2, S2\n6, S2")
+    head = text.split("*STEP", 1)[0]
+    if not cut:
+        lines = head.splitlines()
+        at = next(k for k, line in enumerate(lines) if line.startswith("*PRE-TENSION"))
+        head = "\n".join(lines[:at] + lines[at + 2 :]) + "\n"
+        head = head.replace("900, 9., 9.\n", "")
+    every = ", ".join(str(n) for n in range(1, 16))
+    head = head.replace("*MATERIAL", f"*NSET, NSET=ALL\n{every}\n*MATERIAL", 1)
+    head = head.replace("MATERIAL=M\n1.\n", "MATERIAL=M, NODAL THICKNESS\n1.\n")
+    head = head.replace("*ELASTIC", "*EXPANSION\n1e-3\n*ELASTIC", 1)
+    head += "*NODAL THICKNESS\nALL, 2.\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 5.\n"
+    hold = "*BOUNDARY\n900, 1\n" if cut else ""
+    return head + f"{hold}*STEP\n*STATIC\n*TEMPERATURE\nALL, -15.\n*END STEP\n"
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0])
+def test_fields_of_nodes_reach_both_faces(tmp_path: Path, angle: float) -> None:
+    """A locked cut is no cut: the cooled bar between walls has the stress E alpha 20 everywhere."""
+    for cut in (True, False):
+        model = read(tmp_path, heated(angle, cut))
+        frame = ct.solve(model, threads=1).frames[-1]
+        values = frame.fields[0].values
+        s = values["S"].reshape(-1, 4)
+        assert s[:, 0] + s[:, 1] == pytest.approx(E * 1e-3 * 20.0, rel=1e-9)
+        assert frame.fields[0].volume.sum() == pytest.approx(8.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("turn", [20.0, -75.0])
+def test_local_axes_at_the_cut_change_nothing(tmp_path: Path, turn: float) -> None:
+    text = bolt("quad4", 30.0, "", "2, S2\n6, S2")
+    c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+    turned = text.replace(
+        "*BOUNDARY",
+        f"*NSET, NSET=C\n3, 8, 13\n*TRANSFORM, NSET=C\n{c}, {s}, 0., {-s}, {c}, 0.\n*BOUNDARY",
+        1,
+    )
+    one, other = (ct.solve(read(tmp_path, t), threads=1).frames[-1] for t in (text, turned))
+    assert np.abs(one.U - other.U).max() < 1e-12
+
+
+def test_an_initial_velocity_moves_both_faces(tmp_path: Path) -> None:
+    head = bolt("quad4", 0.0, "", "2, S2\n6, S2").split("*TRANSFORM")[0]
+    every = ", ".join(str(n) for n in range(1, 16))
+    text = head.replace("*ELASTIC", "*DENSITY\n2.\n*ELASTIC") + (
+        f"*NSET, NSET=ALL\n{every}\n*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 1, 3.\n"
+        "*STEP\n*DYNAMIC, DIRECT\n0.1, 0.1\n*BOUNDARY\n900, 1\n*END STEP\n"
+    )
+    frame = ct.solve(read(tmp_path, text), threads=1).frames[-1]
+    assert frame.scalars["momentum x"] == pytest.approx(2.0 * 4.0 * 3.0, rel=1e-9)
+    assert frame.scalars["ALLKE"] == pytest.approx(0.5 * 8.0 * 9.0, rel=1e-9)

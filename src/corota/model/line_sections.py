@@ -82,7 +82,8 @@ class LineSections:
             force constant outside.
         dofs : str, optional
             Fixed directions that the spring joins: ``"x"``, ``"y"`` or ``"rotation"``, or two of
-            them for the two nodes. By default it acts along the line of its nodes.
+            them for the two nodes; the elongation is the displacement of the first node minus that
+            of the second. By default it acts along the line of its nodes.
         """
         from corota.model.dofs import dof_indices
         from corota.model.materials import Elastic

@@ -50,6 +50,7 @@ class ModelBuilder:
         self.sets.fill()
         pretension = PretensionBuilder(self.deck, self.model, self.sets)
         pretension.cut()
+        targets.twins = pretension.twins()
         targets.rotating = np.zeros(self.mesh.n_nodes, bool)
         share_damping(self.deck)
         until = sum(step.times[1] for step in self.deck.steps)
@@ -87,6 +88,7 @@ class ModelBuilder:
             if step is not None:
                 step.restart = draft.restart
                 model.steps.append(step)
+        pretension.share_fields()
         self.sets.report_missing(self._names_used())
         model.time_points = deck.time_points
         model.title = " ".join(deck.heading)

@@ -9,7 +9,9 @@ of the bolt, and a fixed node locks it.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -18,8 +20,8 @@ from corota.io.deck.build.mesh import views_in
 from corota.io.deck.build.ties import single_node
 from corota.io.deck.deck import nearest
 from corota.mesh.data import EDGES
-from corota.model.constraints import Equation
-from corota.model.loads import Fixed
+from corota.model.constraints import Equation, LocalAxes
+from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Temperature
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
     from corota.model.model import Model
 
     Find = Callable[[Draft], str | Ints | None]
+
+_Item = TypeVar("_Item")
 
 
 class PretensionBuilder:
@@ -100,18 +104,68 @@ class PretensionBuilder:
             f"from {label} on there, and the normal keeps its direction"
         )
 
+    def twins(self) -> tuple[Ints, Ints]:
+        """Nodes that the cuts made, and those from which they were separated."""
+        none = np.zeros(0, np.int64)
+        near = [none, *(near for _, near, _, _ in self.cuts)]
+        far = [none, *(far for _, _, far, _ in self.cuts)]
+        return np.concatenate(near), np.concatenate(far)
+
+    def share_fields(self) -> None:
+        """Give both faces of each cut the temperatures and initial velocities of the place."""
+        model = self.model
+        model.initial_temperatures = self._shared(model.initial_temperatures)
+        model.velocities = self._shared(model.velocities)
+        for step in model.steps:
+            step.loads = self._shared(step.loads)
+
+    def _shared(self, items: list[_Item]) -> list[_Item]:
+        """Each item on nodes, followed by itself on the nodes that were separated from these."""
+        near, far = self.twins()
+        found: list[_Item] = []
+        for item in items:
+            found.append(item)
+            if isinstance(item, (Temperature, InitialTemperature, InitialVelocity)):
+                own = near[np.isin(far, self._nodes(item.nodes))]
+                if len(own):
+                    found.append(replace(item, nodes=own))
+        return found
+
+    def _nodes(self, nodes: str | Ints) -> Ints:
+        # Without a name they are all nodes, those of the cut included.
+        every = isinstance(nodes, str) and not nodes
+        return np.zeros(0, np.int64) if every else self.model.mesh.node_indices(nodes)
+
+    def _angles(self) -> dict[int, float]:
+        """Angles of the local axes of nodes at the cuts, which both faces get."""
+        near, far = self.twins()
+        angles: dict[int, float] = {}
+        for axes in list(self.model.axes):
+            chosen = np.isin(far, self._nodes(axes.nodes))
+            for a, b in zip(near[chosen].tolist(), far[chosen].tolist(), strict=True):
+                angle = axes.angle
+                if axes.centre is not None:
+                    arm = self.model.mesh.points[b] - np.asarray(axes.centre)
+                    angle += math.atan2(arm[1], arm[0])
+                angles[b] = angle
+                self.model.axes.append(LocalAxes(np.array([a]), angle, None, axes.where))
+        return angles
+
     def join(self, find: Find, rotating: NDArray[np.bool_]) -> None:
         """Tie the faces of each cut to the node of its section."""
+        angles = self._angles()
         for draft, near, far, normal in self.cuts:
             node = single_node(self.deck, find, draft.node, self.model)
             if node is None:
                 continue
             where = draft.card.where
             for a, b in zip(near.tolist(), far.tolist(), strict=True):
+                c, s = math.cos(angles.get(b, 0.0)), math.sin(angles.get(b, 0.0))
+                own = (c * normal[0] + s * normal[1], c * normal[1] - s * normal[0])
                 for dof in (0, 1):
                     terms = [(a, dof, 1.0), (b, dof, -1.0)]
-                    if normal[dof] != 0.0:
-                        terms.append((node, 0, -float(normal[dof])))
+                    if own[dof] != 0.0:
+                        terms.append((node, 0, -float(own[dof])))
                     self.model.constraints.append(Equation(terms, 0.0, where))
                 if rotating[a] and rotating[b]:
                     terms = [(a, 2, 1.0), (b, 2, -1.0)]

@@ -229,6 +229,8 @@ class SectionBuilder:
                         at = self.mesh.nodes_of(nodes) if isinstance(nodes, str) else nodes
                         self.nodal[at] = item.value[0]
             self.targets.at = self.meshes.views[0]
+            near, far = self.targets.twins
+            self.nodal[near] = self.nodal[far]
         if not self.deck.thicknesses:
             text = "NODAL THICKNESS is given, and no card *NODAL THICKNESS"
             self.deck.error(draft.card, draft.card.at("NODALTHICKNESS"), text)

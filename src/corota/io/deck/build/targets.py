@@ -37,6 +37,8 @@ class Targets:
         Part or assembly whose names come first.
     rotating : ndarray of bool, shape (n_nodes,)
         Nodes that have a rotation.
+    twins : tuple of ndarray of int
+        Nodes that cuts of the mesh made, and those from which they were separated.
     """
 
     def __init__(self, deck: Deck, meshes: MeshBuilder, model: Model) -> None:
@@ -44,6 +46,7 @@ class Targets:
         self.sets = Sets(meshes, self.mesh)
         self.at = meshes.views[0]
         self.rotating = np.zeros(self.mesh.n_nodes, bool)
+        self.twins: tuple[Ints, Ints] = (np.zeros(0, np.int64), np.zeros(0, np.int64))
 
     def nodes(self, draft: Draft) -> str | Ints | None:
         """Name in the mesh, or indices, of a target of supports and nodal forces."""
