@@ -46,6 +46,9 @@ PEAK = 2153e6
 #: Multigrid by `--measure`: seconds a dof of the setup and of an iteration, iterations to a
 #: residual of 1e-8, bytes a dof of the matrix and its hierarchy.
 SETUP, ITERATION, ITERATIONS, HIERARCHY = 5e-6, 0.2e-6, 9, 350.0
+#: Bytes a dof that every process has: the mesh, the numbering and vectors of all dofs, of which an
+#: iteration sums and gathers so many (each is sent to process 0 and back), measured with two.
+REPLICATED, VECTORS = 550.0, 6.5
 #: Network, assumed: bytes a second of one process, seconds of a message.
 BANDWIDTH, LATENCY = 1e9, 2e-6
 #: Products with the matrix of an iteration of multigrid on the finest level (smoothing, residual).
@@ -198,7 +201,10 @@ def row(dofs: float, processes: int) -> list[object]:
     count, own = NODE * n * n, NODE * n * n / processes
     speed = constants()
     direct, model = share(n, processes), speed["bytes a dof beside the factor"] * own
-    network = 8.0 * direct.values / BANDWIDTH + LATENCY * direct.messages
+    whole = VECTORS * 2.0 * 8.0 * count if processes > 1 else 0.0
+    if processes > 1:
+        model += REPLICATED * (count - own)
+    network = (8.0 * direct.values + whole) / BANDWIDTH + LATENCY * direct.messages
     seconds = (
         direct.operations / speed["operations a second"]
         + 2.0 * 8.0 * direct.entries / speed["bytes a second of the solution"]
@@ -208,7 +214,7 @@ def row(dofs: float, processes: int) -> list[object]:
     halo = 4.0 * n / math.sqrt(processes) * NODE * 8.0 if processes > 1 else 0.0
     products = PRODUCTS * ITERATIONS * 4.0 / 3.0  # coarser levels have a quarter each
     levels = max(math.log(count / 100.0) / math.log(4.0), 1.0)
-    sent = products * halo
+    sent = products * halo + whole
     exchange = sent / BANDWIDTH
     if processes > 1:
         exchange += LATENCY * ITERATIONS * (8.0 * PRODUCTS * levels + 3.0 * math.log2(processes))
@@ -218,7 +224,7 @@ def row(dofs: float, processes: int) -> list[object]:
         processes,
         f"{(8.0 * direct.entries + model) / 1e9:.3g}",
         f"{seconds:.3g}",
-        f"{8.0 * direct.values / 1e6:.3g}",
+        f"{(8.0 * direct.values + whole) / 1e6:.3g}",
         f"{(HIERARCHY * own + model) / 1e9:.3g}",
         f"{multigrid:.3g}",
         f"{sent / 1e6:.3g}",
