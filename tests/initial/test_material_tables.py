@@ -205,6 +205,29 @@ def test_energy_balances_while_constants_change(law: Any, plane: str) -> None:
     assert errors[1] < 2e-2
 
 
+@pytest.mark.parametrize("strain", ["logarithmic", "green_lagrange"])
+def test_energy_balances_under_large_strain_in_plane_strain(strain: Any) -> None:
+    """The stress through the thickness does its work as the stress of the law, not as Cauchy's."""
+    errors = []
+    for increments in (20, 80):
+        model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1))
+        material = elastic(expansion=ALPHA)
+        options: Any = {"plane": "strain", "local_strain": strain}
+        model.section("all", element="Q4", material=material, **options)
+        model.fix("left", y=None)
+        model.fix("bottom", x=None)
+        model.initial_temperature(COLD)
+        pulled, cooled = (ct.Static(increments=increments) for _ in range(2))
+        pulled.fix("right", x=0.2, y=None)
+        pulled.temperature(COLD + 200.0)
+        cooled.fix("right", x=0.1, y=None)
+        cooled.temperature(COLD)
+        frame = ct.solve(model, [pulled, cooled], threads=1).frames[-1]
+        errors.append(abs(frame.scalars["energy balance error"]))
+    assert errors[1] < 1e-4
+    assert errors[1] < 0.2 * errors[0]
+
+
 def test_modes_have_the_modulus_of_the_current_temperature() -> None:
     def first(material: Any, heated: bool) -> float:
         model = sheet("Q8", material)

@@ -82,6 +82,8 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     /// Numbers of history of the element as a whole, beside those of its points, where the law
     /// has a history.
     const MEMORY: usize = 0;
+    /// Member of this memory with the work that the element has dissipated beside its points.
+    const DISSIPATED: Option<usize> = None;
 
     type Op<T: Real>: Operator<T, N, M>;
     /// What is computed once per element before its points.
@@ -136,8 +138,9 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     ) {
         integrate::local_into::<Self, T, N, M, A>(x, q, section, history, tangent, out);
     }
-    /// Energy of what keeps an element of a reduced rule from deforming freely between its points;
-    /// `memory` of the state, empty where the law has none.
+    /// Energies of what keeps an element of a reduced rule from deforming freely between its points,
+    /// each with the stiffness to which it is proportional; `memory` of the state, empty where the
+    /// law has none.
     #[inline(always)]
     fn stabilization<T: Real>(
         _x: &Nodal<T, N, 2>,
@@ -145,8 +148,8 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         _section: &Section<N>,
         _own: &PerPoint<'_>,
         _memory: &[f64],
-    ) -> T {
-        T::zero()
+    ) -> [[T; 2]; 2] {
+        [[T::zero(), T::one()]; 2]
     }
     /// Resultants of line elements with an initial axial strain.
     fn resultants(

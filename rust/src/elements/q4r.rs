@@ -19,6 +19,7 @@ impl Element<4, 2, 0> for Q4r {
     const CELL: &'static str = "quad4";
     const FREE_VOLUME: bool = true;
     const MEMORY: usize = hourglass::MEMORY;
+    const DISSIPATED: Option<usize> = Some(hourglass::DISSIPATED);
     type Op<T: Real> = Grad<T, 4>;
     type Prepared<T: Real> = ();
 
@@ -56,7 +57,7 @@ impl Element<4, 2, 0> for Q4r {
         section: &Section<4>,
         own: &PerPoint<'_>,
         memory: &[f64],
-    ) -> T {
+    ) -> [[T; 2]; 2] {
         hourglass::energy(x, q, section, own, memory)
     }
 }

@@ -10,7 +10,8 @@
 //! before, relative to the elastic one, and the hourglass stress is integrated by increments.
 //! Memory: for each axis what is lost of the stiffness, then for each axis the stress at zero
 //! strain over the elastic stiffness: a strain, which stays where the stiffness follows the
-//! temperature.
+//! temperature. Then for each axis the stress over the elastic stiffness, and the work that both
+//! have dissipated.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::integrate::{History, Local, Section, pass};
@@ -20,7 +21,9 @@ use crate::base::small::{Mat, Nodal, inverse2};
 use crate::elements::{Element, shapes};
 
 /// Members of the memory.
-pub const MEMORY: usize = 4;
+pub const MEMORY: usize = 7;
+/// Member of the memory with the dissipated work.
+pub const DISSIPATED: usize = 6;
 /// Least stiffness of the hourglass, relative to the elastic one.
 const LEAST: f64 = 0.01;
 
@@ -144,6 +147,7 @@ pub fn local_into<E, T: Real>(
     if section.law.n_state() > 0 {
         let mut memory = history.memory(section);
         let (c, det) = adjugate(&sums.tangent);
+        let mut dissipated: T = memory.get(DISSIPATED);
         for axis in 0..2 {
             let kept = T::one() - memory.get::<T>(axis);
             stiffness[axis] = kept * modulus[axis];
@@ -156,8 +160,15 @@ pub fn local_into<E, T: Real>(
             let lost = T::one() - share.min(T::one()).max(T::real(LEAST));
             memory.set(axis, lost);
             let next = (T::one() - lost) * strain[axis];
-            memory.set(2 + axis, stress[axis] / modulus[axis] - next);
+            let elastic = stress[axis] / modulus[axis];
+            memory.set(2 + axis, elastic - next);
+            // Of the work on a straight line from the last stress, what is not stored.
+            let before: T = memory.get(4 + axis);
+            let stored = (elastic * elastic - before * before).scale(0.5) * modulus[axis];
+            dissipated = (stored * h.weight).fma(kept.recip() - T::one(), dissipated);
+            memory.set(4 + axis, elastic);
         }
+        memory.set(DISSIPATED, dissipated);
     }
     for axis in 0..2 {
         let force = stress[axis] * h.weight;
@@ -181,7 +192,8 @@ pub fn local_into<E, T: Real>(
     }
 }
 
-/// Energy that the hourglass stress stores, given the memory of the state or none.
+/// Energy that the hourglass stress of each axis stores, given the memory of the state or none, and
+/// the stiffness to which it is proportional.
 #[inline(always)]
 pub fn energy<T: Real>(
     x: &Nodal<T, 4, 2>,
@@ -189,16 +201,14 @@ pub fn energy<T: Real>(
     section: &Section<4>,
     own: &PerPoint<'_>,
     memory: &[f64],
-) -> T {
+) -> [[T; 2]; 2] {
     let h = Hourglass::new(x, own.thickness(0, section));
     let (strain, modulus) = (h.strain(q), elastic(&h, section, own));
-    let mut sum = T::zero();
-    for axis in 0..2 {
+    [0, 1].map(|axis| {
         let mut stress = modulus[axis] * strain[axis];
         if !memory.is_empty() {
             stress = stress.fma(T::real(1.0 - memory[axis]), modulus[axis].scale(memory[2 + axis]));
         }
-        sum = (stress * stress / modulus[axis]).fma(h.weight.scale(0.5), sum);
-    }
-    sum
+        [(stress * stress / modulus[axis]) * h.weight.scale(0.5), modulus[axis]]
+    })
 }

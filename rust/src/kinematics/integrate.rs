@@ -509,7 +509,8 @@ where
         .mean_dilatation
         .then(|| Dilatation::<f64, N, M>::new::<E, A>(x, q, &prepared, section));
     let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
-    let mut energy = E::stabilization(x, q, section, &own, &[]);
+    let [first, second] = E::stabilization(x, q, section, &own, &[]);
+    let mut energy = first[0] + second[0];
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let w = s.weight * own.thickness::<f64, N>(p, section);

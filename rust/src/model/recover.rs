@@ -35,8 +35,14 @@ pub struct Fields {
     pub rotation: Vec<f64>,
     /// Energy of the drilling penalty, `[n]`; of springs, which have no volume, all of it.
     pub penalty: Vec<f64>,
+    /// Work dissipated beside the points, by the hourglass of an element that flows, `[n]`.
+    pub dissipated: Vec<f64>,
+    /// Energies beside the points of the drilling penalty and of two hourglass modes, each with the
+    /// stiffness to which it is proportional, `[n, 3, 2]`; empty unless laws follow the
+    /// temperature.
+    pub stabilized: Vec<f64>,
     /// Energy that the initial strain takes: minus the derivative of the energy density by its
-    /// rows, `[n, p, 4]`; zero where there is none.
+    /// rows, and the stress through the thickness of the law, `[n, p, 5]`; zero where there is none.
     pub heat: Vec<f64>,
     /// Largest local strain component.
     pub largest_strain: f64,
@@ -58,6 +64,8 @@ impl Fields {
             thickness: vec![0.0; p],
             rotation: vec![0.0; n],
             penalty: vec![0.0; n],
+            dissipated: vec![0.0; n],
+            stabilized: Vec::new(),
             heat: Vec::new(),
             largest_strain: 0.0,
         }
@@ -83,8 +91,13 @@ impl Fields {
         copy(&mut self.thickness, &part.thickness);
         copy(&mut self.rotation, &part.rotation);
         copy(&mut self.penalty, &part.penalty);
+        copy(&mut self.dissipated, &part.dissipated);
+        if !part.stabilized.is_empty() {
+            self.stabilized.resize(6 * self.rotation.len(), 0.0);
+            copy(&mut self.stabilized, &part.stabilized);
+        }
         if !part.heat.is_empty() {
-            self.heat.resize(4 * self.volume.len(), 0.0);
+            self.heat.resize(5 * self.volume.len(), 0.0);
             copy(&mut self.heat, &part.heat);
         }
         for (to, from) in self.outputs.iter_mut().zip(&part.outputs) {
@@ -134,7 +147,10 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     let kept = memory + if members > 0 { E::MEMORY } else { 0 };
     let mut new = vec![0.0; kept];
     if !chunk.initial_from(0).is_empty() {
-        out.heat = vec![0.0; 4 * out.volume.len()];
+        out.heat = vec![0.0; 5 * out.volume.len()];
+    }
+    if chunk.per_point(0).laws.is_some() && !E::LINE {
+        out.stabilized = vec![0.0; 6 * out.rotation.len()];
     }
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
@@ -149,7 +165,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         if E::LINE {
             let axial = initial.first().copied().unwrap_or(0.0);
             let found = E::resultants(&x, &frame.q, section, &own, axial);
-            if let Some(heat) = out.heat.get_mut(4 * e) {
+            if let Some(heat) = out.heat.get_mut(5 * e) {
                 *heat = found.stress;
             }
             let volume = section.thickness * E::measure(&x, &section.points[0]);
@@ -241,7 +257,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 stress[0] += offset(3);
                 stress[1] += offset(3);
             }
-            if let Some(heat) = out.heat.get_mut(4 * (e * n_points + p)..) {
+            if let Some(heat) = out.heat.get_mut(5 * (e * n_points + p)..) {
                 for (row, v) in heat.iter_mut().zip(stress) {
                     *row = v;
                 }
@@ -249,6 +265,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                     // The energy is quadratic in the initial stress.
                     let [up, down] = [1.0, -1.0].map(|s| law.initial_energy(own_stress, normal, s));
                     heat[3] = 0.5 * (down - up) - (up + down) * offset(3);
+                    heat[4] = stress_zz;
                 }
             }
             let stretch = section.strain.stretch(strain_zz);
@@ -292,7 +309,16 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 out.penalty[e] += 0.5 * gamma * drill * drill;
             }
         }
-        out.penalty[e] += E::stabilization(&x, &frame.q, section, &own, &new[memory..]);
+        let drilling = out.penalty[e];
+        let [first, second] = E::stabilization(&x, &frame.q, section, &own, &new[memory..]);
+        out.penalty[e] += first[0] + second[0];
+        if let (Some(member), true) = (E::DISSIPATED, members > 0) {
+            out.dissipated[e] = new[memory + member];
+        }
+        if let Some(row) = out.stabilized.get_mut(6 * e..6 * e + 6) {
+            let stiffness = if E::Op::<f64>::DRILL { parameter } else { 1.0 };
+            row.copy_from_slice([[drilling, stiffness], first, second].as_flattened());
+        }
         out.rotation[e] = frame.angle();
     }
 }

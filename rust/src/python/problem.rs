@@ -483,8 +483,12 @@ impl PyProblem {
             let artificial = if block.facts.line { 0.0 } else { f.penalty.iter().sum::<f64>() };
             d.set_item("artificial_energy", artificial)?;
             if !f.heat.is_empty() {
-                d.set_item("heat", rows(f.heat, 4)?)?;
+                d.set_item("heat", rows(f.heat, 5)?)?;
             }
+            if !f.stabilized.is_empty() {
+                d.set_item("stabilized", f.stabilized.into_pyarray(py).reshape([n, 3, 2])?)?;
+            }
+            d.set_item("dissipated_energy", f.dissipated.iter().sum::<f64>())?;
             d.set_item("largest_strain", f.largest_strain)?;
             d.set_item("points", rows(f.points, 2)?)?;
             d.set_item("volume", scalar(f.volume)?)?;

@@ -77,8 +77,8 @@ def _own(
         if (work := own["values"].get("PWORK")) is not None:
             plastic += float(np.einsum("ep,ep->", work, own["volume"]))
         if "heat" in own:
-            values = own["values"]
-            system.free.record(index, own["heat"], values["S"][..., 2], own["volume"])
+            system.free.record(index, own["heat"], own["volume"], own.get("stabilized"))
+        plastic += own["dissipated_energy"]
         stored, lost = user.energies(index, own["values"]["ENER"], own["volume"])
         energy, plastic = energy + stored, plastic + lost
         section, strain = block.section, float(own["largest_strain"])

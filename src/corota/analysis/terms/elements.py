@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,9 +11,10 @@ import numpy as np
 from corota.analysis.newton import ElementFailure
 from corota.analysis.terms.term import Term
 from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
+from corota.model import elements
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -158,6 +160,37 @@ class Elements(Term):
         """Largest growth of the equivalent plastic strain since the last commit."""
         own = max(float(self.system.core.plastic_increment()), self.user.plastic_increment())
         return self.system.communicator.greatest(own)
+
+    @contextmanager
+    def unloading(self, u: Floats) -> Iterator[None]:
+        """Let every part of the elements answer elastically about the committed state.
+
+        Points do so by themselves. The hourglass of an element with one point has the stiffness of
+        the increment before; an increment without displacement gives it the elastic one.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n_dofs,)
+            The committed displacement.
+        """
+        system = self.system
+        sections = [block.section for block in system.blocks]
+        if not any(elements.find(s.element).stabilized and s.material.remembers for s in sections):
+            yield
+            return
+        values, lengths = system.core.state()
+        force, scale = np.zeros((2, system.n_dofs))
+        here, none, about = system.in_space(u), np.empty(0), system.about_linear
+
+        def assemble() -> None:
+            system.core.assemble(here, system.nlgeom, force, scale, none, about)
+
+        self._run(here, assemble)
+        system.core.commit()
+        try:
+            yield
+        finally:
+            system.core.restore_state(values, lengths)
 
     def commit(self) -> None:
         """Accept the last evaluated state."""

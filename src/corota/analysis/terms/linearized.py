@@ -80,7 +80,7 @@ class Linearized:
         self._pressures: Any = None
         self._hard: Any = None
         self._normal: Any = None
-        with system.conditions.as_reached():
+        with system.conditions.as_reached(), system.elements.unloading(u):
             self.at, coupling, self.states = linearized_contact(system, u, self.multipliers, states)
         self.link = self.at.link
         self.free = system.constraints.free
@@ -111,7 +111,7 @@ class Linearized:
         shape = (self.system.n_dofs, self.n_multipliers)
         border = coupling.rows
         side = sp.coo_array((border.values, (border.rows, border.columns)), shape=shape).tocsc()
-        side = self.link.reduce_columns(side)
+        side = self.link.reduce_columns(side).tocsc()
         # A law p = h(-gap) is a row with the compliance of the layer: its pressure follows.
         scale = sp.diags_array(-1.0 / coupling.diagonal[self._laws])
         self._pressures = (scale @ side.T.tocsr()[self._laws]).tocsr()

@@ -60,8 +60,8 @@ class _Block:
     at_start: Floats | None = None  # compliance, where there is an initial stress
     free: Floats = field(init=False)  # free strains
     rows: Floats = field(init=False)  # passed to the core, (n, p, 4)
-    # Strains of the last frame, forces on them, temperatures.
-    last: tuple[Floats, Floats, Floats] | None = None
+    # Strains of the last frame, forces on them, temperatures, energies beside the points.
+    last: tuple[Floats, Floats, Floats, Floats | None] | None = None
 
     @property
     def responds(self) -> bool:
@@ -233,31 +233,42 @@ class FreeStrains:
         block.rows = _rows(block, block.free, block.compliance(block.now))
         self.core.set_initial(block.index, block.rows.ravel())
 
-    def record(self, index: int, force: Floats, stress_zz: Floats, volume: Floats) -> None:
+    def record(
+        self, index: int, heat: Floats, volume: Floats, stabilized: Floats | None = None
+    ) -> None:
         """Add the work that temperatures have done since the last call, by the trapezoidal rule.
 
         Parameters
         ----------
         index : int
             Block.
-        force : ndarray, shape (n, p, 4)
-            Stress of the elements that is conjugate to the strains, in their rows [stress].
-        stress_zz : ndarray, shape (n, p)
-            Stress through the thickness.
+        heat : ndarray, shape (n, p, 5)
+            Stress of the elements that is conjugate to the strains, in their rows, and the stress
+            of the law through the thickness [stress].
         volume : ndarray, shape (n, p)
+        stabilized : ndarray, shape (n, k, 2), optional
+            Energies beside the points, each with the stiffness to which it is proportional, where
+            it follows the temperature.
         """
+        force, stress_zz = heat[..., :4], heat[..., 4]
         block = next(b for b in self._blocks if b.index == index)
         if block.table is not None:
-            self._record_table(block, block.table, force, stress_zz, volume)
+            self._record_table(block, block.table, force, stress_zz, volume, stabilized)
             return
         if block.last is not None:
-            rows, before, _ = block.last
+            rows, before, _, _ = block.last
             moved = block.rows - rows
             self.work -= 0.5 * float(np.einsum("epr,epr,ep->", force + before, moved, volume))
-        block.last = (block.rows, force, block.now)
+        block.last = (block.rows, force, block.now, None)
 
     def _record_table(
-        self, block: _Block, table: MaterialTable, force: Floats, stress_zz: Floats, volume: Floats
+        self,
+        block: _Block,
+        table: MaterialTable,
+        force: Floats,
+        stress_zz: Floats,
+        volume: Floats,
+        stabilized: Floats | None,
     ) -> None:
         """The same for a law that follows the temperature.
 
@@ -269,7 +280,7 @@ class FreeStrains:
         if block.line:
             stress[..., 1:] = 0.0
         if block.last is not None:
-            free, before, at = block.last
+            free, before, at, beside = block.last
             moved = np.einsum("epr,epr->ep", stress + before, block.free - free)
             for s in (before, stress):
                 # The transposed map of strains turns a stress to the material axes.
@@ -277,7 +288,11 @@ class FreeStrains:
                 gained = table.complementary_energy(block.now, own)
                 moved += gained - table.complementary_energy(at, own)
             self.work -= 0.5 * float(np.einsum("ep,ep->", moved, volume))
-        block.last = (block.free, stress, block.now)
+            if stabilized is not None and beside is not None:
+                # At a fixed deformation these energies change as their stiffness does.
+                strain = stabilized[..., 0] / stabilized[..., 1] + beside[..., 0] / beside[..., 1]
+                self.work += 0.5 * float((strain * (stabilized[..., 1] - beside[..., 1])).sum())
+        block.last = (block.free, stress, block.now, stabilized)
 
 
 def start_temperatures(model: Model) -> Floats:
