@@ -30,6 +30,7 @@ class Contact:
         reach: float,
         margin: float,
         depth: float = ...,
+        corners: bool = ...,
     ) -> Contact: ...
     @staticmethod
     def itself(
@@ -41,6 +42,7 @@ class Contact:
         method: str = ...,
         reach: float,
         margin: float,
+        corners: bool = ...,
     ) -> Contact: ...
     @staticmethod
     def rigid(
@@ -56,11 +58,14 @@ class Contact:
         reach: float,
         margin: float,
         depth: float = ...,
+        corners: bool = ...,
     ) -> Contact: ...
     @property
     def nodes(self) -> _Integers: ...
     @property
     def full_area(self) -> _Floats: ...
+    @property
+    def corners(self) -> _Integers: ...
     def search(self, x: _Floats) -> bool: ...
     def candidates(self) -> _Integers: ...
     def pattern(self) -> tuple[_Integers, _Integers]: ...

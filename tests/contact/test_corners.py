@@ -1,4 +1,4 @@
-"""Sharp corners sink in between slave nodes where they are masters; as slaves they do not.
+"""Sharp corners have constraints of their own, whichever side is the master.
 
 A square on its tip is pressed into a block, whose edges are as long as the depth many times over,
 at the middle of one of them.
@@ -7,60 +7,216 @@ at the middle of one of them.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import corota as ct
-from benchmarks.contact_problems import problem
-from benchmarks.contact_reasons import reason
+from corota import _core
+from corota.model.contact import METHODS
+from corota.model.loads import Fixed
+from tests.contracts.test_contact_gaps import (
+    LENGTHS,
+    chain,
+    check_derivatives,
+    check_invariance,
+    moved,
+)
 
 DEEP = 0.06
+ELASTIC = ct.Elastic(E=1000.0, nu=0.3, rho=1e-3)
 
 
-def pressed(slave: str, master: str, method: str) -> tuple[ct.Results, float]:
-    """The run, and the depth of the tip below the edge that it meets."""
+def tip_on_block(
+    slave: str, method: str, friction: float = 0.0, unit: float = 1.0, **more: Any
+) -> ct.Model:
+    """A square on its tip on a block, one of them the slave."""
     block = ct.mesh.rectangle(2.0, 1.0, nx=5, ny=3)
     square = ct.mesh.move(ct.mesh.rectangle(0.5, 0.5, nx=4, ny=4), (1.0, 1.0), angle=45.0)
-    mesh = ct.mesh.assembly(block=block, square=square)
-    tip = int(
-        np.argmin(np.where(mesh.points[:, 1] > 0.999, np.hypot(*(mesh.points - [1.0, 1.0]).T), 9.0))
-    )
-    sides = np.vstack([mesh.edge_sets["square.left"], mesh.edge_sets["square.bottom"]])
-    surfaces = {"block": "block.top", "square": sides}
+    mesh = ct.mesh.move(ct.mesh.assembly(block=block, square=square), scale=unit)
+    sets = mesh.edge_sets
+    lower = np.vstack([sets["square.left"], sets["square.bottom"]])
     model = ct.Model(mesh)
-    material = ct.Elastic(E=1000.0, nu=0.3)
-    model.section("all", element="Q4", material=material, local_strain="logarithmic")
+    model.section("all", element="Q4", material=ELASTIC, local_strain="logarithmic", thickness=unit)
+    both: list[Any] = ["block.top", lower] if slave == "block" else [lower, "block.top"]
+    model.contact(*both, method=method, friction=friction, name="tip", **more)
+    return model
+
+
+def pushed(model: ct.Model, aside: float = 0.0, unit: float = 1.0) -> ct.Results:
+    """Pressed in, then drawn aside."""
     model.fix("block.bottom")
-    upper = np.unique(np.concatenate([mesh.nodes_of("square.right"), mesh.nodes_of("square.top")]))
-    model.fix(upper, x=0.0, y=-DEEP)
-    model.contact(surfaces[slave], surfaces[master], method=method, name="tip")  # type: ignore[arg-type]
-    results = ct.solve(model, ct.Static(), threads=1)
+    sets = [model.mesh.nodes_of(f"square.{side}") for side in ("right", "top")]
+    held = np.unique(np.concatenate(sets))
+    steps = [ct.Static(supports=[Fixed(held, 0, 0.0), Fixed(held, 1, -DEEP * unit)])]
+    if aside:
+        steps.append(ct.Static(first_increment=0.2, supports=[Fixed(held, 0, aside * unit)]))
+    return ct.solve(model, steps, threads=1)
+
+
+def force(results: ct.Results, frame: int = -1) -> np.ndarray:
+    """On the slave."""
+    at = results.frames[frame].scalars
+    return np.array([at["tip: force x"], at["tip: force y"]])
+
+
+def depth(results: ct.Results) -> float:
+    """Of the tip below the edge that it meets."""
+    mesh = results.model.mesh
     x = mesh.points + results.frames[-1].U
     top = mesh.nodes_of("block.top")
     top = top[np.argsort(x[top, 0])]
-    return results, float(np.interp(x[tip, 0], x[top, 0], x[top, 1]) - x[tip, 1])
+    lower = mesh.nodes_of("square.left")
+    tip = int(lower[np.argmin(mesh.points[lower, 1])])
+    return float(np.interp(x[tip, 0], x[top, 0], x[top, 1]) - x[tip, 1])
 
 
-@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
-def test_a_sharp_corner_is_a_slave_or_a_note_says_that_it_sinks_in(method: str) -> None:
-    results, depth = pressed("block", "square", method)
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_corner_presses_the_same_as_slave_and_as_master(method: str, friction: float) -> None:
+    """Exchanged, the tip is a node against the same edge: the equations are the same."""
+    own = pushed(tip_on_block("block", method, friction), aside=0.09)
+    other = pushed(tip_on_block("square", "node_to_segment", friction), aside=0.09)
+    assert own.times[-1] == other.times[-1] == 2.0
+    assert abs(depth(own)) < 1e-9
+    for time in (1.0, 2.0):
+        pressed = [force(r, int(np.flatnonzero(r.times == time)[0])) for r in (own, other)]
+        assert pressed[0][1] < -1.0
+        np.testing.assert_allclose(pressed[0], -pressed[1], rtol=1e-6, atol=1e-6)
+    if friction:
+        along = own.frames[-1].scalars["tip: friction x"]
+        assert along == pytest.approx(-friction * force(own)[1], rel=0.05)
+
+
+def test_mortar_keeps_the_corners_of_its_slave_out() -> None:
+    assert abs(depth(pushed(tip_on_block("square", "mortar")))) < 1e-9
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_forces_and_moments_of_a_corner_balance(method: str) -> None:
+    results = pushed(tip_on_block("block", method, 0.3), aside=0.09)
+    last, mesh = results.frames[-1], results.model.mesh
+    x, reaction = mesh.points + last.U, last.RF[:, :2]
+    size = np.abs(reaction).sum()
+    assert np.abs(reaction.sum(axis=0)).max() < 1e-12 * size
+    assert abs((x[:, 0] * reaction[:, 1] - x[:, 1] * reaction[:, 0]).sum()) < 1e-12 * size
+    of_block = reaction[mesh.nodes_of("block.bottom")].sum(axis=0)
+    np.testing.assert_allclose(-of_block, force(results), atol=1e-10 * size)
+    # The nodes beside the corner carry its force as pressures on their areas.
+    p, q = results.nodal("CPRESS"), results.nodal("CSHEAR")
+    on = mesh.nodes_of("block.top")
+    area = np.where((mesh.points[on, 0] > 0.1) & (mesh.points[on, 0] < 1.9), 0.4, 0.2)
+    whole = np.hypot(area @ p[on], area @ q[on])
+    # Slip follows the tangent at the start of the increment.
+    assert whole == pytest.approx(np.hypot(*force(results)), rel=1e-3)
+
+
+def test_the_same_in_another_unit() -> None:
+    runs = [pushed(tip_on_block("block", "mortar", 0.3, u), aside=0.09, unit=u) for u in (1.0, 1e3)]
+    assert len(runs[0].frames) == len(runs[1].frames)
+    np.testing.assert_allclose(1e-3 * runs[1].frames[-1].U, runs[0].frames[-1].U, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_rigid_corner_presses_as_one_with_a_tiny_fillet(method: str) -> None:
+    """Such a fillet meets edges in node-to-segment contact: another constraint."""
+
+    def pressed(method: str, fillet: float) -> float:
+        mesh = ct.mesh.rectangle(2.0, 1.0, nx=5, ny=3)
+        tool = ct.mesh.add_node(mesh, 1.0, 2.0, "tool")
+        model = ct.Model(mesh)
+        model.section("all", element="Q4", material=ELASTIC, local_strain="logarithmic")
+        model.fix("bottom")
+        model.fix("tool", x=0.0, y=-DEEP, rotation=True)
+        wedge = ct.RigidCurve.polyline(
+            [(2.0, 2.0), (1.03, 1.0), (0.0, 2.0)], fillet=fillet, reference=tool
+        )
+        model.contact("top", wedge, method=method)
+        last = ct.solve(model, ct.Static(), threads=1).frames[-1]
+        assert abs(last.RF.sum(axis=0)[:2]).max() < 1e-10 * abs(last.RF[tool, 1])
+        return float(last.RF[tool, 1])
+
+    # The foremost point of a fillet of radius r is r (sqrt 2 - 1) behind the corner.
+    assert pressed(method, 0.0) == pytest.approx(pressed("node_to_segment", 1e-6), rel=1e-4)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("slave", ["linear", "quadratic", "drilling"])
+@pytest.mark.parametrize("kind", ["edges", "turning", "slave"])
+def test_gap_and_slip_of_a_corner_have_exact_derivatives(
+    kind: str, slave: str, method: str
+) -> None:
+    rng = np.random.default_rng(5)
+    flat = np.column_stack([np.linspace(1.2, -0.2, 4), np.zeros(4)])
+    wedge = np.array([[0.1, 0.5], [0.48, 0.02], [0.9, 0.5]])
+    s = chain(slave, flat, 0, 0.02)
+    m = chain("linear", wedge, len(s[0]))
+    thick = np.full(len(s[1]), 2.0)
+    X = np.vstack([s[0], m[0]])
+    more: dict[str, Any] = {"method": method, "corners": True, **LENGTHS}
+    if kind == "turning":
+        rows = np.column_stack([wedge[:-1], wedge[1:], np.zeros((2, 3))])
+        contact = _core.Contact.rigid(X, s[1], s[2], thick, rows, len(s[0]), (0.0, 0.0), **more)
+    elif kind == "edges":
+        contact = _core.Contact.edges(X, s[1], s[2], thick, m[1], m[2], **more)
+    else:
+        contact = _core.Contact.edges(X, m[1], m[2], thick[:2], s[1], s[2], **more)
+    assert len(contact.corners) == (kind != "slave" or method == "mortar")
+    x, old = moved(X, rng), moved(X, rng)
+    check_derivatives(contact, x, old, rng)
+    check_invariance(contact, x, old)
+    if len(contact.corners):
+        found = contact.evaluate(x, old)
+        assert (found["constraint"] == len(contact.nodes) - 1).sum() == 1
+    # A copy that takes the state evaluates the same.
+    other = contact.state()
+    contact.commit()
+    contact.restore_state(*other)
+    assert all(np.array_equal(a, b) for a, b in zip(contact.state(), other, strict=True))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_corners_at_nodes_are_redundant_and_do_no_harm(method: str) -> None:
+    """Blocks whose corners are at each other's nodes, all sides in contact surfaces."""
+    a, b = (ct.mesh.rectangle(1.0, 1.0, nx=4, ny=4, origin=(0.0, y)) for y in (0.0, 1.0))
+    mesh = ct.mesh.assembly(low=a, up=b)
+    sets = mesh.edge_sets
+    surfaces = [
+        np.vstack([sets[f"{w}.{e}"] for e in es.split()])
+        for w, es in (("low", "top right left"), ("up", "bottom right left"))
+    ]
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ELASTIC)
+    model.fix("low.bottom", x=None, y=0.0)
+    model.fix([0, int(mesh.nodes_of("up.bottom")[0])], y=None, x=0.0)
+    model.fix("up.top", x=None, y=-0.02)
+    model.contact(*surfaces, method=method, friction=0.2, name="joint")
+    results = ct.solve(model, ct.Static(), threads=1)
+    assert not results.notes
+    stress = results.nodal("S22")
+    assert np.ptp(stress) < 1e-8 * abs(stress).max()
+
+
+@pytest.mark.parametrize("scheme", ["energy_momentum", "hht", "central_difference"])
+def test_a_flying_corner_keeps_the_momentum(scheme: str) -> None:
+    model = tip_on_block("block", "mortar", 0.3)
+    model.velocity("square", x=3.0, y=-10.0)
+    more: dict[str, Any] = {} if scheme != "central_difference" else {"mass": "lumped"}
+    results = ct.solve(model, ct.Dynamic(period=0.01, scheme=scheme, **more), threads=1)
+    assert results.history("tip: force y").min() < 0.0
+    assert abs(results.frames[-1].scalars["energy balance"]) < 1e-2
+    if scheme == "central_difference":
+        return  # it has no sums of momenta
+    for name in ("momentum x", "momentum y", "angular momentum"):
+        value = results.history(name)
+        np.testing.assert_allclose(value[-1], value[0], rtol=1e-8 if scheme != "hht" else 1e-2)
+
+
+def test_a_pressure_law_has_no_corners_and_says_so() -> None:
+    law = ct.PressureLaw("linear", 1e5)
+    results = pushed(tip_on_block("block", "mortar", law=law))
     assert any("the master has sharp corners" in note for note in results.notes)
-    assert depth == pytest.approx(DEEP)  # nothing holds it
-    results, depth = pressed("square", "block", method)
+    assert depth(results) > 0.5 * DEEP
+    results = pushed(tip_on_block("square", "mortar", law=law))
     assert not any("sharp corners" in note for note in results.notes)
-    # Mortar keeps the mean over the edges of the square, a quarter of its side long.
-    assert depth < (0.5 * DEEP if method == "mortar" else 1e-9)
-
-
-def test_a_run_that_a_corner_stops_names_it_and_its_states_show_it() -> None:
-    given = problem(193, size=0.5)
-    with pytest.raises(ct.ConvergenceError, match=r"sharp corner of the master at node \d+") as end:
-        ct.solve(given.model, given.steps, threads=1)
-    assert reason(given.model, end.value.results, str(end.value)) == ("corner inside", True)
-    # Another node is no corner inside, and a message without a reason has none.
-    other = str(end.value).replace("master at node 332", "master at node 336")
-    assert reason(given.model, end.value.results, other) == ("corner inside", False)
-    assert reason(given.model, end.value.results, "no progress") == ("none", False)
-    pair = given.model.contacts[0]
-    pair.slave, pair.master = pair.master, pair.slave
-    assert ct.solve(given.model, given.steps, threads=1).times[-1] == pytest.approx(2.0)

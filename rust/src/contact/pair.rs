@@ -1,6 +1,7 @@
 //! A pair of boundaries: its candidates, and its gaps and slips with derivatives.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::corners::Corners;
 use super::curve::Edge;
 use super::discretization::{Discretization, Entry};
 use super::master::Surface;
@@ -13,26 +14,45 @@ use super::terms::{Terms, WIDTH};
 pub struct Contact {
     sides: Sides,
     method: Box<dyn Discretization>,
+    /// Corners of both sides with constraints behind those of the discretization.
+    corners: Vec<Corners>,
     joins: bool,
     /// Whether the candidates of joined surfaces were never requested.
     fresh: bool,
 }
 
 impl Contact {
-    /// A pair; `x` is the reference configuration.
+    /// A pair; `x` is the reference configuration. With `corners`, sharp corners have constraints
+    /// of their own: those of the master, and those of the slave where its nodes have means.
     pub fn new(
         x: &[[f64; 3]],
         slave: (Vec<Edge>, Vec<f64>),
         master: Option<Surface>,
         entry: &Entry,
         distances: Distances,
+        corners: bool,
     ) -> Self {
         let slave = Slave::new(x, slave.0, slave.1, entry.middles);
         let mut sides = Sides::new(x, slave, master, distances);
         let method = (entry.new)(&sides, x);
         sides.set_depth(x, entry.joins, &method.owners(&sides.slave));
-        sides.offset = vec![0.0; method.places(&sides.slave).len()];
-        let mut pair = Self { sides, method, joins: entry.joins, fresh: true };
+        let n = method.places(&sides.slave).len();
+        let mut first = n;
+        let sides_with_corners: &[bool] = match corners && !entry.joins {
+            false => &[],
+            true if entry.integrates && !sides.itself => &[false, true],
+            true => &[false],
+        };
+        let mut found = Vec::new();
+        for &of_slave in sides_with_corners {
+            let own = Corners::new(&sides, x, first, !entry.integrates, of_slave);
+            first += own.len();
+            if !own.is_empty() {
+                found.push(own);
+            }
+        }
+        sides.offset = vec![0.0; first];
+        let mut pair = Self { sides, method, corners: found, joins: entry.joins, fresh: true };
         if pair.joins {
             pair.renew(x);
             pair.method.bind(&mut pair.sides, x);
@@ -44,13 +64,37 @@ impl Contact {
         &self.sides.slave
     }
 
-    /// Slave node of each constraint, by its place in the slave's nodes.
+    /// Slave node of each constraint, by its place in the slave's nodes; of a corner of the master
+    /// the nearest.
     pub fn places(&self) -> Vec<usize> {
-        self.method.places(&self.sides.slave)
+        let mut places = self.method.places(&self.sides.slave);
+        places.extend(self.corners.iter().flat_map(Corners::nearest));
+        places
     }
 
-    pub fn candidates(&self) -> &[Candidate] {
-        self.sides.candidates()
+    /// Reference area of each constraint.
+    pub fn full_area(&self) -> Vec<f64> {
+        let places = self.method.places(&self.sides.slave);
+        let mut area: Vec<f64> = places.iter().map(|&k| self.sides.slave.area[k]).collect();
+        area.extend(self.corners.iter().flat_map(|c| vec![c.area(); c.len()]));
+        area
+    }
+
+    /// Mesh nodes of the corners that have constraints, -1 for those of a rigid body.
+    pub fn corner_nodes(&self) -> Vec<i64> {
+        self.corners.iter().flat_map(Corners::nodes).collect()
+    }
+
+    /// Candidates: items of the slave with members of the master, then corners, which are numbered
+    /// behind these items, with members of the other side.
+    pub fn candidates(&self) -> Vec<Candidate> {
+        let mut all = self.sides.candidates().to_vec();
+        let mut items = self.sides.depth.len();
+        for corners in &self.corners {
+            all.extend(corners.candidates().iter().map(|&(c, i)| (items + c, i)));
+            items += corners.len();
+        }
+        all
     }
 
     /// Clearance taken off the gap of each constraint.
@@ -81,37 +125,69 @@ impl Contact {
         if changed {
             self.sides.index(count);
         }
-        changed
+        let sides = &self.sides;
+        self.corners.iter_mut().fold(changed, |any, c| c.renew(sides, x) || any)
+    }
+
+    /// A candidate of the surfaces, or one of a corner.
+    fn candidate(&self, pair: usize) -> Result<Candidate, (&Corners, Candidate)> {
+        let own = self.sides.candidates();
+        if let Some(found) = own.get(pair) {
+            return Ok(*found);
+        }
+        let mut left = pair - own.len();
+        for corners in &self.corners {
+            if let Some(found) = corners.candidates().get(left) {
+                return Err((corners, *found));
+            }
+            left -= corners.candidates().len();
+        }
+        unreachable!("a candidate has a number")
     }
 
     /// Variables of a candidate.
     pub fn variables(&self, pair: usize) -> [i64; WIDTH] {
-        self.method.variables(&self.sides, self.candidates()[pair])
+        match self.candidate(pair) {
+            Ok(own) => self.method.variables(&self.sides, own),
+            Err((corners, own)) => corners.variables(own),
+        }
     }
 
     /// Constraints of a candidate.
     pub fn constraints(&self, pair: usize) -> [usize; 3] {
-        self.method.constraints(&self.sides, self.candidates()[pair])
+        match self.candidate(pair) {
+            Ok(own) => self.method.constraints(&self.sides, own),
+            Err((corners, own)) => [corners.constraint(own.0), usize::MAX, usize::MAX],
+        }
     }
 
     /// Terms of all candidates that meet at `x`, in their order; slip since `old`.
     pub fn evaluate(&mut self, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
-        self.method.evaluate(&self.sides, x, old)
+        let mut terms = self.method.evaluate(&self.sides, x, old);
+        let mut from = self.sides.candidates().len();
+        for corners in &mut self.corners {
+            terms.extend(corners.evaluate(&self.sides, x, old, from));
+            from += corners.candidates().len();
+        }
+        terms
     }
 
     /// Keeps the masters of the constraints as those to return to.
     pub fn commit(&mut self) {
         self.method.commit();
+        self.corners.iter_mut().for_each(Corners::commit);
     }
 
     /// Returns to the masters of the last commit.
     pub fn restore(&mut self) {
         self.method.restore();
+        self.corners.iter_mut().for_each(Corners::restore);
     }
 
     /// Forgets which masters the constraints had.
     pub fn forget(&mut self) {
         self.method.forget();
+        self.corners.iter_mut().for_each(Corners::forget);
     }
 
     /// What later evaluations depend on besides the offsets: places of the search, and whole
@@ -122,19 +198,33 @@ impl Contact {
         if self.joins {
             return (Vec::new(), whole);
         }
-        whole.extend(self.candidates().iter().flat_map(|&(i, j)| [i as i64, j as i64]));
-        (self.sides.search.places(), whole)
+        let mut places = self.sides.search.places();
+        let flat = |list: &[Candidate]| -> Vec<i64> {
+            list.iter().flat_map(|&(i, j)| [i as i64, j as i64]).collect()
+        };
+        // Places are cut off from the end.
+        let mut of_corners = Vec::new();
+        for corners in self.corners.iter().rev() {
+            whole.extend(corners.memory());
+            whole.push(corners.candidates().len() as i64);
+            whole.extend(flat(corners.candidates()));
+            of_corners.splice(0..0, corners.places());
+        }
+        places.extend(of_corners);
+        whole.extend(flat(self.sides.candidates()));
+        (places, whole)
     }
 
     /// Take the state of the same pair: `places` of the search; `whole` has a flag of surfaces that
-    /// are joined, the memory of the discretization, and the candidates. `false` if it does not
-    /// fit.
+    /// are joined, the memory of the discretization, that of corners with their candidates, and the
+    /// candidates. `false` if it does not fit.
     pub fn resume(&mut self, places: &[f64], whole: &[i64]) -> bool {
         let n = self.method.memory().len();
         if whole.len() < 1 + n {
             return false;
         }
-        let (head, candidates) = whole.split_at(1 + n);
+        let (head, mut candidates) = whole.split_at(1 + n);
+        let mut places = places;
         let slaves = self.sides.depth.len();
         let masters = self.sides.master.len();
         let fits = |m: &i64| *m >= -1 && *m < masters as i64;
@@ -146,6 +236,12 @@ impl Contact {
                 return false;
             }
         } else {
+            for corners in self.corners.iter_mut().rev() {
+                let Some(rest) = resumed(corners, candidates, &mut places) else {
+                    return false;
+                };
+                candidates = rest;
+            }
             let (pairs, rest) = candidates.as_chunks::<2>();
             let inside = |p: &[i64; 2]| {
                 (0..slaves as i64).contains(&p[0]) && (0..masters as i64).contains(&p[1])
@@ -168,4 +264,19 @@ impl Contact {
         self.method.remember(&head[1..]);
         true
     }
+}
+
+/// Gives corners their part of a state, cut off the end of `places`; the rest of `whole`, or none
+/// if it does not fit.
+fn resumed<'a>(corners: &mut Corners, whole: &'a [i64], places: &mut &[f64]) -> Option<&'a [i64]> {
+    let (memory, rest) = whole.split_at_checked(corners.memory().len())?;
+    let (&count, rest) = rest.split_first()?;
+    let (found, rest) = rest.split_at_checked(usize::try_from(count).ok()?.checked_mul(2)?)?;
+    let (pairs, _) = found.as_chunks::<2>();
+    let number = |k: i64| usize::try_from(k).ok();
+    let list = pairs.iter().map(|p| Some((number(p[0])?, number(p[1])?)));
+    let list: Vec<Candidate> = list.collect::<Option<_>>()?;
+    let (surfaces, own) = places.split_at(places.len().saturating_sub(corners.n_places()));
+    *places = surfaces;
+    corners.resume(memory, own, list).then_some(rest)
 }

@@ -122,6 +122,7 @@ impl Contact {
         master: Option<Surface>,
         method: &str,
         distances: Distances,
+        corners: bool,
     ) -> PyResult<Self> {
         let Distances { reach, margin, depth } = distances;
         if !(reach > 0.0 && margin >= 0.0 && depth > 0.0 && reach.is_finite()) {
@@ -131,7 +132,7 @@ impl Contact {
         if entry.joins && !matches!(master, Some(Surface::Edges(_))) {
             return Err(bad(format!("{method} joins two boundaries of the mesh")));
         }
-        let pair = Pair::new(x, slave, master, entry, distances);
+        let pair = Pair::new(x, slave, master, entry, distances, corners);
         Ok(Self { pair, n_nodes: x.len(), terms: Vec::new(), threads: 1 })
     }
 
@@ -154,7 +155,7 @@ impl Contact {
     #[staticmethod]
     #[pyo3(signature = (
         reference, slave_nodes, slave_bulge, slave_thickness, master_nodes, master_bulge, *,
-        master_shapes=None, method="mortar", reach, margin, depth=f64::INFINITY
+        master_shapes=None, method="mortar", reach, margin, depth=f64::INFINITY, corners=false
     ))]
     #[allow(clippy::too_many_arguments)]
     fn edges(
@@ -169,6 +170,7 @@ impl Contact {
         reach: f64,
         margin: f64,
         depth: f64,
+        corners: bool,
     ) -> PyResult<Self> {
         let x = rows::<3, f64>(&reference, "reference")?;
         let slave = sides(x, &slave_nodes, &slave_bulge, &slave_thickness)?;
@@ -178,12 +180,14 @@ impl Contact {
         }
         let master = Surface::Edges(master);
         let distances = Distances { reach, margin, depth };
-        Self::wrap(x, slave, Some(master), method, distances)
+        Self::wrap(x, slave, Some(master), method, distances, corners)
     }
 
     /// A boundary with itself; a penetration beyond half the local thickness is no contact.
     #[staticmethod]
-    #[pyo3(signature = (reference, nodes, bulge, thickness, *, method="mortar", reach, margin))]
+    #[pyo3(signature = (
+        reference, nodes, bulge, thickness, *, method="mortar", reach, margin, corners=false
+    ))]
     #[allow(clippy::too_many_arguments)]
     fn itself(
         reference: Rows<'_>,
@@ -193,11 +197,12 @@ impl Contact {
         method: &str,
         reach: f64,
         margin: f64,
+        corners: bool,
     ) -> PyResult<Self> {
         let x = rows::<3, f64>(&reference, "reference")?;
         let slave = sides(x, &nodes, &bulge, &thickness)?;
         let distances = Distances { reach, margin, depth: f64::INFINITY };
-        Self::wrap(x, slave, None, method, distances)
+        Self::wrap(x, slave, None, method, distances, corners)
     }
 
     /// A boundary and a rigid curve.
@@ -208,7 +213,7 @@ impl Contact {
     #[staticmethod]
     #[pyo3(signature = (
         reference, slave_nodes, slave_bulge, slave_thickness, segments, node, point, *,
-        method="mortar", reach, margin, depth=f64::INFINITY
+        method="mortar", reach, margin, depth=f64::INFINITY, corners=false
     ))]
     #[allow(clippy::too_many_arguments)]
     fn rigid(
@@ -223,6 +228,7 @@ impl Contact {
         reach: f64,
         margin: f64,
         depth: f64,
+        corners: bool,
     ) -> PyResult<Self> {
         let x = rows::<3, f64>(&reference, "reference")?;
         let slave = sides(x, &slave_nodes, &slave_bulge, &slave_thickness)?;
@@ -236,10 +242,11 @@ impl Contact {
         };
         let rigid = Rigid::new(rows::<7, f64>(&segments, "segments")?, node, point).map_err(bad)?;
         let distances = Distances { reach, margin, depth };
-        Self::wrap(x, slave, Some(Surface::Rigid(rigid)), method, distances)
+        Self::wrap(x, slave, Some(Surface::Rigid(rigid)), method, distances, corners)
     }
 
-    /// Mesh node of each constraint: those of nodes, then those of facets by their first node.
+    /// Mesh node of each constraint: those of nodes, then those of facets by their first node, then
+    /// those of corners by the slave node next to them.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         let nodes = &self.pair.slave().nodes;
@@ -250,9 +257,14 @@ impl Contact {
     /// Reference area of each constraint over all its edges.
     #[getter]
     fn full_area<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let area = &self.pair.slave().area;
-        let area: Vec<f64> = self.pair.places().iter().map(|&k| area[k]).collect();
-        area.into_pyarray(py)
+        self.pair.full_area().into_pyarray(py)
+    }
+
+    /// Mesh node of each corner that has a constraint of its own, -1 for those of a rigid body;
+    /// their constraints are the last ones.
+    #[getter]
+    fn corners<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.pair.corner_nodes().into_pyarray(py)
     }
 
     /// Distance taken off the gap at each constraint.

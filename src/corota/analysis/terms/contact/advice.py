@@ -48,15 +48,20 @@ def fillet_note(pair: Pair) -> str:
 
 
 def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
-    """A remark on masters with sharp corners, or round ones with too coarse edges, or ''."""
+    """A remark on masters that press with corners but not as corners, or ''.
+
+    Sharp corners under a pressure law, and round boundaries with too coarse edges.
+    """
     if pair.master is None or pair.tied:
         return ""
-    if sharp := sharp_corners(points, pair.master.nodes[:, :2]):
+    sharp = sharp_corners(points, pair.master.nodes[:, :2]) if pair.law is not None else []
+    if sharp:
         named = ", ".join(str(labels[k]) for k in sharp[:3]) + ", ..." * (len(sharp) > 3)
         return (
-            f"contact pair {pair.item.name!r}: the master has sharp corners (node {named}). Only "
-            "slave nodes have constraints, so a corner that presses alone sinks in between them "
-            "and wedges: where the other body meets a corner, make this surface the slave"
+            f"contact pair {pair.item.name!r}: the master has sharp corners (node {named}). A "
+            "pressure law acts on areas, so a corner that presses alone sinks in between slave "
+            "nodes and wedges: where the other body meets a corner, make this surface the slave, "
+            "or use hard contact"
         )
     if getattr(pair.item, "smooth", True):
         return ""

@@ -480,8 +480,11 @@ class ContactTerm(Term):
         }
 
     def label(self, pair: Pair, constraint: int) -> int:
-        """The user's number of the slave node of a constraint."""
-        return int(self.system.model.mesh.node_labels[pair.nodes[constraint]])
+        """The user's number of the slave node of a constraint, or of the corner."""
+        node = pair.nodes[constraint]
+        if constraint >= pair.of_surfaces and pair.corners[constraint - pair.of_surfaces] >= 0:
+            node = pair.corners[constraint - pair.of_surfaces]
+        return int(self.system.model.mesh.node_labels[node])
 
 
 def _few(labels: Ints, most: int = 5) -> str:

@@ -1,4 +1,4 @@
-"""Sharp corners of a master that penetrate a slave surface between its constraints."""
+"""Sharp corners of a master that penetrate a slave surface with a pressure law."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -26,13 +26,13 @@ NAMED, FAR = 0.1, 2.0
 def sunk_corner(contact_term: ContactTerm) -> str:
     """Message on the deepest corner of a master inside a slave surface, or ''.
 
-    Gaps are defined at slave nodes, with mortar as means over edges. A corner between two nodes can
-    therefore penetrate until a slave node is in contact with the side of the corner and jams.
+    A pressure law acts on areas, so that a corner has no constraint of its own: it can penetrate
+    between two slave nodes until one of them is in contact with the side of the corner and jams.
     """
     x = contact_term.positions(contact_term.u)[:, :2]
     worst, said = NAMED, ""
     for pair in contact_term.pairs:
-        if pair.tied or pair.master is None or not isinstance(pair.item, ContactPair):
+        if pair.law is None or pair.master is None or not isinstance(pair.item, ContactPair):
             continue
         for corner in sharp_corners(x, pair.master.nodes[:, :2]):
             depth, ends = _depth(x, pair, corner)
@@ -42,9 +42,9 @@ def sunk_corner(contact_term: ContactTerm) -> str:
                 said = (
                     f"; the sharp corner of the master at node {label[corner]} lies {depth:.2g} "
                     f"slave edges inside the slave surface of {pair.name!r}, between nodes "
-                    f"{label[ends[0]]} and {label[ends[1]]}: only slave nodes have constraints, "
-                    "so that it goes in until they wedge. Exchange slave and master, refine the "
-                    "slave where the corner meets it, or round the corner"
+                    f"{label[ends[0]]} and {label[ends[1]]}: a pressure law acts on areas, so "
+                    "that it goes in until they wedge. Exchange slave and master, refine the "
+                    "slave where the corner meets it, round the corner, or use hard contact"
                 )
     return said
 

@@ -55,11 +55,14 @@ def linearized_contact(
     states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
     contact.slip_directions = {p.first: np.ones(p.n) for p in contact_term.pairs}
     coupling = contact._coupling(found.contact_state, states)[0]
-    own = np.zeros(contact_term.n)
+    own, hard = np.zeros(contact_term.n), np.zeros(contact_term.n, bool)
     for pair in contact_term.pairs:
         part = pair.full / pair.stiffness
         own[pair.first : pair.first + pair.width] = np.tile(part, pair.width // pair.n)
-    bare = coupling.diagonal == 0.0
+        hard[pair.first : pair.first + pair.width] = pair.law is None
+        # Slips of a pair with a pressure law have no compliance either.
+        hard[pair.first + pair.n : pair.first + pair.width] = True
+    bare = hard & (coupling.diagonal <= 0.0)
     coupling.diagonal[bare] = -COMPLIANCE * own[bare]
     contact_term.restore()
     return found.at, coupling, states

@@ -61,17 +61,21 @@ def output(
         rows = np.column_stack([p, q, gap, pair.slid, state])[pair.owner]
         if pair.tied:
             rows[:] = 0.0
-        _spread(values, pair, rows)
+        _spread(values, pair, rows, terms)
         if pair.name in each:
-            _spread(each[pair.name], pair, rows)
+            _spread(each[pair.name], pair, rows, terms)
         fx, fy, moment = resultant(pair, acting, p, q, x)
         sums[f"{pair.name}: force x"] = fx
         sums[f"{pair.name}: force y"] = fy
         sums[f"{pair.name}: moment"] = moment
         if not pair.tied:
             closed = np.zeros(n)
-            np.maximum.at(closed, pair.nodes, np.where(state != OPEN, terms.area, 0.0))
-            sums[f"{pair.name}: area"] = float(closed.sum())
+            area = np.where(state != OPEN, terms.area, 0.0)
+            np.maximum.at(closed, pair.nodes[: pair.of_surfaces], area[: pair.of_surfaces])
+            # A corner that presses alone counts as a node does.
+            area[: pair.of_surfaces] = 0.0
+            area[pair.backed(terms, state)] = 0.0
+            sums[f"{pair.name}: area"] = float(closed.sum() + area.sum())
         if pair.friction:
             shear = resultant(pair, acting, np.zeros_like(p), q, x)
             for name, value in zip(("x", "y", "moment"), shear, strict=True):
@@ -84,17 +88,20 @@ def output(
     return values, sums, each
 
 
-def _spread(values: Floats, pair: Pair, rows: Floats) -> None:
+def _spread(values: Floats, pair: Pair, rows: Floats, terms: Terms | None = None) -> None:
     """Add a pair's rows to the nodes; mid-side nodes get the mean of their corners."""
     n = len(values)
     own = np.zeros((n, 5))
     own[pair.nodes[: pair.of_nodes]] = rows[: pair.of_nodes]
     # Facets in contact with rounded corners are shown at their first nodes.
-    facets, more = pair.nodes[pair.of_nodes :], rows[pair.of_nodes :]
+    facets = pair.nodes[pair.of_nodes : pair.of_surfaces]
+    more = rows[pair.of_nodes : pair.of_surfaces]
     for column in (0, 1, 3):
         own[facets, column] += more[:, column]
     own[facets, 2] = np.minimum(own[facets, 2], more[:, 2])
     own[facets, 4] = np.maximum(own[facets, 4], more[:, 4])
+    if terms is not None and len(pair.corners):
+        _spread_corners(own, pair, rows, terms)
     given = np.zeros(n, bool)
     given[pair.nodes] = True
     edges = pair.slave.nodes
@@ -110,6 +117,36 @@ def _spread(values: Floats, pair: Pair, rows: Floats) -> None:
     first = ~before & (values[nodes, 2] == 0.0)
     values[nodes, 2] = np.where(first, own[nodes, 2], np.minimum(values[nodes, 2], own[nodes, 2]))
     values[nodes, 4] = np.maximum(values[nodes, 4], own[nodes, 4])
+
+
+def _spread_corners(own: Floats, pair: Pair, rows: Floats, terms: Terms) -> None:
+    """Add the forces of corners as tractions of slave nodes, in place.
+
+    A corner of the slave is a node itself; one of the master presses on those of an edge.
+    """
+    edges = pair.slave.nodes
+    for k, variables, gradient in zip(
+        terms.constraint, terms.variables, terms.gap_gradient, strict=True
+    ):
+        if k < pair.of_surfaces or rows[k, 4] == OPEN:
+            continue
+        a, b = (int(v) // 3 for v in variables[[0, 2]])
+        edge = np.flatnonzero((edges[:, 0] == a) & (edges[:, 1] == b))
+        shares = {a: 1.0}
+        if len(edge) and pair.corners[k - pair.of_surfaces] not in (a, b):
+            nodes = edges[int(edge[0])]
+            width = 3 if nodes[2] >= 0 else 2
+            shares = {
+                int(variables[2 * i]) // 3: float(np.hypot(*gradient[2 * i : 2 * i + 2]))
+                for i in range(width)
+            }
+            if width == 3 and pair.place[nodes[2]] < 0:
+                half = 0.5 * shares.pop(int(nodes[2]))
+                shares = {n: share + half for n, share in shares.items()}
+        whole = sum(shares.values())
+        for n, share in shares.items():
+            own[n, :2] += share / whole * rows[k, :2] * pair.full[k] / pair.full[pair.place[n]]
+            own[n, 4] = max(own[n, 4], rows[k, 4])
 
 
 def resultant(

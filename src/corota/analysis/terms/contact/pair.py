@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
+#: Change of the pressure of a redundant corner per error of its gap, relative to its stiffness: it
+#: scales corrections, and is zero in what they converge to.
+REDUNDANT = 1e-3
 #: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
 EPS = float(np.finfo(float).eps)
@@ -46,9 +49,14 @@ class Pair:
     n : int
         Constraints.
     nodes : ndarray of int, shape (n,)
-        Their slave nodes; of a facet that may meet a rounded corner, its first node.
+        Their slave nodes; of a facet that may meet a rounded corner, its first node; of a sharp
+        corner, the nearest one at the start.
     of_nodes : int
         Constraints of nodes; those of facets come behind.
+    of_surfaces : int
+        Constraints of nodes and facets; those of corners come behind.
+    corners : ndarray of int, shape (n - of_surfaces,)
+        Nodes of the corners, -1 for those of a rigid body.
     width : int
         Multipliers of the pair: n, or 2 n with friction and in ties.
     """
@@ -63,6 +71,11 @@ class Pair:
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         self.of_nodes = len(distinct(self.nodes))
+        self.corners = np.asarray(self.core.corners, np.int64)
+        self.of_surfaces = self.n - len(self.corners)
+        #: Constraint of each node, -1 for none.
+        self.place = np.full(len(system.per_node) + 1, -1, np.int64)
+        self.place[self.nodes[: self.of_nodes]] = np.arange(self.of_nodes)
         self.full = np.asarray(self.core.full_area, float)
         self.two = self.tied or self.friction > 0.0
         self.width = self.n * (2 if self.two else 1)
@@ -81,9 +94,7 @@ class Pair:
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         if isinstance(item, ContactPair) and METHODS[item.method]["integrates"]:
-            place = np.full(len(system.per_node) + 1, -1, np.int64)
-            place[self.nodes] = np.arange(self.n)
-            ends = place[self.slave.nodes[:, :2]]
+            ends = self.place[self.slave.nodes[:, :2]]
             left, right = np.full(self.n, -1, np.int64), np.full(self.n, -1, np.int64)
             right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
             self.beside = (left, right)
@@ -293,7 +304,14 @@ class Pair:
         Closed constraints have no linearized gap after the `last` correction: their pressure alone
         decides.
         """
-        return self.conditions.states(self._at(terms), p, q, last)
+        found: NDArray[np.int8] = self.conditions.states(self._at(terms), p, q, last)
+        if len(self.corners):
+            # Where the constraints of the surfaces keep a corner out, it has nothing to do.
+            was = p > 0.0 if last is None else last != OPEN
+            idle = ~was & (terms.gap >= -self.noise * self.full)
+            idle[: self.of_surfaces] = False
+            found[idle] = OPEN
+        return found
 
     def slip_direction(self, terms: Terms, q: Floats) -> Floats:
         """Sign of the shear traction if it slips, shape (n,)."""
@@ -327,7 +345,25 @@ class Pair:
             ``follow`` is dq / dp of slipping rows; without shear tractions it is zero.
         """
         found = self.conditions.rows(self._at(terms), p, q, state, slip_direction)
+        backed = self.backed(terms, state)
+        if len(backed):
+            # The constraints may depend on each other: the pressure of the corner stays.
+            less = REDUNDANT * self.full[backed] / self.stiffness[backed]
+            found[0][backed] -= less
+            stuck = state[backed] == CLOSED
+            found[2][backed[stuck]] -= less[stuck]
         return tuple(found)  # type: ignore[return-value]
+
+    def backed(self, terms: Terms, state: NDArray[np.int8]) -> Ints:
+        """Closed constraints of corners beside which a slave node is closed as well."""
+        own = terms.constraint >= self.of_surfaces
+        if not own.any():
+            return np.zeros(0, np.int64)
+        corner, nodes = terms.constraint[own], terms.variables[own][:, :6:2] // 3
+        beside = self.place[nodes]
+        closed = (beside >= 0) & (state[self.owner[beside]] != OPEN)
+        out: Ints = corner[closed.any(axis=1) & (state[corner] != OPEN)]
+        return out
 
     def add_forces(
         self, terms: Terms, dofs: Ints, p: Floats, q: Floats, force: Floats, size: Floats | None

@@ -137,6 +137,8 @@ def contact_core(
         _check_pair(system, item, slave, master)
     reach = item.reach or REACH * longest
     common: dict[str, Any] = {"method": item.method, "reach": reach, "margin": 0.5 * reach}
+    # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
+    common["corners"] = item.law is None
     if not item.itself:
         common["depth"] = _thickness(system, slave)
     try:

@@ -1,0 +1,387 @@
+//! Sharp convex corners against the edges of the other side.
+//!
+//! Constraints of the slave's nodes and edges say nothing about a corner of the master between two
+//! nodes: it would sink into the edge without force. Where gaps are means over edges, a corner of
+//! the slave sinks in as well, and a body that rests on one would drop when the other has passed.
+//! Such corners therefore have constraints of their own: the gap to the closest edge of the other
+//! side, and the slip along it, by the kernels of a node against an edge. For corners of the master
+//! their roles are exchanged; the signs are those of the slave's other constraints.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::curve::{Shape, Vec2, add, dot, sub, unit};
+use super::discretization::node_to_segment::{Bounds, choose, gap_and_slip, open};
+use super::master::{Hit, Master, Surface};
+use super::search::{self, Candidate, Item, Search, each};
+use super::sides::Sides;
+use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
+use std::collections::HashMap;
+
+/// Least turn of the boundary at a corner [rad]: 20 degrees. Blunter ones are round boundaries.
+const SHARP: f64 = 0.349_065_850_398_865_9;
+/// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
+/// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
+const DENT: f64 = 0.35;
+/// Distance of two ends that are one point, in lengths of the pieces that meet there.
+const SAME: f64 = 1e-6;
+/// Most variables of an edge and a corner.
+const OWN: usize = 9;
+
+/// A corner: the member of its side that ends there, and the one that begins.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    before: usize,
+    behind: usize,
+}
+
+/// Corners of a side, whose constraints follow those of the surfaces.
+pub struct Corners {
+    list: Vec<Corner>,
+    /// Number of the first constraint.
+    first: usize,
+    /// Side of the corners, and what they are measured against.
+    own: Surface,
+    faces: Surface,
+    of_slave: bool,
+    /// Penetration of each slave edge that counts.
+    depth: Vec<f64>,
+    /// Slave node next to each corner in the reference configuration, by its place.
+    nearest: Vec<usize>,
+    /// Reference area of every constraint: that of a slave edge, on average.
+    area: f64,
+    search: Search,
+    /// Number of each corner's first candidate.
+    index: Vec<usize>,
+    /// Member of the other side that each corner met: in the last evaluation, and in the last commit.
+    held: [Vec<Option<usize>>; 2],
+    /// Whether slave nodes have constraints against edges before theirs in a boundary that meets
+    /// itself.
+    nodal: bool,
+}
+
+impl Corners {
+    /// Corners of the slave or of the master; `first` constraints come before, those of the surfaces
+    /// at nodes if `nodal`.
+    pub fn new(sides: &Sides, x: &[[f64; 3]], first: usize, nodal: bool, of_slave: bool) -> Self {
+        let slave = &sides.slave;
+        let edges = Surface::Edges(slave.edges.clone());
+        let (own, faces) =
+            if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
+        let list = sharp(&own, x);
+        let part = if sides.itself { 1.0 } else { 2.0 };
+        let depth = if list.is_empty() {
+            Vec::new()
+        } else {
+            let half = search::half_thickness(slave, x);
+            half.into_iter().map(|h| (part * h).min(sides.distances.depth)).collect()
+        };
+        let nearest = list.iter().map(|c| {
+            let p = point(&own, *c, x);
+            let square = |k: &usize| {
+                let q = x[slave.nodes[*k] as usize];
+                (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
+            };
+            (0..slave.nodes.len())
+                .min_by(|a, b| square(a).total_cmp(&square(b)))
+                .expect("a slave has nodes")
+        });
+        let nearest = nearest.collect();
+        Self {
+            nearest,
+            area: slave.area.iter().sum::<f64>() / slave.edges.len() as f64,
+            own,
+            faces,
+            of_slave,
+            depth,
+            held: [vec![None; list.len()], vec![None; list.len()]],
+            search: Search::default(),
+            index: Vec::new(),
+            list,
+            first,
+            nodal,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// Slave node next to each corner, by its place in the slave's nodes.
+    pub fn nearest(&self) -> &[usize] {
+        &self.nearest
+    }
+
+    /// Mesh node of each corner, -1 for those of a rigid body.
+    pub fn nodes(&self) -> Vec<i64> {
+        let node = |c: &Corner| match &self.own {
+            Surface::Edges(edges) => edges[c.before].nodes[1].into(),
+            Surface::Rigid(_) => -1,
+        };
+        self.list.iter().map(node).collect()
+    }
+
+    /// Corners and members of the other side that may meet.
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.search.candidates
+    }
+
+    /// Renews the candidates where needed; tells whether they changed.
+    pub fn renew(&mut self, sides: &Sides, x: &[[f64; 3]]) -> bool {
+        if self.list.is_empty() {
+            return false;
+        }
+        let items: Vec<Item> = self.list.iter().map(|c| item(&self.own, *c, x)).collect();
+        let (list, nodal) = (&self.list, self.nodal);
+        let allowed = |c: usize, i: usize| !sides.itself || free(sides, list[c], i, nodal);
+        let distances = sides.distances;
+        let changed =
+            self.search.update(items, &self.faces, x, distances.reach, distances.margin, allowed);
+        if changed {
+            self.number();
+        }
+        changed
+    }
+
+    fn number(&mut self) {
+        let candidates = &self.search.candidates;
+        self.index =
+            (0..=self.list.len()).map(|c| candidates.partition_point(|own| own.0 < c)).collect();
+    }
+
+    /// Variables of a candidate: those of the slave's edge or corner, then of the other side.
+    pub fn variables(&self, (c, i): Candidate) -> [i64; WIDTH] {
+        let own = self.of_corner(c);
+        let faces = self.faces.variables(i);
+        if self.of_slave { join(&own, &faces) } else { join(&faces, &own) }
+    }
+
+    /// Variables of a corner.
+    fn of_corner(&self, c: usize) -> Vec<i64> {
+        let before = self.list[c].before;
+        match &self.own {
+            Surface::Edges(edges) => {
+                let node = 3 * i64::from(edges[before].nodes[1]);
+                vec![node, node + 1]
+            }
+            rigid @ Surface::Rigid(_) => rigid.variables(before),
+        }
+    }
+
+    /// Penetration up to which a corner may be inside a member of the other side.
+    fn deepest(&self, c: usize, i: usize) -> f64 {
+        if self.of_slave {
+            let Corner { before, behind } = self.list[c];
+            self.depth[before].min(self.depth[behind])
+        } else {
+            self.depth[i]
+        }
+    }
+
+    /// Constraint of a corner.
+    pub fn constraint(&self, c: usize) -> usize {
+        self.first + c
+    }
+
+    /// Terms of all corners that meet an edge at `x`; slip since `old`. Candidates are numbered
+    /// from `from`.
+    pub fn evaluate(
+        &mut self,
+        sides: &Sides,
+        x: &[[f64; 3]],
+        old: Option<&[[f64; 3]]>,
+        from: usize,
+    ) -> Vec<Terms> {
+        if self.index.is_empty() {
+            return Vec::new();
+        }
+        let found = each(self.list.len(), |c| self.meets(sides, c, x));
+        for (held, pair) in self.held[0].iter_mut().zip(&found) {
+            *held = pair.map(|p| self.search.candidates[p].1);
+        }
+        let terms = |pair: usize| self.terms(sides, pair, x, old, from);
+        found.into_iter().flatten().map(terms).collect()
+    }
+
+    /// The candidate whose edge a corner meets.
+    fn meets(&self, sides: &Sides, c: usize, x: &[[f64; 3]]) -> Option<usize> {
+        let corner = self.list[c];
+        let (p, [first, second]) = (point(&self.own, corner, x), normals(&self.own, corner, x));
+        let normal = unit(add(first, second));
+        // Half the angle of the cone of normals, and how far an edge may be out of it.
+        let half = dot(normal, first).clamp(-1.0, 1.0).acos();
+        let facing = (half + DENT).min(0.5 * std::f64::consts::PI).cos();
+        let shape = |pair: usize| {
+            let i = self.search.candidates[pair].1;
+            let edge = self.faces.place(i, x);
+            let hit = edge.closest(p);
+            let meets = dot(edge.normal(&hit), normal) <= -facing && -hit.gap <= self.deepest(c, i);
+            meets.then_some((pair, edge))
+        };
+        let shapes: Vec<(usize, Master<f64>)> =
+            (self.index[c]..self.index[c + 1]).filter_map(shape).collect();
+        let last = self.held[0][c].and_then(|i| {
+            shapes.iter().map(|s| s.0).find(|&pair| self.search.candidates[pair].1 == i)
+        });
+        let bounds = Bounds { reach: sides.distances.reach, depth: f64::INFINITY };
+        choose(p, normal, &shapes, last, bounds)
+    }
+
+    fn terms(
+        &self,
+        sides: &Sides,
+        pair: usize,
+        x: &[[f64; 3]],
+        old: Option<&[[f64; 3]]>,
+        from: usize,
+    ) -> Terms {
+        let (c, i) = self.search.candidates[pair];
+        let corner = self.list[c];
+        let variables = self.variables((c, i));
+        let v = lifted::<OWN>(&variables, x);
+        let [own, other] = [self.of_corner(c).len(), self.faces.variables(i).len()];
+        let [at, from_other] = if self.of_slave { [0, own] } else { [other, 0] };
+        let p = match &self.own {
+            Surface::Edges(_) => [v[at], v[at + 1]],
+            rigid @ Surface::Rigid(_) => rigid.shape(corner.before, &v[at..at + own]).end(1),
+        };
+        let face = self.faces.shape(i, &v[from_other..from_other + other]);
+        let before = old.map(|o| (point(&self.own, corner, o), self.faces.place(i, o)));
+        let before = before.as_ref().map(|(p, face)| (*p, face));
+        let (gap, slip) = gap_and_slip(p, &face, before);
+        let constraint = self.constraint(c);
+        let share = Share {
+            constraint,
+            gap: (&open(gap, sides.offset[constraint], self.area)).into(),
+            slip: slip.map_or_else(Function::none, |s| (&open(s, 0.0, self.area)).into()),
+            area: self.area,
+        };
+        Terms { pair: from + pair, variables, shares: vec![share] }
+    }
+
+    pub fn commit(&mut self) {
+        let [now, kept] = &mut self.held;
+        kept.clone_from(now);
+    }
+
+    pub fn restore(&mut self) {
+        let [now, kept] = &mut self.held;
+        now.clone_from(kept);
+    }
+
+    pub fn forget(&mut self) {
+        self.held[0].fill(None);
+    }
+
+    /// Members that the corners met, or -1.
+    pub fn memory(&self) -> Vec<i64> {
+        self.held.iter().flatten().map(|held| held.map_or(-1, |i| i as i64)).collect()
+    }
+
+    /// Places that the candidates were found for.
+    pub fn places(&self) -> Vec<f64> {
+        self.search.places()
+    }
+
+    /// Number of these places once there are candidates.
+    pub fn n_places(&self) -> usize {
+        6 * (self.list.len() + self.faces.len())
+    }
+
+    /// Take `memory`, places and candidates of the same corners; `false` if they do not fit.
+    pub fn resume(&mut self, memory: &[i64], places: &[f64], found: Vec<Candidate>) -> bool {
+        let (n, faces) = (self.list.len(), self.faces.len());
+        let inside = |p: &Candidate| p.0 < n && p.1 < faces;
+        let known = places.len() == self.n_places() || (places.is_empty() && found.is_empty());
+        let held = |i: &i64| *i >= -1 && *i < faces as i64;
+        if !known
+            || memory.len() != 2 * n
+            || !memory.iter().all(held)
+            || !found.is_sorted()
+            || !found.iter().all(inside)
+        {
+            return false;
+        }
+        let (now, kept) = memory.split_at(n);
+        let numbers = |part: &[i64]| part.iter().map(|&i| usize::try_from(i).ok()).collect();
+        self.held = [numbers(now), numbers(kept)];
+        if places.is_empty() {
+            return true;
+        }
+        let fits = self.search.restore(n, places, found);
+        if fits {
+            self.number();
+        }
+        fits
+    }
+}
+
+/// Whether a corner of a boundary that meets itself may meet an edge: one that it shares no node
+/// with, and that its node has no constraint against.
+fn free(sides: &Sides, corner: Corner, i: usize, nodal: bool) -> bool {
+    let own = [corner.before, corner.behind];
+    let edges = &sides.slave.edges;
+    let apart = |&j: &usize| !edges[j].nodes().iter().any(|n| edges[i].nodes().contains(n));
+    own.iter().all(apart) && !(nodal && sides.slave.apart(&own, i))
+}
+
+fn point(own: &Surface, corner: Corner, x: &[[f64; 3]]) -> Vec2<f64> {
+    own.place(corner.before, x).end(1)
+}
+
+/// Outward normals of the member that ends at a corner and of that which begins.
+fn normals(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> [Vec2<f64>; 2] {
+    [(corner.before, 1), (corner.behind, 0)].map(|(j, which)| {
+        let member = master.place(j, x);
+        let r = if which == 0 { -1.0 } else { 1.0 };
+        member.normal(&Hit { gap: 0.0, r, point: member.end(which) })
+    })
+}
+
+fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
+    let (p, [a, b]) = (point(master, corner, x), normals(master, corner, x));
+    ([p[0], p[1], p[0], p[1]], unit(add(a, b)))
+}
+
+/// Corners at which the boundary, with the body on its left, turns left sharply.
+fn sharp(master: &Surface, x: &[[f64; 3]]) -> Vec<Corner> {
+    let members: Vec<Master<f64>> = (0..master.len()).map(|j| master.place(j, x)).collect();
+    let turns = |&Corner { before, behind }: &Corner| {
+        let [a, b] = normals(master, Corner { before, behind }, x);
+        (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b)) > SHARP
+    };
+    let pairs: Vec<Corner> = match master {
+        Surface::Edges(edges) => {
+            let whole = |shape: Shape| matches!(shape, Shape::Element | Shape::SecondHalf);
+            let begins: HashMap<u32, usize> =
+                edges.iter().enumerate().map(|(j, e)| (e.nodes[0], j)).collect();
+            let ends = edges.iter().enumerate().filter(|(_, e)| whole(e.shape));
+            let next = |(before, e): (usize, &super::curve::Edge)| {
+                begins.get(&e.nodes[1]).map(|&behind| Corner { before, behind })
+            };
+            ends.filter_map(next).collect()
+        }
+        Surface::Rigid(_) => {
+            let met = |before: usize| {
+                let end = members[before].end(1);
+                let size = dist(members[before].end(0), end);
+                (0..members.len())
+                    .find(|&j| dist(members[j].end(0), end) <= SAME * size)
+                    .map(|behind| Corner { before, behind })
+            };
+            (0..members.len()).filter_map(met).collect()
+        }
+    };
+    pairs.into_iter().filter(turns).collect()
+}
+
+fn dist(p: Vec2<f64>, q: Vec2<f64>) -> f64 {
+    let d = sub(p, q);
+    dot(d, d).sqrt()
+}
