@@ -1,16 +1,14 @@
 """Whether the reason that a contact run gives for its end is right: a look at its states alone.
 
-A message may name plastic collapse, a limit point, or a sharp corner of a master that is inside the
-slave. What it names is looked for in the states of the run by other means than those that wrote
-the message. A message that names nothing of this kind ("no progress", "no equilibrium nearby")
-gives no reason: such a run counts as failed.
+A message may name plastic collapse or a limit point. What it names is looked for in the states of
+the run by other means than those that wrote the message. A message that names nothing of this kind
+("no progress", "no equilibrium nearby") gives no reason: such a run counts as failed.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,13 +25,13 @@ SOFT = 5.0
 FLOWED = 0.1
 
 
-def reason(model: ct.Model, results: ct.Results | None, why: str) -> tuple[str, bool]:
+def reason(results: ct.Results | None, why: str) -> tuple[str, bool]:
     """Reason that a message names, and whether the states of the run show it.
 
     Returns
     -------
     named : str
-        ``"collapse"``, ``"limit point"``, ``"corner inside"``, or ``"none"``.
+        ``"collapse"``, ``"limit point"``, or ``"none"``.
     right : bool
     """
     if results is None or len(results.frames) < 3:
@@ -43,8 +41,6 @@ def reason(model: ct.Model, results: ct.Results | None, why: str) -> tuple[str, 
     if why.startswith("limit point"):
         yields = "with yielding" not in why or _flowed(results)
         return "limit point", yields and _soft(results)
-    if (found := re.search(r"sharp corner of the master at node (\d+)", why)) is not None:
-        return "corner inside", _inside(model, results, int(found.group(1)))
     return "none", False
 
 
@@ -69,24 +65,6 @@ def _flowed(results: ct.Results) -> bool:
     """Whether plastic work is a notable part of the internal energy."""
     of = results.frames[-1].scalars
     return float(of.get("ALLPD", 0.0)) >= FLOWED * abs(float(of.get("ALLIE", np.inf)))
-
-
-def _inside(model: ct.Model, results: ct.Results, label: int) -> bool:
-    """Whether a node lies inside an element that it is no part of, in the last state."""
-    mesh = model.mesh
-    node = int(np.flatnonzero(np.asarray(mesh.node_labels) == label)[0])
-    x: Any = mesh.points + results.frames[-1].U
-    p = x[node]
-    for block in mesh.cells:
-        corners = 3 if block.kind.startswith("tri") else 4
-        nodes = block.nodes[:, :corners]
-        ring = x[nodes]
-        side = np.roll(ring, -1, axis=1) - ring
-        off = p - ring
-        left = side[:, :, 0] * off[:, :, 1] - side[:, :, 1] * off[:, :, 0] > 0.0
-        if (left.all(axis=1) & (nodes != node).all(axis=1)).any():
-            return True
-    return False
 
 
 __all__ = ["reason"]

@@ -71,7 +71,7 @@ def run(number: int, limit: int, unit: float = 1.0, size: float = 1.0) -> dict[s
         signal.setitimer(signal.ITIMER_PROF, 0)
     out["seconds"] = time.process_time() - begin
     if out["end"] != "done":
-        out["reason"], out["right"] = reason(given.model, results, out["why"])
+        out["reason"], out["right"] = reason(results, out["why"])
     if results is not None and len(results.frames) > 1:
         count = [f.scalars.get("iterations", 0.0) for f in results.frames[1:]]
         out["iterations"], out["increments"] = int(sum(count)), len(count)

@@ -13,7 +13,11 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.contact_torture import run
 from corota import _core
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import Multifrontal
+from corota.analysis.terms.contact.corners import sunk_corner
 from corota.model.contact import METHODS
 from corota.model.loads import Fixed
 from tests.contracts.test_contact_gaps import (
@@ -220,3 +224,21 @@ def test_a_pressure_law_has_no_corners_and_says_so() -> None:
     assert depth(results) > 0.5 * DEEP
     results = pushed(tip_on_block("square", "mortar", law=law))
     assert not any("sharp corners" in note for note in results.notes)
+
+
+def test_the_message_of_a_run_that_stops_names_a_corner_under_a_pressure_law() -> None:
+    model = tip_on_block("block", "mortar", law=ct.PressureLaw("linear", 1e5))
+    system = System(model, Multifrontal())
+    system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
+    term = system.contact_term
+    assert sunk_corner(term) == ""
+    term.u = np.zeros(system.n_dofs)
+    term.u[system.dofs(model.mesh.nodes_of("square"), 1)] = -DEEP
+    assert "sharp corner of the master at node" in sunk_corner(term)
+
+
+def test_a_hook_past_a_sharp_catch_finishes() -> None:
+    """It stopped with the corner of the catch inside the hook."""
+    row = run(193, limit=60, size=0.5)
+    assert row["end"] == "done", row["why"]
+    assert row["balance"] < 1e-8
