@@ -42,7 +42,7 @@ def test_the_log_says_where_states_came_from_pivoting():
 
 @pytest.mark.slow
 def test_a_hook_that_snaps_is_relaxed_to_rest_and_said():
-    given = problem(76)
+    given = problem(94, size=0.5)
     results = ct.solve(given.model, given.steps, threads=1)
     assert results.times[-1] == pytest.approx(sum(step.period for step in given.steps))
     said = [note for note in results.notes if "moved on to another" in note]
