@@ -35,7 +35,7 @@ impl LinearSolver for FaerLdlt {
         let graph = NodeGraph::new(pattern)?;
         let n = pattern.n();
         let mut fwd = Vec::with_capacity(n);
-        for v in elimination_order(&graph)? {
+        for v in elimination_order(&graph, &[], 1)? {
             fwd.extend(graph.first_dof[v as usize]..graph.first_dof[v as usize + 1]);
         }
         let mut inv = vec![0_u32; n];

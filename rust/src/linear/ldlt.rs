@@ -38,6 +38,7 @@ const SHARED_SOLVE: [f64; 2] = [5e5, 1e7];
 #[derive(Default)]
 pub struct Ldlt {
     threads: usize,
+    points: Vec<[f64; 2]>,
     col_ptr: Vec<usize>,
     row_idx: Vec<u32>,
     scale: Vec<f64>,
@@ -55,6 +56,17 @@ pub struct Ldlt {
 }
 
 impl Ldlt {
+    /// Sets the coordinates of the nodes, by the numbers that patterns give them. The order of
+    /// elimination is found from them; without them by the graph alone, which takes longer.
+    pub fn set_points(&mut self, points: Vec<[f64; 2]>) {
+        self.points = points;
+    }
+
+    /// Values of the factor and multiplications of a factorisation.
+    pub fn size(&self) -> (usize, f64) {
+        (self.symbolic.factor_len, self.symbolic.work)
+    }
+
     fn back_substitute(&mut self, x: &mut [f64]) {
         let (size, threads) = (self.symbolic.factor_len as f64, self.threads);
         let Self { symbolic, numeric, permuted, solve_tuner, .. } = self;
@@ -219,8 +231,8 @@ impl LinearSolver for Ldlt {
         let n = pattern.n();
         let job = || format!("the order of elimination of {n} equations");
         memory::require(ORDERING * pattern.row_idx.len() + 200 * n, job)?;
-        self.symbolic = Symbolic::new(pattern)?;
         let threads = if self.threads == 0 { pool::available() } else { self.threads };
+        self.symbolic = Symbolic::new(pattern, &self.points, threads)?;
         if threads > 1 && self.symbolic.work > SHARED_FACTOR[0] {
             // Each thread sets addresses aside when it begins: that must show in what is free.
             pool::run(threads, || rayon::broadcast(|_| drop(std::hint::black_box(vec![0u8; 64]))));

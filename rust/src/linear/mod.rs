@@ -2,7 +2,8 @@
 //! Sparse direct solvers behind one interface.
 //!
 //! [`Ldlt`] is a multifrontal LDLᵀ of our own on faer's dense kernels. The graph of
-//! the nodes is dissected by METIS once per pattern; the elimination tree that
+//! the nodes is dissected once per pattern, by the coordinates of the nodes where they
+//! are known and the graph is large, otherwise by METIS; the elimination tree that
 //! follows is cut into pieces that threads take as they come free, and the fronts
 //! above them share their tiles. Every front adds its children in a fixed order and
 //! works in tiles of fixed size, so one thread and many give the same bits.
@@ -37,17 +38,20 @@
 pub mod backsolve;
 pub mod delayed_pivots;
 pub mod dense;
+pub mod dissection;
 pub mod error;
 pub mod etree;
 pub mod faer_ldlt;
 pub mod ldlt;
 pub mod lu;
 mod metis;
+pub mod minimum_degree;
 pub mod multifrontal;
 pub mod nullspace;
 pub mod ordering;
 pub mod pattern;
 pub mod scaling;
+pub mod separator;
 pub mod symbolic;
 
 #[cfg(test)]

@@ -1,22 +1,109 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Fill-reducing elimination order: METIS nested dissection of the node graph.
+//! Fill-reducing elimination order: nested dissection of the node graph, by the coordinates of the
+//! nodes where they are known, otherwise by METIS.
+//!
+//! The last orders are kept: runs of one process often have the same mesh.
 
+use std::collections::VecDeque;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+use super::dissection::{self, PlacedGraph};
 use super::error::LinearError;
-use super::metis::dissect;
+use super::metis;
 use super::pattern::NodeGraph;
+use crate::base::pool;
 
 /// Most neighbours of a multiplier that are tied together before the dissection.
 const CLIQUE_LIMIT: usize = 48;
+
+/// Nodes from which a graph is dissected by coordinates. METIS takes milliseconds below.
+const PLACED: usize = 5000;
+/// Nodes in the orders that are kept, all together.
+const KEPT: usize = 1 << 22;
+/// The last orders by the digest of their graph, newest last.
+static ORDERS: Mutex<VecDeque<(u64, Vec<u32>)>> = Mutex::new(VecDeque::new());
+/// Orders that were computed, and not found again.
+static COMPUTED: AtomicUsize = AtomicUsize::new(0);
+
+/// Number of orders that this process has computed.
+pub fn computed() -> usize {
+    COMPUTED.load(Relaxed)
+}
 
 /// Order of elimination: entry `k` is the node eliminated as number `k`.
 ///
 /// Multipliers are taken out of the graph (what they connect is tied together
 /// instead, as their elimination will do) and follow the last node they connect.
-pub fn elimination_order(graph: &NodeGraph) -> Result<Vec<u32>, LinearError> {
+/// `points` are the coordinates of the nodes, empty if unknown; those of multipliers are not used.
+pub fn elimination_order(
+    graph: &NodeGraph,
+    points: &[[f64; 2]],
+    threads: usize,
+) -> Result<Vec<u32>, LinearError> {
+    let digest = digest(graph, points);
+    let kept = || ORDERS.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = kept().iter().find(|(d, o)| *d == digest && o.len() == graph.len()).cloned();
+    if let Some((_, order)) = found {
+        return Ok(order);
+    }
+    let order = compute(graph, points, threads)?;
+    COMPUTED.fetch_add(1, Relaxed);
+    if order.len() <= KEPT {
+        let mut orders = kept();
+        orders.push_back((digest, order.clone()));
+        while orders.iter().map(|(_, o)| o.len()).sum::<usize>() > KEPT {
+            orders.pop_front();
+        }
+    }
+    Ok(order)
+}
+
+/// A number that two different graphs hardly have in common. If they did, the order would still be
+/// an order, with more fill.
+fn digest(graph: &NodeGraph, points: &[[f64; 2]]) -> u64 {
+    let mut found = DefaultHasher::new();
+    (&graph.first_dof, &graph.xadj, &graph.adjncy, &graph.after).hash(&mut found);
+    let mut sum = 0_u64;
+    for (x, multiplier) in points.iter().zip(&graph.after) {
+        for bits in x.map(f64::to_bits) {
+            let bits = if *multiplier { 0 } else { bits };
+            sum = (sum.rotate_left(5) ^ bits).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        }
+    }
+    (points.len(), sum).hash(&mut found);
+    found.finish()
+}
+
+/// Nested dissection of a graph without multipliers.
+fn dissect(
+    xadj: &[u32],
+    adjncy: &[u32],
+    weights: &[i32],
+    points: &[[f64; 2]],
+    threads: usize,
+) -> Result<Vec<u32>, LinearError> {
+    let known = points.len() == weights.len() && points.iter().flatten().all(|x| x.is_finite());
+    if known && weights.len() >= PLACED {
+        let graph = PlacedGraph { xadj, adjncy, weights, points };
+        let order = pool::run(threads, || dissection::dissect(graph, threads > 1));
+        if let Some(order) = order {
+            return Ok(order);
+        }
+    }
+    metis::dissect(xadj, adjncy, weights)
+}
+
+fn compute(
+    graph: &NodeGraph,
+    points: &[[f64; 2]],
+    threads: usize,
+) -> Result<Vec<u32>, LinearError> {
     let nodes = graph.len();
     if !graph.after.contains(&true) {
         let weights: Vec<i32> = (0..nodes).map(|v| graph.weight(v) as i32).collect();
-        return dissect(&graph.xadj, &graph.adjncy, &weights);
+        return dissect(&graph.xadj, &graph.adjncy, &weights, points, threads);
     }
 
     let kept: Vec<u32> = (0..nodes as u32).filter(|&v| !graph.after[v as usize]).collect();
@@ -46,7 +133,9 @@ pub fn elimination_order(graph: &NodeGraph) -> Result<Vec<u32>, LinearError> {
         xadj.push(adjncy.len() as u32);
     }
     let weights: Vec<i32> = kept.iter().map(|&v| graph.weight(v as usize) as i32).collect();
-    let order = dissect(&xadj, &adjncy, &weights)?;
+    let places: Vec<[f64; 2]> =
+        kept.iter().filter_map(|&v| points.get(v as usize).copied()).collect();
+    let order = dissect(&xadj, &adjncy, &weights, &places, threads)?;
 
     let mut rank = vec![0_u32; nodes];
     for (k, &v) in order.iter().enumerate() {

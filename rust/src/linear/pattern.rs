@@ -146,6 +146,21 @@ impl NodeGraph {
         Ok(Self { first_dof, xadj, adjncy, after })
     }
 
+    /// Coordinates of the nodes, given by their numbers in the pattern, those of multipliers not a
+    /// number; empty if others have none.
+    pub fn places(&self, pattern: &Pattern<'_>, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut found = Vec::with_capacity(if points.is_empty() { 0 } else { self.len() });
+        for v in 0..self.len() {
+            let node = pattern.node_of_dof[self.first_dof[v] as usize] as usize;
+            match points.get(node) {
+                Some(x) if !self.after[v] => found.push(*x),
+                _ if self.after[v] => found.push([f64::NAN; 2]),
+                _ => return Vec::new(),
+            }
+        }
+        found
+    }
+
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.after.len()

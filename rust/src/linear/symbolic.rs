@@ -74,9 +74,15 @@ pub struct Symbolic {
 
 impl Symbolic {
     /// Orders the pattern and lays out the fronts.
-    pub fn new(pattern: &Pattern<'_>) -> Result<Self, LinearError> {
+    ///
+    /// `points` are coordinates by the numbers of `node_of_dof`; empty if they are not known.
+    pub fn new(
+        pattern: &Pattern<'_>,
+        points: &[[f64; 2]],
+        threads: usize,
+    ) -> Result<Self, LinearError> {
         let graph = NodeGraph::new(pattern)?;
-        let node_order = elimination_order(&graph)?;
+        let node_order = elimination_order(&graph, &graph.places(pattern, points), threads)?;
         let tree = supernode_tree(&graph, &node_order);
         drop(node_order);
         let count = tree.columns.len();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //! Python classes of the sparse direct solvers.
 
-use numpy::{PyArray1, PyReadonlyArray1, PyReadwriteArrayDyn};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -138,9 +138,32 @@ solver_class!(
     crate::linear::faer_ldlt::FaerLdlt
 );
 
+/// Number of orders of elimination that this process has computed; the last ones are used again.
+#[pyfunction]
+fn computed_orders() -> usize {
+    crate::linear::ordering::computed()
+}
+
+/// Sets the coordinates of the nodes of a solver, shape (n_nodes, 2), for the order of elimination.
+#[pyfunction]
+fn place_nodes(mut solver: PyRefMut<'_, Ldlt>, points: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
+    let (points, _) = points.as_slice()?.as_chunks::<2>();
+    solver.inner.set_points(points.to_vec());
+    Ok(())
+}
+
+/// Values of the factor and multiplications of a factorization, of an analyzed pattern.
+#[pyfunction]
+fn factor_size(solver: PyRef<'_, Ldlt>) -> (usize, f64) {
+    solver.inner.size()
+}
+
 /// Adds the classes of this file to the module.
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Ldlt>()?;
     m.add_class::<Lu>()?;
+    m.add_function(wrap_pyfunction!(computed_orders, m)?)?;
+    m.add_function(wrap_pyfunction!(place_nodes, m)?)?;
+    m.add_function(wrap_pyfunction!(factor_size, m)?)?;
     m.add_class::<ReferenceLdlt>()
 }
