@@ -15,6 +15,7 @@ from corota.analysis.blocks import blocks_of, check_shapes, core_input
 from corota.analysis.constraints.none import constraints_of
 from corota.analysis.constraints.setup import carry_curves, extra_dofs
 from corota.analysis.linear.matrix import AssembledPattern
+from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.linear.system import LinearSystem
 from corota.analysis.memory import require_model
 from corota.analysis.parallel.communicator import ALONE
@@ -65,6 +66,8 @@ class NumberedModel:
         #: Mass for gravity in static steps.
         self.mass = MovingMass()
         self.linear = LinearSystem(solver)
+        if isinstance(solver, Multifrontal):
+            solver.place_nodes(model.mesh.points)
         mesh = model.mesh
         check_shapes(model, self.blocks)
         start = start_temperatures(model)

@@ -102,6 +102,15 @@ class Multifrontal:
     def threads(self, count: int) -> None:
         self._core.threads = count
 
+    def place_nodes(self, points: Floats) -> None:
+        """Set coordinates of nodes, shape (n_nodes, 2), by the numbers that patterns give them.
+
+        The order of elimination of a symmetric matrix is then found from them; without them it is
+        found from the graph alone, which takes longer.
+        """
+        if isinstance(self._core, _core.Ldlt):
+            _core.place_nodes(self._core, np.ascontiguousarray(points[:, :2], dtype=float))
+
     def analyze(
         self,
         indptr: NDArray[Any],
