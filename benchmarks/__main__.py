@@ -38,7 +38,7 @@ LONG = {
     "fuzz_readers",
     "kill",
     "checkpoint_cost",
-    "contact_beside_ccx",
+    "contact_beside_peers",
     "contact_torture",
     "free_bodies",
 }
