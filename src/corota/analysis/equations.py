@@ -66,7 +66,7 @@ class System(NumberedModel):
         self._linear_state = False
         #: Whether the structure without its loads has no free motion in this step.
         self.free_motion_excluded = False
-        self.scales = Scales(self, self.conditions, self.contact_term)
+        self.scales = Scales(self, self.conditions, self.terms)
         self._spare: list[Floats] = []
 
     @property

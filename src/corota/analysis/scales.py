@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
-    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.term import Term
 
     Floats = NDArray[np.float64]
 
@@ -47,7 +47,8 @@ class Scales:
     ----------
     system : NumberedModel
     conditions : Conditions
-    contact_term : ContactTerm
+    terms : list of Term
+        All terms of the equation.
 
     Attributes
     ----------
@@ -61,10 +62,8 @@ class Scales:
         Of the current step.
     """
 
-    def __init__(
-        self, system: NumberedModel, conditions: Conditions, contact_term: ContactTerm
-    ) -> None:
-        self.system, self.conditions, self.contact_term = system, conditions, contact_term
+    def __init__(self, system: NumberedModel, conditions: Conditions, terms: list[Term]) -> None:
+        self.system, self.conditions, self.terms = system, conditions, terms
         self.stiffest, self.ratio, self.moved = 0.0, 1.0, 0.0
         self.tolerance = 1e-9
         #: Of the last checked state: inertia per displacement [force/length], all that acts, the
@@ -192,7 +191,8 @@ class Scales:
         A constrained body moves at most by its supports and its own deformation.
         """
         system = self.system
-        if not self._bodies or not (system.nlgeom or self.contact_term.joins):
+        joined = any(term.joins for term in self.terms)
+        if not self._bodies or not (system.nlgeom or joined):
             return ""
         begun = np.zeros(system.n_dofs) if self._begun is None else self._begun
         moved = np.where(system.is_rotation, 0.0, np.abs(u[: system.n_dofs] - begun))

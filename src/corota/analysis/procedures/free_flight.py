@@ -44,11 +44,7 @@ class FreeFlight:
             held[distinct(link.direct.tocoo().col)] = True
         nodes = np.zeros(len(part), bool)
         nodes[system.node_of_dof[held]] = True
-        for pair in system.contact_term.pairs:
-            if pair.tied:
-                nodes[pair.nodes] = True
-                if pair.master is not None:
-                    nodes[pair.master.node_list] = True
+        nodes[system.contact_term.tied_nodes] = True
         free = part >= 0
         free &= ~np.isin(part, part[nodes])
         #: Nodes of free bodies, and the number of the body of each.

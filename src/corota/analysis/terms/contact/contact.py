@@ -153,6 +153,14 @@ class ContactTerm(Term):
         return any(not pair.tied for pair in self.pairs)
 
     @property
+    def tied_nodes(self) -> Ints:
+        """Nodes of both sides of ties."""
+        tied = [pair for pair in self.pairs if pair.tied]
+        sides = [pair.nodes for pair in tied]
+        sides += [pair.master.node_list for pair in tied if pair.master is not None]
+        return np.concatenate([np.zeros(0, np.int64), *sides])
+
+    @property
     def force(self) -> Floats:
         """Of the pairs on the nodes in the committed state, shape (n_dofs,)."""
         return np.zeros(self.system.n_dofs) if self.at is None else self.at.force_at_end
