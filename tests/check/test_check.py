@@ -194,3 +194,13 @@ def test_unused_sets_are_listed() -> None:
     model.fix("left")
     listed = [str(d) for d in check(model) if "unused sets" in str(d)]
     assert listed == ["note: unused sets: bottom, top"]
+
+
+def test_an_initial_velocity_moves_a_body_in_motion_only() -> None:
+    model = beam()
+    model.loads.clear()
+    model.velocity(x=2.0)
+    model.steps = [ct.Dynamic(period=1.0)]
+    assert "no load" not in warnings(model)
+    model.steps = [ct.Static()]
+    assert "no load and no moving support" in warnings(model)

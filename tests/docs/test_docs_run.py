@@ -8,9 +8,11 @@ from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import corota as ct
+from corota.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted(
@@ -70,3 +72,16 @@ def test_readme_commands_exist() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for name in re.findall(r"`?make ([a-z-]+)", (ROOT / "README.md").read_text(encoding="utf-8")):
         assert re.search(rf"^{name}:", makefile, re.MULTILINE), name
+
+
+def test_deck_of_the_page_on_gmsh_runs(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "howto" / "gmsh.md").read_text(encoding="utf-8")
+    deck = re.search(r"^\*INCLUDE.*?^\*END STEP\n", text, re.MULTILINE | re.DOTALL)
+    assert deck is not None
+    (tmp_path / "plate.inp").write_text(deck.group(), encoding="utf-8")
+    mesh = ct.mesh.rectangle(4.0, 2.0, nx=4, ny=2, cell="tri6")
+    mesh.cell_sets["body"] = np.arange(mesh.n_cells)
+    ct.write(mesh, tmp_path / "mesh.inp")
+    assert main(["run", str(tmp_path / "plate.inp"), "-o", str(tmp_path), "-q"]) == 0
+    found = ct.read_results(tmp_path / "plate.vtkhdf")
+    np.testing.assert_allclose(found.nodal("S11"), 100.0, rtol=1e-9)

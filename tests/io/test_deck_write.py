@@ -298,3 +298,21 @@ def test_full_circles_are_written_in_pieces(tmp_path: Path) -> None:
     assert isinstance(curve, RigidCurve)
     assert curve.segments[:, 6].sum() == pytest.approx(-2.0 * np.pi)
     assert len(curve.segments) == 3
+
+
+def test_a_mesh_is_written_with_its_sets(tmp_path: Path) -> None:
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1)
+    found = ct.mesh.read(ct.write(mesh, tmp_path / "mesh.inp"))
+    np.testing.assert_allclose(found.points, mesh.points)
+    assert {"LEFT", "RIGHT", "TOP", "BOTTOM"} <= {name.upper() for name in found.edge_sets}
+
+
+@pytest.mark.parametrize("thing", ["model", 3, None, [1.0]])
+def test_what_is_no_model_is_not_written(thing: object, tmp_path: Path) -> None:
+    with pytest.raises(ct.InputError, match="neither a model nor a mesh"):
+        ct.write(thing, tmp_path / "part.inp")  # type: ignore[arg-type]
+
+
+def test_a_mesh_has_no_steps_to_write(tmp_path: Path) -> None:
+    with pytest.raises(ct.InputError, match="no steps"):
+        ct.write(ct.mesh.rectangle(1.0, 1.0, 1, 1), tmp_path / "mesh.inp", steps=ct.Static())

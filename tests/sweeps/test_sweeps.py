@@ -14,6 +14,7 @@ import pytest
 
 import corota as ct
 from corota.cli import main
+from corota.cli.parser import _values as range_of
 from corota.sweeps.measures import Measure
 
 DECK = """\
@@ -263,3 +264,9 @@ def test_the_array_and_the_picture(tmp_path: Path) -> None:
     assert repr(found) == "Sweep(length, height, F; 4 rows)"
     with pytest.raises(ct.InputError, match="column of the sweep"):
         found["G"]
+
+
+def test_values_of_a_range_have_no_digits_of_rounding() -> None:
+    name, values = range_of("t=0.2:0.6:9")
+    assert (name, values) == ("t", [0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6])
+    assert range_of("n=1e-7:3e-7:3")[1] == [1e-7, 2e-7, 3e-7]

@@ -30,7 +30,8 @@ def check_data(model: Model) -> list[Diagnostic]:
     for number, step in enumerate(model.steps, start=1):
         moved = any(s.value != 0.0 for s in model.supports + step.supports)
         later = number > 1
-        if not (moved or later or step.loads or model.loads):
+        moving = step.procedure.startswith("dynamic") and model.velocities
+        if not (moved or moving or later or step.loads or model.loads):
             found.append(
                 Diagnostic("warning", f"step {number}: no load and no moving support", step.where)
             )

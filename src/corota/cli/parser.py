@@ -378,7 +378,8 @@ def _values(text: str) -> tuple[str, list[float]]:
         if n < 1 or len(count) > 1:
             raise ValueError
         a, b = float(low), float(high)
-        return name.strip(), [a + (b - a) * i / max(n - 1, 1) for i in range(n)]
+        # Without the last digits: 0.45, not 0.44999999999999996.
+        return name.strip(), [float(f"{a + (b - a) * i / max(n - 1, 1):.14g}") for i in range(n)]
     except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(
             f"{text!r} is not of the form NAME=FIRST:LAST:COUNT or NAME=VALUE,VALUE,..."

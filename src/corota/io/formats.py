@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from corota.errors import UnsupportedError
+from corota.errors import InputError, UnsupportedError
 from corota.io.deck.read import read_deck
 from corota.lazy import lazy
 
@@ -95,13 +95,15 @@ def read(
 
 
 def write(
-    model: Model, path: str | os.PathLike[str], steps: Step | Sequence[Step] | None = None
+    model: Model | Mesh,
+    path: str | os.PathLike[str],
+    steps: Step | Sequence[Step] | None = None,
 ) -> Path:
-    """Write a model in the format of the file extension; return the path.
+    """Write a model or a mesh in the format of the file extension; return the path.
 
     Parameters
     ----------
-    model : Model
+    model : Model or Mesh
     path : path-like
         ``.inp`` for a deck.
     steps : Step or sequence of Step, optional
@@ -113,11 +115,25 @@ def write(
 
     Raises
     ------
+    InputError
+        If the object is neither a model nor a mesh, or steps are given with a mesh.
     UnsupportedError
         If no writer fits the name, or the format cannot represent the model.
     FileError
         If the file cannot be written.
     """
+    from corota.io.writers import write_mesh
+    from corota.mesh.data import Mesh
+    from corota.model.model import Model
+
+    if isinstance(model, Mesh):
+        if steps is not None:
+            raise InputError("a mesh has no steps: write the model instead")
+        return write_mesh(model, path)
+    if not isinstance(model, Model):
+        raise InputError(
+            f"a {type(model).__name__} is neither a model nor a mesh (results have a write method)"
+        )
     suffix = Path(path).suffix.lower()
     if suffix not in MODEL_WRITERS:
         raise UnsupportedError(

@@ -409,8 +409,8 @@ class ContactEquations:
                 continue  # a facet between two nodes that are closed as well
             notes.append(
                 f"contact pair {pair.name!r}: the constraint at node "
-                f"{self.contact_term.label(pair, constraint)} is redundant (supports, ties or "
-                "other pairs impose it already) and was dropped"
+                f"{self.contact_term.label(pair, constraint)} is redundant and was dropped: "
+                "supports, ties or other contact constraints fix the node in that direction"
             )
         self.contact_term.told |= self.border.dropped
         return notes
