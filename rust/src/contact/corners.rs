@@ -16,8 +16,9 @@ use super::sides::Sides;
 use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
 use std::collections::HashMap;
 
-/// Least turn of the boundary at a corner [rad]: 20 degrees. Blunter ones are round boundaries.
-const SHARP: f64 = 0.349_065_850_398_865_9;
+/// Least turn of the boundary at a corner [rad]: 50 degrees on the master, on which the slave's
+/// constraints keep blunter ones out by their sides, and 20 on the slave, whose gaps are means.
+const SHARP: [f64; 2] = [0.872_664_625_997_164_8, 0.349_065_850_398_865_9];
 /// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
 /// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
 const DENT: f64 = 0.35;
@@ -66,7 +67,7 @@ impl Corners {
         let edges = Surface::Edges(slave.edges.clone());
         let (own, faces) =
             if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
-        let list = sharp(&own, x);
+        let list = sharp(&own, x, SHARP[usize::from(of_slave)]);
         let part = if sides.itself { 1.0 } else { 2.0 };
         let depth = if list.is_empty() {
             Vec::new()
@@ -350,11 +351,11 @@ fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
 }
 
 /// Corners at which the boundary, with the body on its left, turns left sharply.
-fn sharp(master: &Surface, x: &[[f64; 3]]) -> Vec<Corner> {
+fn sharp(master: &Surface, x: &[[f64; 3]], least: f64) -> Vec<Corner> {
     let members: Vec<Master<f64>> = (0..master.len()).map(|j| master.place(j, x)).collect();
     let turns = |&Corner { before, behind }: &Corner| {
         let [a, b] = normals(master, Corner { before, behind }, x);
-        (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b)) > SHARP
+        (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b)) > least
     };
     let pairs: Vec<Corner> = match master {
         Surface::Edges(edges) => {
