@@ -136,23 +136,27 @@ def test_refuses_its_own_arguments() -> None:
         ct.UserMaterial(_good, members=2, initial=[0.0])
 
 
+def kicked(law: ct.Material, element: str, increments: int) -> ct.Frame:
+    """The end of a beam kicked past yield, by the energy-momentum scheme."""
+    mesh = ct.mesh.rectangle(100.0, 10.0, nx=6, ny=1, cell=elements.find(element).cell)
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=replace(law, rho=1e-9))
+    model.fix("left")
+    model.velocity("", spin=-500.0)
+    step = ct.Dynamic(
+        period=2e-4, increments=increments, scheme="energy_momentum", max_iterations=60
+    )
+    return ct.solve(model, step, threads=1).frames[-1]
+
+
 @pytest.mark.parametrize("element", ["Q4", "OPT", "Q8", "Q4I", "Q4D"])
-def test_energy_momentum_is_that_of_the_core(element: str) -> None:
-    """A beam kicked past yield moves as with the built-in law: the scheme takes the stress of
-    both ends of the increment from the function."""
-    found = []
-    for law in (core(), ct.UserMaterial(j2, members=4)):
-        law = replace(law, rho=1e-9)
-        model = ct.Model(
-            ct.mesh.rectangle(100.0, 10.0, nx=6, ny=1, cell=elements.find(element).cell)
-        )
-        model.section("all", element=element, material=law)
-        model.fix("left")
-        model.velocity("", spin=-500.0)
-        step = ct.Dynamic(period=2e-4, increments=10, scheme="energy_momentum")
-        found.append(ct.solve(model, step, threads=1))
-    ours, theirs = found[1].frames[-1], found[0].frames[-1]
-    assert theirs.fields[0].values["PEEQ"].max() > 1e-3
-    size = np.abs(theirs.U).max()
-    np.testing.assert_allclose(ours.U, theirs.U, atol=1e-7 * size)
-    np.testing.assert_allclose(ours.V, theirs.V, atol=1e-6 * np.abs(theirs.V).max())
+def test_energy_momentum_tends_to_that_of_the_core(element: str) -> None:
+    """The scheme takes the stress of both ends of the increment from the function. The built-in
+    law has forces along the increment; the difference vanishes with the increment."""
+    apart = []
+    for increments in (20, 80):
+        ours = kicked(ct.UserMaterial(j2, members=4), element, increments)
+        theirs = kicked(core(), element, increments)
+        assert theirs.fields[0].values["PEEQ"].max() > 1e-3
+        apart.append(np.abs(ours.U - theirs.U).max() / np.abs(theirs.U).max())
+    assert apart[1] < min(1e-3, apart[0] / 3.0)

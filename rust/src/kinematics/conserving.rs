@@ -13,14 +13,20 @@
 //! Each sends a rigid turn about the mid-point configuration to a rigid turn, so forces built
 //! with their transposes have no resultant and no moment, and their work is the difference of
 //! the energies when the local force is the mean one (linear laws) or a discrete gradient
-//! (Gonzalez 1996). Velocities follow the mid-point rule; those of the bulges are carried.
+//! (Gonzalez 1996). In plastic flow the energy is the recoverable one and the plastic work of the
+//! return map (Meng and Laursen 2002), and the mean force is taken along the increment: that of
+//! both ends would miss half the work of an increment that begins elastic and ends in flow.
+//! Velocities follow the mid-point rule; those of the bulges are carried.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::corotation::Frame;
 use super::inertia::{Mass, MassKind};
-use super::integrate::{History, Section, local, stored};
+use super::integrate::{History, Section, absorbed, flowed, local};
 use crate::base::small::{Blocks, Nodal, blocks, nodal};
 use crate::elements::Element;
+
+/// Points of Gauss's rule on the increment, each of weight one half.
+const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// Where the step starts and what it is.
 pub struct Step<'a, const N: usize, const M: usize> {
@@ -154,20 +160,52 @@ where
 {
     let f0 = Frame::new(x, step.u0, step.nlgeom);
     let f1 = Frame::new(x, step.u1, step.nlgeom);
+    // Linear in all: the energy is quadratic, and the mean force of both ends exact.
+    let curved = !(section.law.is_linear() && section.strain.is_linear());
+    // A law with a history and no account of its work has the mean force only.
+    let accounts = section.law.n_state() == 0 || section.law.work_member().is_some();
     let begin = local::<E, f64, N, M, A>(x, &f0.q, section, history, false);
-    let hyperelastic =
-        section.law.n_state() == 0 && !(section.law.is_linear() && section.strain.is_linear());
-    let v0 = if hyperelastic { stored::<E, N, M, A>(x, &f0.q, section, history) } else { 0.0 };
+    let mut energy = [0.0; 2];
+    if curved && accounts {
+        energy[0] = absorbed::<E, N, M, A>(x, &f0.q, section, history);
+    }
     let mut end = local::<E, f64, N, M, A>(x, &f1.q, section, history, step.tangent);
-    let v1 = if hyperelastic { stored::<E, N, M, A>(x, &f1.q, section, history) } else { 0.0 };
+    let mut failed = begin.failed | end.failed;
     let mut mean = nodal::<f64, N, M>();
-    for n in 0..N {
-        for i in 0..M {
-            mean[n][i] = 0.5 * (begin.force[n][i] + end.force[n][i]);
+    let flows = flowed(section, history);
+    if flows && accounts {
+        end.stiffness = blocks::<f64, N, M>();
+        for s in ALONG {
+            let q = between_ends(&f0.q, &f1.q, s);
+            let at = local::<E, f64, N, M, A>(x, &q, section, history, step.tangent);
+            failed |= at.failed;
+            for a in 0..N {
+                for i in 0..M {
+                    mean[a][i] += 0.5 * at.force[a][i];
+                }
+                for b in a..N {
+                    for i in 0..M {
+                        for j in 0..M {
+                            // Twice the derivative of the mean, as below.
+                            end.stiffness[a][b][i][j] += s * at.stiffness[a][b][i][j];
+                        }
+                    }
+                }
+            }
+        }
+        // The history is that of the end again.
+        local::<E, f64, N, M, A>(x, &f1.q, section, history, false);
+    } else {
+        for n in 0..N {
+            for i in 0..M {
+                mean[n][i] = 0.5 * (begin.force[n][i] + end.force[n][i]);
+            }
         }
     }
-    if hyperelastic {
-        discrete_gradient(x, &f0.q, &f1.q, v0, v1, &mut mean);
+    let quadratic = section.law.n_state() > 0 && !flows && section.strain.is_linear();
+    if curved && accounts && !quadratic {
+        energy[1] = absorbed::<E, N, M, A>(x, &f1.q, section, history);
+        discrete_gradient(x, [&f0.q, &f1.q], energy, &mut mean);
     }
     let between = Between::new(x, step, &f0, &f1);
     let internal = between.force(&mean);
@@ -193,16 +231,23 @@ where
     } else {
         plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent)
     };
-    Answer { internal, inertia, tangent, failed: begin.failed | end.failed }
+    Answer { internal, inertia, tangent, failed }
+}
+
+/// Local dofs at the fraction `s` of the increment.
+fn between_ends<const N: usize, const M: usize>(
+    q0: &Nodal<f64, N, M>,
+    q1: &Nodal<f64, N, M>,
+    s: f64,
+) -> Nodal<f64, N, M> {
+    std::array::from_fn(|a| std::array::from_fn(|i| (1.0 - s) * q0[a][i] + s * q1[a][i]))
 }
 
 /// Add to the mean force what makes its work the difference of the energies.
 fn discrete_gradient<const N: usize, const M: usize>(
     x: &Nodal<f64, N, 2>,
-    q0: &Nodal<f64, N, M>,
-    q1: &Nodal<f64, N, M>,
-    v0: f64,
-    v1: f64,
+    [q0, q1]: [&Nodal<f64, N, M>; 2],
+    [v0, v1]: [f64; 2],
     mean: &mut Nodal<f64, N, M>,
 ) {
     // Rotations count by the size of the element.

@@ -485,8 +485,9 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
     out.failed = T::or(failed, sums.failed);
 }
 
-/// Recoverable energy of an element with local dofs `q` and the stored internal modes.
-pub fn stored<E, const N: usize, const M: usize, const A: usize>(
+/// Work that an element has absorbed at local dofs `q`, with the stored internal modes: its
+/// recoverable energy, and the plastic work since the start of the increment.
+pub fn absorbed<E, const N: usize, const M: usize, const A: usize>(
     x: &Nodal<f64, N, 2>,
     q: &Nodal<f64, N, M>,
     section: &Section<N>,
@@ -509,8 +510,7 @@ where
         .mean_dilatation
         .then(|| Dilatation::<f64, N, M>::new::<E, A>(x, q, &prepared, section));
     let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
-    let [first, second] = E::stabilization(x, q, section, &own, &[]);
-    let mut energy = first[0] + second[0];
+    let mut energy = 0.0;
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let w = s.weight * own.thickness::<f64, N>(p, section);
@@ -528,6 +528,11 @@ where
         let stress = law.update(strain, &mut state).stress;
         let values: Vec<f64> = (0..members).map(|m| state.new[m * state.stride]).collect();
         energy += w * law.energy(strain, stress, &values);
+        if let Some(work) = section.law.work_member() {
+            energy += w * (values[work] - state.old[work * state.stride]);
+        }
+        // An initial stress through the thickness acts in the plane, beside that of the law.
+        energy += w * history.spherical::<f64, N>(p, section) * (strain[0] + strain[1]);
         if E::Op::<f64>::DRILL {
             let mut drill = s.op.drill(q);
             for m in 0..A {
@@ -538,5 +543,24 @@ where
             energy += 0.5 * w * parameter * drill * drill;
         }
     }
-    energy
+    // Elements of laws without a history have no memory either.
+    let mut memory = Vec::new();
+    if members > 0 && E::MEMORY > 0 {
+        let state = history.memory(section);
+        memory.extend((0..E::MEMORY).map(|m| state.new[m * state.stride]));
+        if let Some(m) = E::DISSIPATED {
+            energy += memory[m] - state.old[m * state.stride];
+        }
+    }
+    let [first, second] = E::stabilization(x, q, section, &own, &memory);
+    energy + first[0] + second[0]
+}
+
+/// Whether the law of any point has flowed since the start of the increment.
+pub fn flowed<const N: usize>(section: &Section<N>, history: &History<'_>) -> bool {
+    let Some(member) = section.law.plastic_member() else { return false };
+    (0..section.points.len()).any(|p| {
+        let at = (p * section.law.n_state() + member) * history.stride;
+        history.new[at] != history.old[at]
+    })
 }

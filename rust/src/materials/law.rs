@@ -74,6 +74,9 @@ macro_rules! laws {
             pub fn plastic_member(&self) -> Option<usize> {
                 match self { $(Law::$name(m) => m.plastic_member()),+ }
             }
+            pub fn work_member(&self) -> Option<usize> {
+                match self { $(Law::$name(m) => m.work_member()),+ }
+            }
         }
     };
 }

@@ -102,6 +102,11 @@ pub trait Material: Sized {
     fn plastic_member(&self) -> Option<usize> {
         None
     }
+    /// Member of the state that is the plastic work: with [`Material::energy`], the work of the
+    /// stress.
+    fn work_member(&self) -> Option<usize> {
+        None
+    }
 }
 
 /// Stress of linear elasticity.

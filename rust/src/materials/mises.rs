@@ -430,4 +430,7 @@ impl Material for Mises {
     fn plastic_member(&self) -> Option<usize> {
         Some(EQUIVALENT)
     }
+    fn work_member(&self) -> Option<usize> {
+        Some(WORK)
+    }
 }
