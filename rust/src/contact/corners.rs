@@ -18,7 +18,7 @@ use std::collections::HashMap;
 
 /// Least turn of the boundary at a corner [rad]: 50 degrees on the master, on which the slave's
 /// constraints keep blunter ones out by their sides, and 20 on the slave, whose gaps are means.
-const SHARP: [f64; 2] = [0.872_664_625_997_164_8, 0.349_065_850_398_865_9];
+const LEAST_TURN: [f64; 2] = [0.872_664_625_997_164_8, 0.349_065_850_398_865_9];
 /// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
 /// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
 const DENT: f64 = 0.35;
@@ -67,7 +67,7 @@ impl Corners {
         let edges = Surface::Edges(slave.edges.clone());
         let (own, faces) =
             if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
-        let list = sharp(&own, x, SHARP[usize::from(of_slave)]);
+        let list = sharp(&own, x, LEAST_TURN[usize::from(of_slave)]);
         let part = if sides.itself { 1.0 } else { 2.0 };
         let depth = if list.is_empty() {
             Vec::new()
