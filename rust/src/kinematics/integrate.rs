@@ -561,6 +561,6 @@ pub fn flowed<const N: usize>(section: &Section<N>, history: &History<'_>) -> bo
     let Some(member) = section.law.plastic_member() else { return false };
     (0..section.points.len()).any(|p| {
         let at = (p * section.law.n_state() + member) * history.stride;
-        history.new[at] != history.old[at]
+        history.new[at] > history.old[at]
     })
 }

@@ -127,7 +127,9 @@ where
         let x = x.map(|p| p.map(Dual::<D>::real));
         let prepared = E::prepare(&x, section.parameter);
         let moduli = section.law.moduli();
-        let mut total = E::stabilization(&x, &dual.frame.q, section, &PerPoint::default(), &[]);
+        let [first, second] =
+            E::stabilization(&x, &dual.frame.q, section, &PerPoint::default(), &[]);
+        let mut total = first[0] + second[0];
         let mean = (E::ABOUT_MEAN && section.strain != LocalStrain::Linear)
             .then(|| E::mean(&x, &prepared).gradient(&dual.frame.q));
         for point in &section.points {
