@@ -113,7 +113,8 @@ def test_python_plasticity_gives_what_mises_of_the_core_gives(scheme: str) -> No
     """Radial return in Python beside the core's, where most points yield."""
     step: Any = ct.Static(increments=8)
     if scheme != "static":
-        step = ct.Dynamic(period=0.4, increments=20, scheme=scheme, tolerance=1e-10)
+        count = 100 if scheme == "energy_momentum" else 20
+        step = ct.Dynamic(period=0.4, increments=count, scheme=scheme, tolerance=1e-10)
     found = []
     for material in (
         ct.Mises(E=YOUNG, nu=NU, yield_stress=20.0, isotropic=50.0, rho=1e-3),
