@@ -5,4 +5,6 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "benchmarks")]
+sys.path.insert(0, str(HERE))
+# Last: a benchmark must not hide a package of its name.
+sys.path.append(str(HERE.parents[1] / "benchmarks"))

@@ -1,6 +1,6 @@
 """One model on one and two processes, beside the default solver: values, time, memory.
 
-``python -m benchmarks.distributed`` starts ``mpiexec`` for each row:
+``python -m benchmarks.several_processes`` starts ``mpiexec`` for each row:
 
 ``--catalogue`` runs the analyses of a part of the verification catalogue, of all kinds, again with
 the solver ``petsc`` on all processes together: displacements and reactions of every frame against
@@ -192,7 +192,7 @@ def started(job: str, count: int) -> list[Any]:
     """What each of `count` processes found; 0 is this program without mpiexec."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "found.json"
-        command = [sys.executable, "-m", "benchmarks.distributed", "--worker", job, str(path)]
+        command = [sys.executable, "-m", "benchmarks.several_processes", "--worker", job, str(path)]
         if count:
             command = ["mpiexec", "-n", str(count), *command]
         own = {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "0"}
