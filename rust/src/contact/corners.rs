@@ -16,9 +16,12 @@ use super::sides::Sides;
 use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
 use std::collections::HashMap;
 
-/// Least turn of the boundary at a corner [rad]: 50 degrees on the master, on which the slave's
-/// constraints keep blunter ones out by their sides, and 20 on the slave, whose gaps are means.
-const LEAST_TURN: [f64; 2] = [0.872_664_625_997_164_8, 0.349_065_850_398_865_9];
+/// Least turn of the boundary at a corner [rad]: 50 degrees, since the constraints at both sides of
+/// a blunter one keep it out.
+pub const LEAST_TURN: f64 = 0.872_664_625_997_164_8;
+/// The same on a slave that meets a master with corners: 20 degrees. Its gaps are means over edges,
+/// and would let it drop into the master's corner when that has passed a node.
+pub const LEAST_TURN_AT_CORNERS: f64 = 0.349_065_850_398_865_9;
 /// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
 /// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
 const DENT: f64 = 0.35;
@@ -60,14 +63,20 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// Corners of the slave or of the master; `first` constraints come before, those of the surfaces
-    /// at nodes if `nodal`.
-    pub fn new(sides: &Sides, x: &[[f64; 3]], first: usize, nodal: bool, of_slave: bool) -> Self {
+    /// Corners of the slave or of the master that turn by more than `least`; `first` constraints come
+    /// before, those of the surfaces at nodes if `nodal`.
+    pub fn new(
+        sides: &Sides,
+        x: &[[f64; 3]],
+        first: usize,
+        nodal: bool,
+        (of_slave, least): (bool, f64),
+    ) -> Self {
         let slave = &sides.slave;
         let edges = Surface::Edges(slave.edges.clone());
         let (own, faces) =
             if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
-        let list = sharp(&own, x, LEAST_TURN[usize::from(of_slave)]);
+        let list = sharp(&own, x, least);
         let part = if sides.itself { 1.0 } else { 2.0 };
         let depth = if list.is_empty() {
             Vec::new()

@@ -1,7 +1,7 @@
 //! A pair of boundaries: its candidates, and its gaps and slips with derivatives.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::corners::Corners;
+use super::corners::{Corners, LEAST_TURN, LEAST_TURN_AT_CORNERS};
 use super::curve::Edge;
 use super::discretization::{Discretization, Entry};
 use super::master::Surface;
@@ -43,9 +43,11 @@ impl Contact {
             true if entry.integrates && !sides.itself => &[false, true],
             true => &[false],
         };
-        let mut found = Vec::new();
+        let mut found: Vec<Corners> = Vec::new();
         for &of_slave in sides_with_corners {
-            let own = Corners::new(&sides, x, first, !entry.integrates, of_slave);
+            let least =
+                if of_slave && !found.is_empty() { LEAST_TURN_AT_CORNERS } else { LEAST_TURN };
+            let own = Corners::new(&sides, x, first, !entry.integrates, (of_slave, least));
             first += own.len();
             if !own.is_empty() {
                 found.push(own);
