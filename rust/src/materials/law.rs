@@ -1,16 +1,15 @@
-//! The one list of materials. A block holds one [`Law`]; the branch is uniform over the block.
+//! The type of all materials together, made from the list of them. A block holds one [`Law`];
+//! the branch is uniform over the block.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, TensorOutput};
-use super::{
-    elastic::Elastic, mises::Mises, orthotropic::Orthotropic, ramberg_osgood::RambergOsgood,
-    tabulated::Tabulated,
-};
 use crate::base::Real;
 use crate::base::small::Mat;
 
-macro_rules! laws {
-    ($($name:ident),+ $(,)?) => {
+macro_rules! law {
+    ($($file:ident::$name:ident),+ $(,)?) => {
+        $(use super::$file::$name;)+
+
         /// Any registered material.
         #[derive(Clone, Debug)]
         pub enum Law { $($name($name)),+ }
@@ -81,4 +80,4 @@ macro_rules! laws {
     };
 }
 
-laws![Elastic, Orthotropic, Mises, RambergOsgood, Tabulated];
+super::laws!(law);

@@ -13,3 +13,17 @@ pub mod tabulated;
 
 pub use law::Law;
 pub use material::{Material, Plane, PointState, Response, TensorOutput};
+
+/// The one list of materials: call `$then![file::Type, ...]`.
+macro_rules! laws {
+    ($then:ident) => {
+        $then![
+            elastic::Elastic,
+            orthotropic::Orthotropic,
+            mises::Mises,
+            ramberg_osgood::RambergOsgood,
+            tabulated::Tabulated,
+        ];
+    };
+}
+use laws;
