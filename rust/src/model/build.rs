@@ -1,7 +1,8 @@
 //! Blocks of elements from what the caller says of them, and their chunks by colour.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::chunk::{CHUNK, Chunk, ChunkOf, Shared as BlockData};
+use super::chunk::{CHUNK, Chunk, Shared as BlockData};
+use super::chunk_of::ChunkOf;
 use super::dofs::Dofs;
 use super::locality;
 use super::registry;

@@ -1,7 +1,8 @@
 //! Inertia of chunks: forces, effective tangents, constant matrices, momenta.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::chunk::{ChunkOf, Context};
+use super::chunk::Context;
+use super::chunk_of::ChunkOf;
 use super::scatter::Sink;
 use crate::base::small::{Nodal, symmetric_times};
 use crate::elements::{Element, Point};
@@ -182,7 +183,7 @@ where
                     .as_flattened_mut()
                     .copy_from_slice(&self.rates_old[2 * N * e..2 * N * (e + 1)]);
             }
-            let stride = self.stride();
+            let stride = self.stride;
             let mut history = History {
                 old: &self.old[e * members..],
                 new: &mut self.new[e * members..],

@@ -1,8 +1,10 @@
 //! The discrete model: dofs, sparsity pattern, chunks of elements, assembly and recovery.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod assembly;
 pub mod build;
 pub mod chunk;
+pub mod chunk_of;
 pub mod dofs;
 pub mod dynamics;
 pub mod fixed_dofs;

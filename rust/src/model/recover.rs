@@ -1,7 +1,8 @@
 //! Values at the quadrature points for output.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::chunk::{ChunkOf, Context};
+use super::chunk::Context;
+use super::chunk_of::ChunkOf;
 use crate::elements::Element;
 use crate::kinematics::about_mean::AboutMean;
 use crate::kinematics::corotation::Frame;
@@ -155,7 +156,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
         let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
-        let stride = chunk.stride();
+        let stride = chunk.stride;
         let own = chunk.per_point(e);
         let rows = 4 * n_points;
         let initial: Vec<f64> = match chunk.initial_from(e) {
@@ -334,7 +335,7 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
 {
     let section = chunk.shared.section(context.nlgeom);
     let n_points = section.points.len();
-    let stride = chunk.stride();
+    let stride = chunk.stride;
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
         let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);

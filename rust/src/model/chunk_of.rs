@@ -1,0 +1,349 @@
+//! The chunk of an element type: nodes, history and state, evaluated in batches.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::assembly::Assemble;
+use super::chunk::{Chunk, Context, PARTS, Shared};
+use super::dofs::Dofs;
+use super::dynamics::{Between, BodyLoad, Momenta, Motion};
+use super::scatter::Sink;
+use crate::base::small::Nodal;
+use crate::base::{Lanes, MAX_LANES, Real, dispatch};
+use crate::elements::Element;
+use crate::kinematics::inertia::MassKind;
+use crate::kinematics::per_point::{PerPoint, PointLaws};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// Histories are padded so that every batch can load whole lanes.
+const PAD: usize = MAX_LANES;
+
+pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
+    pub(super) shared: Arc<Shared<N>>,
+    /// Index of each element in the block.
+    pub(super) elements: Vec<u32>,
+    pub(super) nodes: Vec<[u32; N]>,
+    /// Slot of each node pair of each element, `N (N + 1) / 2` each.
+    pub(super) slots: Vec<u32>,
+    pub(super) stride: usize,
+    pub(super) old: Vec<f64>,
+    pub(super) new: Vec<f64>,
+    alpha_old: Vec<f64>,
+    pub(super) alpha: Vec<f64>,
+    /// Whether the trial history belongs to an evaluation since the last commit.
+    evaluated: bool,
+    /// Carried velocities of the edge bulges (conserving scheme), committed and trial.
+    pub(super) rates_old: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+    /// Initial strain, `[p, 4]` strided; empty for none.
+    pub(super) initial: Vec<f64>,
+    /// Nodes of each element that carry no mass; empty for none.
+    pub(super) massless: Vec<[bool; N]>,
+    /// Factor on the mass of each element; empty for one.
+    pub(super) mass_factors: Vec<f64>,
+    /// Thickness by point, `[p]` strided; empty where that of the section holds.
+    pub(super) thickness: Vec<f64>,
+    /// Thickness and density of the nodes of each element; empty likewise.
+    pub(super) nodal_thickness: Vec<[f64; N]>,
+    pub(super) nodal_density: Vec<[f64; N]>,
+    /// Temperatures by element and point, and the laws there; none where the law has no table.
+    temperatures: Vec<f64>,
+    pub(super) laws: Option<PointLaws>,
+    element: PhantomData<E>,
+}
+
+impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    /// Chunk of the `elements` of a block with the given nodes.
+    pub fn new(
+        shared: &Arc<Shared<N>>,
+        elements: &[u32],
+        all_nodes: &[[u32; N]],
+        dofs: &Dofs,
+    ) -> Self {
+        let nodes: Vec<[u32; N]> = elements.iter().map(|&e| all_nodes[e as usize]).collect();
+        let stride = nodes.len().div_ceil(PAD) * PAD;
+        let section = &shared.section;
+        let members = section.law.n_state();
+        let memory = if members > 0 { E::MEMORY } else { 0 };
+        let state = (section.points.len() * members + memory) * stride;
+        let rates = if M == 3 { 2 * N * nodes.len() } else { 0 };
+        let mut slots = Vec::with_capacity(nodes.len() * N * (N + 1) / 2);
+        for element in &nodes {
+            for a in 0..N {
+                for b in a..N {
+                    let (low, high) = (element[a].min(element[b]), element[a].max(element[b]));
+                    slots.push(dofs.slot(low, high));
+                }
+            }
+        }
+        let of_nodes = |all: &[f64]| -> Vec<[f64; N]> {
+            let rows = all.as_chunks::<N>().0;
+            if rows.is_empty() {
+                return Vec::new();
+            }
+            elements.iter().map(|&e| rows[e as usize]).collect()
+        };
+        let nodal_thickness = of_nodes(&shared.nodal_thickness);
+        let mut thickness = Vec::new();
+        if !nodal_thickness.is_empty() {
+            // Lanes past the end have one too.
+            thickness.resize(section.points.len() * stride, section.thickness);
+            for (e, nodal) in nodal_thickness.iter().enumerate() {
+                for (p, point) in section.points.iter().enumerate() {
+                    let here = point.n.iter().zip(nodal).map(|(n, t)| n * t);
+                    thickness[p * stride + e] = here.sum();
+                }
+            }
+        }
+        Self {
+            shared: shared.clone(),
+            elements: elements.to_vec(),
+            nodes,
+            slots,
+            stride,
+            old: vec![0.0; state],
+            new: vec![0.0; state],
+            alpha_old: vec![0.0; 2 * A * stride],
+            alpha: vec![0.0; 2 * A * stride],
+            evaluated: false,
+            rates_old: vec![0.0; rates],
+            rates: vec![0.0; rates],
+            initial: Vec::new(),
+            massless: Vec::new(),
+            mass_factors: Vec::new(),
+            thickness,
+            nodal_thickness,
+            nodal_density: of_nodes(&shared.nodal_density),
+            temperatures: Vec::new(),
+            laws: None,
+            element: PhantomData,
+        }
+    }
+
+    /// Initial strain from the element `e` of the chunk on.
+    pub(super) fn initial_from(&self, e: usize) -> &[f64] {
+        if self.initial.is_empty() { &[] } else { &self.initial[e..] }
+    }
+
+    /// What the element `e` of the chunk has of its own.
+    pub(super) fn per_point(&self, e: usize) -> PerPoint<'_> {
+        PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride)
+    }
+
+    /// Laws at the temperatures that are stored.
+    fn temper(&mut self) -> Result<(), String> {
+        let shared = self.shared.clone();
+        let Some(table) = &shared.table else { return Ok(()) };
+        let of = |moduli: &crate::base::small::Mat<f64, 3>| {
+            if shared.weighted { shared.section.parameter } else { E::parameter(moduli) }
+        };
+        let n_points = shared.section.points.len();
+        self.laws = Some(PointLaws::new(table, &self.temperatures, n_points, of)?);
+        Ok(())
+    }
+
+    /// Reference positions and displacements of the batch that starts at `first`; lanes past
+    /// the end repeat the last element.
+    #[inline(always)]
+    pub(super) fn gather<T: Real>(
+        &self,
+        first: usize,
+        context: &Context<'_>,
+    ) -> (Nodal<T, N, 2>, Nodal<T, N, M>) {
+        let last = self.nodes.len() - 1;
+        let mut x = [[T::zero(); 2]; N];
+        let mut u = [[T::zero(); M]; N];
+        for a in 0..N {
+            let mut node = [0; MAX_LANES];
+            let mut dof = [0; MAX_LANES];
+            for l in 0..T::LANES {
+                node[l] = self.nodes[(first + l).min(last)][a] as usize;
+                dof[l] = context.dofs.start[node[l]] as usize;
+            }
+            for i in 0..2 {
+                x[a][i] = T::from_lanes(
+                    #[inline(always)]
+                    |l| context.x[node[l]][i],
+                );
+            }
+            for i in 0..M {
+                u[a][i] = T::from_lanes(
+                    #[inline(always)]
+                    |l| context.u[dof[l] + i],
+                );
+            }
+        }
+        (x, u)
+    }
+
+    /// Each evaluation starts from the committed modes, so that trials leave no trace.
+    pub(super) fn begin_trial(&mut self) {
+        self.alpha.copy_from_slice(&self.alpha_old);
+        self.evaluated = true;
+    }
+}
+
+impl<E, const N: usize, const M: usize, const A: usize> Chunk for ChunkOf<E, N, M, A>
+where
+    E: Element<N, M, A>,
+{
+    fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize> {
+        self.begin_trial();
+        // Elements with laws of their own are evaluated one by one.
+        let lanes = if self.laws.is_some() { Lanes::Scalar } else { context.lanes };
+        dispatch(lanes, Assemble { chunk: self, context, sink })
+    }
+    fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields) {
+        super::recover::chunk(self, context, out);
+    }
+    fn body_force(
+        &self,
+        context: &Context<'_>,
+        load: &BodyLoad<'_>,
+        mask: &[bool],
+        sink: &Sink<'_>,
+    ) {
+        self.add_body_force(context, load, mask, sink);
+    }
+    fn inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
+        self.add_inertia(context, motion, sink);
+    }
+    fn conserving(
+        &mut self,
+        context: &Context<'_>,
+        between: &Between<'_>,
+        sink: &Sink<'_>,
+        internal: &Sink<'_>,
+    ) -> Vec<usize> {
+        self.add_conserving(context, between, sink, internal)
+    }
+    fn start(&mut self, context: &Context<'_>, v: &[f64]) {
+        self.start_rates(context, v);
+    }
+    fn momenta(
+        &self,
+        context: &Context<'_>,
+        v: &[f64],
+        kind: MassKind,
+        carried: bool,
+        sums: &mut Momenta,
+        each: &mut [f64],
+    ) {
+        self.add_momenta(context, v, kind, carried, sums, each);
+    }
+    fn set_massless(&mut self, massless: &[bool]) {
+        let of = |nodes: &[u32; N]| nodes.map(|n| massless[n as usize]);
+        self.massless =
+            if massless.is_empty() { Vec::new() } else { self.nodes.iter().map(of).collect() };
+    }
+
+    fn set_mass_factors(&mut self, factors: &[f64]) {
+        self.mass_factors = if factors.is_empty() {
+            Vec::new()
+        } else {
+            self.elements.iter().map(|&e| factors[e as usize]).collect()
+        };
+    }
+
+    fn set_initial(&mut self, values: &[f64]) {
+        let rows = 4 * self.shared.section.points.len();
+        self.initial.clear();
+        if values.is_empty() {
+            return;
+        }
+        self.initial.resize(rows * self.stride, 0.0);
+        for (e, &element) in self.elements.iter().enumerate() {
+            for row in 0..rows {
+                self.initial[row * self.stride + e] = values[element as usize * rows + row];
+            }
+        }
+    }
+    fn set_temperatures(&mut self, values: &[f64]) -> Result<(), String> {
+        let n_points = self.shared.section.points.len();
+        self.temperatures.clear();
+        for &e in &self.elements {
+            self.temperatures.extend_from_slice(&values[e as usize * n_points..][..n_points]);
+        }
+        self.temper()
+    }
+    fn commit(&mut self) {
+        if !self.evaluated {
+            return;
+        }
+        self.evaluated = false;
+        std::mem::swap(&mut self.old, &mut self.new);
+        self.alpha_old.copy_from_slice(&self.alpha);
+        self.rates_old.copy_from_slice(&self.rates);
+    }
+    fn strains(&self, context: &Context<'_>, committed: bool, out: &mut [f64]) {
+        let alpha = if committed { &self.alpha_old } else { &self.alpha };
+        super::recover::strains(self, context, alpha, out);
+    }
+    fn give(&mut self, values: &[f64]) {
+        let per_element = self.shared.section.points.len() * self.shared.section.law.n_state();
+        for e in 0..self.nodes.len() {
+            let start = self.elements[e] as usize * per_element;
+            for m in 0..per_element {
+                self.old[m * self.stride + e] = values[start + m];
+            }
+        }
+    }
+    fn plastic_increment(&self) -> f64 {
+        let law = &self.shared.section.law;
+        let Some(member) = law.plastic_member() else { return 0.0 };
+        if !self.evaluated {
+            return 0.0;
+        }
+        let mut largest = 0.0f64;
+        for p in 0..self.shared.section.points.len() {
+            let start = (p * law.n_state() + member) * self.stride;
+            for e in start..start + self.nodes.len() {
+                largest = largest.max(self.new[e] - self.old[e]);
+            }
+        }
+        largest
+    }
+    fn block(&self) -> usize {
+        self.shared.block
+    }
+    fn elements(&self) -> &[u32] {
+        &self.elements
+    }
+    fn nodes(&self) -> Vec<u32> {
+        self.nodes.as_flattened().to_vec()
+    }
+    fn history(&self) -> (&[f64], &[f64]) {
+        (&self.old, &self.alpha_old)
+    }
+    fn state(&self) -> [&[f64]; PARTS] {
+        [&self.old, &self.alpha_old, &self.rates_old, &self.initial, &self.temperatures]
+    }
+    fn restore(&mut self, [old, alpha, rates, initial, heat]: [&[f64]; PARTS]) -> bool {
+        let n_points = self.shared.section.points.len();
+        let most = 4 * n_points * self.stride;
+        let wanted = if self.shared.table.is_some() { n_points * self.nodes.len() } else { 0 };
+        let fits = old.len() == self.old.len()
+            && alpha.len() == self.alpha_old.len()
+            && rates.len() == self.rates_old.len()
+            && (initial.is_empty() || initial.len() == most)
+            && heat.len() == wanted;
+        if !fits {
+            return false;
+        }
+        for kept in [&mut self.old, &mut self.new] {
+            kept.copy_from_slice(old);
+        }
+        for kept in [&mut self.alpha_old, &mut self.alpha] {
+            kept.copy_from_slice(alpha);
+        }
+        for kept in [&mut self.rates_old, &mut self.rates] {
+            kept.copy_from_slice(rates);
+        }
+        self.initial = initial.to_vec();
+        self.temperatures = heat.to_vec();
+        self.evaluated = false;
+        self.temper().is_ok()
+    }
+}
