@@ -44,6 +44,13 @@ pub struct Context<'a> {
     pub lanes: Lanes,
 }
 
+impl<'a> Context<'a> {
+    /// By finite displacements and without a tangent.
+    pub fn new(x: &'a [[f64; 2]], dofs: &'a Dofs, lanes: Lanes, u: &'a [f64]) -> Self {
+        Self { x, u, dofs, nlgeom: true, stressed: false, tangent: false, lanes }
+    }
+}
+
 /// What all chunks of a block share.
 pub struct Shared<const N: usize> {
     pub block: usize,
@@ -131,8 +138,6 @@ pub trait Chunk: Send + Sync {
     fn elements(&self) -> &[u32];
     /// Nodes of all elements.
     fn nodes(&self) -> Vec<u32>;
-    /// Committed history, for tests.
-    fn history(&self) -> (&[f64], &[f64]);
     /// Committed history, internal modes, carried velocities, initial strains and temperatures.
     fn state(&self) -> [&[f64]; PARTS];
     /// Take such a state; `false` if it does not fit.

@@ -314,9 +314,6 @@ where
     fn nodes(&self) -> Vec<u32> {
         self.nodes.as_flattened().to_vec()
     }
-    fn history(&self) -> (&[f64], &[f64]) {
-        (&self.old, &self.alpha_old)
-    }
     fn state(&self) -> [&[f64]; PARTS] {
         [&self.old, &self.alpha_old, &self.rates_old, &self.initial, &self.temperatures]
     }

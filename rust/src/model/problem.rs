@@ -8,7 +8,7 @@ use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::fixed_dofs::FixedDofs;
 use super::recover::Fields;
 use super::registry;
-use super::scatter::{Shared, Sink};
+use super::scatter::Sink;
 use crate::base::thread_autotuner::ThreadAutotuner;
 use crate::base::{Lanes, pool};
 use crate::kinematics::inertia::MassKind;
@@ -123,40 +123,23 @@ impl Problem {
         scale: &mut [f64],
         values: &mut [f64],
     ) -> Result<(), Failed> {
-        let nlgeom = kinematics == Kinematics::Finite;
-        let stressed = kinematics == Kinematics::Stressed;
-        let tangent = !values.is_empty();
-        let (x, dofs, lanes) = (&self.x, &self.dofs, self.lanes);
-        let context = Context { x, u, dofs, nlgeom, stressed, tangent, lanes };
+        let context = Context {
+            nlgeom: kinematics == Kinematics::Finite,
+            stressed: kinematics == Kinematics::Stressed,
+            tangent: !values.is_empty(),
+            ..Context::new(&self.x, &self.dofs, self.lanes, u)
+        };
         let pool = self.pool_if_apart();
         let (colours, active) = (&mut self.colours, &self.active);
         let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
                 zero(array, pool);
             }
-            let sink = Sink {
-                force: Shared::new(force),
-                scale: Shared::new(scale),
-                values: Shared::new(values),
-            };
-            let evaluate = |c: &mut Box<dyn Chunk>| {
-                let block = c.block();
-                if active.get(block) == Some(&false) {
-                    return Vec::new();
-                }
-                let bad = c.assemble(&context, &sink);
-                bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
-            };
-            let mut failed = Vec::new();
-            for colour in colours {
-                if pool && colour.len() > 1 {
-                    let bad: Vec<_> = colour.par_iter_mut().map(evaluate).collect();
-                    failed.extend(bad.into_iter().flatten());
-                } else {
-                    failed.extend(colour.iter_mut().flat_map(evaluate));
-                }
-            }
-            failed
+            let sink = Sink::new(force, scale, values);
+            failures(colours, pool, &|c| {
+                let idle = active.get(c.block()) == Some(&false);
+                if idle { Vec::new() } else { c.assemble(&context, &sink) }
+            })
         };
         let mut failed = share(&mut self.assemble_tuner, pool.as_deref(), &self.blocks, work);
         failed.sort_unstable();
@@ -173,20 +156,8 @@ impl Problem {
         values: &mut [f64],
     ) {
         let tangent = !values.is_empty();
-        let context = Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom: true,
-            stressed: false,
-            tangent,
-            lanes: self.lanes,
-        };
-        let sink = Sink {
-            force: Shared::new(force),
-            scale: Shared::new(scale),
-            values: Shared::new(values),
-        };
+        let context = Context { tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let sink = Sink::new(force, scale, values);
         let (colours, active) = (&self.colours, &self.active);
         let evaluate = |c: &dyn Chunk| {
             if active.get(c.block()) != Some(&false) {
@@ -212,59 +183,21 @@ impl Problem {
             array.fill(0.0);
         }
         let tangent = !values.is_empty();
-        let context = Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom,
-            stressed: false,
-            tangent,
-            lanes: self.lanes,
-        };
-        let sink = Sink {
-            force: Shared::new(force),
-            scale: Shared::new(scale),
-            values: Shared::new(values),
-        };
-        let alone = Sink {
-            force: Shared::new(internal),
-            scale: Shared::new(&mut unused),
-            values: Shared::new(&mut []),
-        };
+        let context =
+            Context { nlgeom, tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let sink = Sink::new(force, scale, values);
+        let alone = Sink::new(internal, &mut unused, &mut []);
         let pool = self.pool_if_apart();
         let colours = &mut self.colours;
-        let work = |pool: bool| {
-            let evaluate = |c: &mut Box<dyn Chunk>| {
-                let block = c.block();
-                let bad = c.conserving(&context, between, &sink, &alone);
-                bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
-            };
-            let mut failed = Vec::new();
-            for colour in colours {
-                if pool && colour.len() > 1 {
-                    let bad: Vec<_> = colour.par_iter_mut().map(evaluate).collect();
-                    failed.extend(bad.into_iter().flatten());
-                } else {
-                    failed.extend(colour.iter_mut().flat_map(evaluate));
-                }
-            }
-            failed
-        };
+        let evaluate = |c: &mut dyn Chunk| c.conserving(&context, between, &sink, &alone);
+        let work = |pool: bool| failures(colours, pool, &evaluate);
         let failed = share(&mut self.conserving_tuner, pool.as_deref(), &self.blocks, work);
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
     }
 
     /// Begin a motion of the conserving scheme.
     pub fn start_motion(&mut self, u: &[f64], v: &[f64]) {
-        let context = Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom: true,
-            stressed: false,
-            tangent: false,
-            lanes: self.lanes,
-        };
+        let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         for chunk in self.colours.iter_mut().flatten() {
             chunk.start(&context, v);
         }
@@ -281,7 +214,7 @@ impl Problem {
     ) -> Result<Vec<f64>, String> {
         let own = self.blocks.get(block).ok_or_else(|| format!("no block {block}"))?;
         let mut each = vec![0.0; own.n_elements];
-        let context = self.at_rest(u);
+        let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
         for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
             chunk.momenta(&context, v, kind, carried, &mut sums, &mut each);
@@ -289,21 +222,9 @@ impl Problem {
         Ok(each)
     }
 
-    fn at_rest<'a>(&'a self, u: &'a [f64]) -> Context<'a> {
-        Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom: true,
-            stressed: false,
-            tangent: false,
-            lanes: self.lanes,
-        }
-    }
-
     /// Kinetic energy and momenta of a motion.
     pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
-        let context = self.at_rest(u);
+        let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
         for chunk in self.colours.iter().flatten() {
             chunk.momenta(&context, v, kind, carried, &mut sums, &mut []);
@@ -419,20 +340,8 @@ impl Problem {
     ) {
         let mut scale = vec![0.0; force.len()];
         let tangent = !values.is_empty();
-        let context = Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom: true,
-            stressed: false,
-            tangent,
-            lanes: self.lanes,
-        };
-        let sink = Sink {
-            force: Shared::new(force),
-            scale: Shared::new(&mut scale),
-            values: Shared::new(values),
-        };
+        let context = Context { tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let sink = Sink::new(force, &mut scale, values);
         let evaluate = |c: &dyn Chunk| c.body_force(&context, load, &masks[c.block()], &sink);
         let pool = self.pool_if_apart();
         let colours = &self.colours;
@@ -445,16 +354,7 @@ impl Problem {
     pub fn strains(&self, block: usize, u: &[f64], nlgeom: bool, committed: bool) -> Vec<f64> {
         let b = &self.blocks[block];
         let mut out = vec![0.0; b.n_elements * b.facts.n_points * 3];
-        let lanes = self.lanes;
-        let context = Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom,
-            stressed: false,
-            tangent: false,
-            lanes,
-        };
+        let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
             chunk.strains(&context, committed, &mut out);
         }
@@ -476,20 +376,12 @@ impl Problem {
 
     /// Values at the points of every block.
     pub fn recover(&mut self, u: &[f64], nlgeom: bool) -> Vec<Fields> {
-        let (blocks, lanes, pool) = (&self.blocks, self.lanes, self.pool());
+        let (blocks, pool) = (&self.blocks, self.pool());
         let empty = |block: usize, n: usize| {
             let b = &blocks[block];
             Fields::new(n, b.facts.n_points, &b.law, b.outputs().len())
         };
-        let context = Context {
-            x: &self.x,
-            u,
-            dofs: &self.dofs,
-            nlgeom,
-            stressed: false,
-            tangent: false,
-            lanes,
-        };
+        let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let evaluate = |chunk: &&dyn Chunk| {
             let mut part = empty(chunk.block(), chunk.elements().len());
             chunk.recover(&context, &mut part);
@@ -555,6 +447,29 @@ fn each_chunk(
             }
         }
     }
+}
+
+/// Evaluate all chunks likewise; the elements that failed, by block and index in it.
+fn failures(
+    colours: &mut [Vec<Box<dyn Chunk>>],
+    parallel: bool,
+    evaluate: &(dyn Fn(&mut dyn Chunk) -> Vec<usize> + Sync),
+) -> Vec<(usize, usize)> {
+    let of_block = |chunk: &mut Box<dyn Chunk>| {
+        let block = chunk.block();
+        let bad = evaluate(chunk.as_mut());
+        bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
+    };
+    let mut failed = Vec::new();
+    for colour in colours {
+        if parallel && colour.len() > 1 {
+            let bad: Vec<_> = colour.par_iter_mut().map(of_block).collect();
+            failed.extend(bad.into_iter().flatten());
+        } else {
+            failed.extend(colour.iter_mut().flat_map(of_block));
+        }
+    }
+    failed
 }
 
 /// Do work on the pool's threads, if there is one and they help; it is told whether they do.

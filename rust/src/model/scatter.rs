@@ -57,3 +57,9 @@ pub struct Sink<'a> {
     pub scale: Shared<'a>,
     pub values: Shared<'a>,
 }
+
+impl<'a> Sink<'a> {
+    pub fn new(force: &'a mut [f64], scale: &'a mut [f64], values: &'a mut [f64]) -> Self {
+        Self { force: Shared::new(force), scale: Shared::new(scale), values: Shared::new(values) }
+    }
+}
