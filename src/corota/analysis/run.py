@@ -304,7 +304,7 @@ class Analysis:
         system = self.system
         system.conditions.end_time = state.step_time
         if kind == "path":
-            system.conditions.end_time = loop["factor"] * system.conditions.period
+            system.conditions.end_time = loop["factor"] * system.conditions.factors.period
         assert state.energies is not None
         if state.energies.scheme == "energy_momentum" and state.v is not None:
             state.carried = (state.u, state.v, loop["now"].v)
@@ -333,8 +333,8 @@ class Analysis:
         system.mass = self.mass(number)
         self.begun.append(Begun(state.time, reaction is None, system.conditions.end_time))
         system.begin(step, state.time, state.u, reaction)
-        state.notes += system.conditions.notes
-        system.conditions.notes = []
+        state.notes += system.conditions.supports.notes
+        system.conditions.supports.notes = []
         if state.at is None or kinematics != (system.nlgeom, system.about_linear):
             state.at = system.evaluate(state.u, 0.0)
         assert state.energies is not None

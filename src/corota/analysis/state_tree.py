@@ -33,7 +33,8 @@ DERIVED: dict[str, frozenset[str]] = {
         | {"communicator"}
     ),
     "SymmetricPattern": frozenset({"whole"}),
-    "Conditions": frozenset({"_known", "names", "_runs_on", "_moves_on"}),
+    "Conditions": frozenset({"_known"}),
+    "LoadFactors": frozenset({"amplitudes", "names", "runs_on", "moves_on"}),
     "SaddlePointSystem": frozenset({"_resolve", "_link"}),
     "State": frozenset({"resumption", "recover"}),
     "Balance": frozenset({"inertia"}),

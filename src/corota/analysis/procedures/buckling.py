@@ -182,8 +182,7 @@ def _perturbation(
     own = bool(step.loads) or any(s.value != 0.0 for s in step.supports)
     loads = Conditions(system)
     # Temperatures are absolute: what heats is the difference from the state.
-    heat = loads.temperature
-    heat.begin[:] = heat.end[:] = system.conditions.temperatures(0.0)
+    loads.temperatures.begin_at(system.conditions.temperatures.at(0.0))
     with_model = number == 1 or not own
     loads.add_items(
         [*(model.loads if with_model else []), *step.loads],
@@ -226,7 +225,7 @@ def _derivative(
 
     heating = loads.heating if loads.heating.any() else None
     # Thermal strain is in the internal force of a neighbor already.
-    mechanical = loads.external(loads.period, u)[0] - loads.external(0.0, u)[0]
+    mechanical = loads.external(loads.factors.period, u)[0] - loads.external(0.0, u)[0]
 
     def neighbour(h: float) -> Floats:
         system.free.offset = None if heating is None else h * heating
@@ -249,7 +248,7 @@ def _derivative(
     change /= 2.0 * size
     # Entries of the load stiffness join the full tangent, since constraints reduce them too.
     zero, own = np.zeros(system.n_dofs), system.pattern.zeros()
-    _, stiffness = loads.external(loads.period, u, own)
+    _, stiffness = loads.external(loads.factors.period, u, own)
     if stiffness is not None or own.any():
         at = _symmetric(system, Evaluation(zero, zero, zero, own, stiffness))
         change += _unknowns(system, replace(at, link=system.constraints.link(u)), zero)

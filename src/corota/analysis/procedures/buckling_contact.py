@@ -100,7 +100,7 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
     system = base.system
     size = DIFFERENCE * system.length / moved
     heating = loads.heating if loads.heating.any() else None
-    mechanical = loads.external(loads.period, base.u)[0] - loads.external(0.0, base.u)[0]
+    mechanical = loads.external(loads.factors.period, base.u)[0] - loads.external(0.0, base.u)[0]
     du, dp = base.expand(z), z[base.nf :]
 
     def neighbor(h: float) -> Linearized:
@@ -122,7 +122,7 @@ def _change(base: Linearized, z: Floats, loads: Conditions, moved: float) -> NDA
         )
     change = change / (2.0 * size)
     own = system.pattern.zeros()
-    _, triplets = loads.external(loads.period, base.u, own)
+    _, triplets = loads.external(loads.factors.period, base.u, own)
     if triplets is not None:
         triplets = (triplets[0], triplets[1], -triplets[2])
     if triplets is not None or own.any():

@@ -166,7 +166,7 @@ class DynamicStepper(NewtonStepper):
         system, step, now = self.system, self.step, self.now
         dt = target - self.control.time
         guess = self.flight.guess(now.u, now.v, dt)
-        prescribed = system.conditions.prescribed(target, guess)
+        prescribed = system.conditions.supports.at(target, guess)
         driven = _driven(system, prescribed, target, dt)
         self.motion = _motion(system, step, self.inertia, now, dt, driven, self.viscous)
         outcome, contact = solve_increment(
@@ -202,7 +202,7 @@ class DynamicStepper(NewtonStepper):
             return None
         target = failed.target
         guess = self.now.u
-        prescribed = system.conditions.prescribed(target, guess)
+        prescribed = system.conditions.supports.at(target, guess)
         try:
             outcome, contact = relax(
                 system, guess, prescribed, target, self.settings, self.report, self.motion
@@ -320,7 +320,7 @@ def _not_over_a_load(system: System, step: Dynamic, time: float, target: float) 
     local error: its increments grow, and a pulse could pass between two of them.
     """
     for _, amplitude in _amplitudes(system, step):
-        start = system.conditions.time if amplitude.total_time else 0.0
+        start = system.conditions.factors.time if amplitude.total_time else 0.0
         points = np.asarray(amplitude.time) - start
         inside = points[(points > time + SAME * step.period) & (points < target)]
         ends = np.array([amplitude(start + t) for t in (time, target)])
@@ -353,7 +353,7 @@ def _driven(system: System, prescribed: Floats, time: float, dt: float) -> Drive
     """Motion that the step prescribes at a time, also of dependents of constrained dofs only."""
     conditions, constraints = system.conditions, system.constraints
     constrained = conditions.constrained
-    v, a = conditions.support_rates(time, dt)
+    v, a = conditions.supports.rates(time, dt)
     if not (len(constraints.dependent) and constrained.any()):
         return Driven(constrained, prescribed, v, a)
     u = prescribed.copy()

@@ -171,7 +171,7 @@ class ExplicitStepper:
         state.counters["stable increment"] = self.stable  # type: ignore[assignment]
         if state.v is None:
             state.v = initial_velocity(system, state.u)
-        given_v, given_a = system.conditions.support_rates(0.0, dt)
+        given_v, given_a = system.conditions.supports.rates(0.0, dt)
         state.v[constrained] = given_v[constrained]
         self.u = state.u.copy()
         self.at = system.evaluate(self.u, 0.0)
@@ -270,13 +270,15 @@ class ExplicitStepper:
         i = self.done + 1
         time = i * dt
         before = self.at
-        du = np.where(constrained, system.conditions.prescribed(time, self.u) - self.u, dt * self.v)
+        du = np.where(
+            constrained, system.conditions.supports.at(time, self.u) - self.u, dt * self.v
+        )
         self.u = self.u + du
         self.at = at = system.evaluate(self.u, time)
         system.commit()
         _refuse_pushed(system, self.idle, at)
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
-        given_v, given_a = system.conditions.support_rates(time, dt)
+        given_v, given_a = system.conditions.supports.rates(time, dt)
         force = self._contact(du, self.v, self.v - dt * self.inverse * at.residual, 1.0, time)
         residual = at.residual - force
         a = -self.inverse * residual
@@ -339,9 +341,9 @@ class ExplicitStepper:
         """
         system, dt = self.system, self.dt
         held = system.conditions.constrained
-        driven = dt * system.conditions.support_rates(time, dt)[0]
+        driven = dt * system.conditions.supports.rates(time, dt)[0]
         if time < self.step.period - 0.5 * dt:
-            driven = system.conditions.prescribed(time + dt, self.u) - self.u
+            driven = system.conditions.supports.at(time + dt, self.u) - self.u
         ahead = np.where(held, driven, dt * free)
         force = self.contact.act(self.u, du, ahead, dt * before, share, self.inverse, time)
         if self.idle.any():

@@ -147,7 +147,7 @@ def _amplitudes(
     conditions, waves = system.conditions, system.conditions.harmonic
     assert waves is not None
     behind = Conditions(system)
-    behind.ramp = False
+    behind.factors.ramp = False
     behind.reset_mass()
     behind.add_items(step.imaginary_loads, step.imaginary_supports)
     loose = behind.constrained & ~conditions.constrained
@@ -163,7 +163,7 @@ def _amplitudes(
     for k, f in enumerate(frequencies):
         for phase, of in ((1.0, waves), (1.0j, behind)):
             loads[k] += phase * of.external(f, lin.u)[0]
-            moves[k] += phase * of.prescribed(f, none)
+            moves[k] += phase * of.supports.at(f, none)
     return loads, moves
 
 

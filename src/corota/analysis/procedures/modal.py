@@ -148,7 +148,7 @@ def _courses(system: System, lin: LinearMotion, n: int, dt: float) -> tuple[Patt
     for i in range(n + 1):
         loads.add(conditions.external(i * dt, lin.u)[0] - lin.at.internal)
         moves.add(
-            np.where(conditions.constrained, conditions.prescribed(i * dt, lin.u) - lin.u, 0.0)
+            np.where(conditions.constrained, conditions.supports.at(i * dt, lin.u) - lin.u, 0.0)
         )
     return loads, moves
 

@@ -151,9 +151,9 @@ def _start_supports(system: System, step: Dynamic, state: State) -> Floats:
     constrained = system.conditions.constrained
     whole = not step.fixed_increments and step.first_increment >= step.period
     window = step.period / 100.0 if whole else step.first_increment
-    v, a = system.conditions.support_rates(0.0, window)
+    v, a = system.conditions.supports.rates(0.0, window)
     state.v[constrained] = v[constrained]
-    for name, time in system.conditions.support_kinks():
+    for name, time in system.conditions.supports.kinks():
         state.notes.append(
             f"the amplitude {name!r} of a support changes its velocity at once at step time "
             f"{time:.4g}: acceleration and reaction have a pulse there, whose height depends on "

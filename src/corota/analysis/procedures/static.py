@@ -182,7 +182,7 @@ class StaticStepper(NewtonStepper):
                 system,
                 system,
                 state.u,
-                system.conditions.prescribed(target, state.u),
+                system.conditions.supports.at(target, state.u),
                 target,
                 settings,
                 report,
@@ -291,7 +291,7 @@ class StaticStepper(NewtonStepper):
         sizes = [control.size] if early or control.step.fixed_increments else []
         for size in sizes or [s * period for s in (FIRST_RELAXED if first else RELAXED)]:
             target = min([control.time + size, *(s for s in control.stops if s > control.time)])
-            prescribed = system.conditions.prescribed(target, state.u)
+            prescribed = system.conditions.supports.at(target, state.u)
             try:
                 outcome, contact = relax(
                     system, state.u, prescribed, target, self.settings, self.report

@@ -26,7 +26,7 @@ FREE = "can move freely"
 def driven(system: System, step: Step, state: State) -> bool:
     """Whether supports move in the step."""
     constrained = system.conditions.constrained
-    ends = [system.conditions.prescribed(t, state.u)[constrained] for t in (0.0, step.period)]
+    ends = [system.conditions.supports.at(t, state.u)[constrained] for t in (0.0, step.period)]
     return bool(np.any(ends[0] != ends[1]))
 
 

@@ -147,12 +147,12 @@ class Elements(Term):
         """Give the elements the thermal strain of a step time."""
         free = self.system.free
         if free.responds:
-            free.apply(self.conditions.temperatures(time))
+            free.apply(self.conditions.temperatures.at(time))
 
     def holds(self, time: float) -> bool:
         """Whether the elements have the temperatures of a step time already."""
         free = self.system.free
-        return not free.responds or free.follows(self.conditions.temperatures(time))
+        return not free.responds or free.follows(self.conditions.temperatures.at(time))
 
     # -- committed state ---------------------------------------------------------------
 

@@ -1,0 +1,180 @@
+"""Prescribed displacements over the steps of an analysis."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.load_history import LoadHistory
+from corota.arrays import distinct
+from corota.errors import ModelError
+from corota.model.dofs import DOFS
+from corota.model.loads import check_supports
+from corota.model.rotations import without_rotation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.load_factors import LoadFactors
+    from corota.model.loads import Fixed
+
+    Floats = NDArray[np.float64]
+
+
+class Supports:
+    """The supports that act now.
+
+    Parameters
+    ----------
+    system : NumberedModel
+    factors : LoadFactors
+
+    Attributes
+    ----------
+    constrained : ndarray of bool, shape (n_dofs,)
+        Dofs with a prescribed value.
+    notes : list of str
+        Notes on the step.
+    """
+
+    def __init__(self, system: NumberedModel, factors: LoadFactors) -> None:
+        self.system, self.factors = system, factors
+        self.constrained = np.zeros(system.n_dofs, bool)
+        self.history = LoadHistory(system.n_dofs)
+        self.notes: list[str] = []
+
+    # -- steps -------------------------------------------------------------------------
+
+    def carry(self, u: Floats) -> None:
+        """Start the next step from displacement `u`, except where an amplitude continues."""
+        self.history.carry(u, self.factors.runs_on)
+
+    def release(self) -> None:
+        """Release all dofs."""
+        self.constrained[:] = False
+        self.history.amplitude[:] = 0
+
+    def add(self, items: Iterable[Fixed]) -> None:
+        """Add supports.
+
+        Raises
+        ------
+        ModelError
+            If a node has no such dof, or a constraint determines it.
+        """
+        for item in items:
+            nodes = self.system.model.mesh.node_indices(item.nodes)
+            dofs = self.system.dofs(nodes, item.dof)
+            # A rotation may be given for nodes without one, as with dofs 1-6 in decks.
+            if item.dof == 2 and item.value != 0.0 and (dofs < 0).any():
+                label = self.system.model.mesh.node_labels[nodes[dofs < 0][0]]
+                raise ModelError(
+                    f"node {label} has no drilling rotation to prescribe; use OPT or Q4D there",
+                    item.where,
+                )
+            if item.dof == 2 and item.where is None and (dofs < 0).all():
+                self.notes.append(without_rotation(self.system.model.mesh, item))
+            dofs = dofs[dofs >= 0]
+            self.system.constraints.refuse_constrained(dofs, item.where)
+            self.constrained[dofs] = True
+            value = self.history.begin[dofs] if item.keep else item.value
+            self.history.set(dofs, value, self.factors.index(item.amplitude, item.where))
+
+    def refuse_conflicts(self, items: list[Fixed]) -> None:
+        """Refuse a dof that is given two values at once; the same one twice is one.
+
+        Of decks the later value counts, with a note.
+
+        Raises
+        ------
+        ModelError
+            Naming the node, the direction and both values.
+        """
+        check_supports(items)
+        n = self.system.n_dofs
+        value, amplitude, given = np.zeros(n), np.zeros(n, np.int64), np.zeros(n, bool)
+        for item in items:
+            nodes = self.system.model.mesh.node_indices(item.nodes)
+            dofs = self.system.dofs(nodes, item.dof)
+            nodes, dofs = nodes[dofs >= 0], dofs[dofs >= 0]
+            index = self.factors.index(item.amplitude, item.where)
+            given_before = given[dofs] & (not item.keep)
+            twice = given_before & ((value[dofs] != item.value) | (amplitude[dofs] != index))
+            if twice.any():
+                at = int(np.flatnonzero(twice)[0])
+                label = self.system.model.mesh.node_labels[nodes[at]]
+                name = list(DOFS)[item.dof]
+                other, own = value[dofs[at]], item.value
+                what = f"two values, {other:g} and {own:g}" if other != own else "two amplitudes"
+                dof = f"{name} (dof {(1, 2, 6)[item.dof]})"
+                if item.where is not None:  # a deck: as CalculiX does, but with a note
+                    self.notes.append(
+                        f"{item.where}: node {label} is given {what}, in {dof}; the later one is "
+                        "used"
+                    )
+                    break
+                raise ModelError(
+                    f"node {label} is given {what}, in {dof}: leave "
+                    "one of the supports out, or put the later one into a step of its own",
+                    item.where,
+                )
+            value[dofs], amplitude[dofs], given[dofs] = item.value, index, True
+
+    # -- values ------------------------------------------------------------------------
+
+    def at(self, step_time: float, u: Floats) -> Floats:
+        """Values at prescribed dofs, and `u` elsewhere; shape (n_dofs,)."""
+        history, factors = self.history, self.factors
+        values = factors.values(history, step_time)
+        on = factors.moves_on[history.amplitude]
+        if on.any():
+            begun = factors.of_amplitudes(0.0)[history.amplitude[on]]
+            values[on] += history.begin[on] - history.end[on] * begun
+        out: Floats = np.where(self.constrained, values, u)
+        return out
+
+    def change(self) -> Floats:
+        """Change per unit of load factor, 0 at free dofs; shape (n_dofs,)."""
+        out: Floats = np.where(self.constrained, self.history.end - self.history.begin, 0.0)
+        return out
+
+    def rates(self, step_time: float, window: float) -> tuple[Floats, Floats]:
+        """Velocity and acceleration of prescribed dofs at a time, 0 elsewhere; shapes (n_dofs,).
+
+        Amplitudes are seen over a window (half its width), which is the increment: what
+        changes faster than that is a pulse of the right impulse.
+        """
+        constrained, history, period = self.constrained, self.history, self.factors.period
+        v, a = np.zeros(len(constrained)), np.zeros(len(constrained))
+        if self.factors.ramp:
+            v = self.change() / period
+        window = min(window, period / 3.0)
+        for index in self.amplitudes():
+            table, start = self.factors.table(index)
+            rate, growth = table.derivatives(start + step_time, window, start, start + period)
+            named = constrained & (history.amplitude == index)
+            v[named], a[named] = history.end[named] * rate, history.end[named] * growth
+        return v, a
+
+    def kinks(self) -> list[tuple[str, float]]:
+        """Amplitudes whose rate jumps within the step, with the first step time."""
+        out = []
+        for index in self.amplitudes():
+            table, start = self.factors.table(index)
+            times = table.kinks() - start
+            inside = times[(times > 0.0) & (times < self.factors.period * (1.0 - 1e-9))]
+            if len(inside):
+                out.append((self.factors.names[index], float(inside[0])))
+        return out
+
+    def amplitudes(self) -> list[int]:
+        """Indices of the amplitudes that move supports."""
+        return [int(i) for i in distinct(self.history.amplitude[self.constrained]) if i]
+
+
+__all__ = ["Supports"]
