@@ -24,6 +24,7 @@ FACADES = {
         "corota.results.history",
         "corota.results.members",
         "corota.results.probe",
+        "corota.results.reduction",
         "corota.results.section",
     },
 }

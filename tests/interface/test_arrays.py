@@ -30,7 +30,7 @@ def results() -> ct.Results:
 def test_natural_coordinates_are_found_in_curved_cells(kind: str) -> None:
     """The inverse of the map of a distorted cell, at points that the map itself made."""
     random = np.random.default_rng(3)
-    from corota.results.variables import natural_nodes
+    from corota.results.averaging import natural_nodes
 
     corners = natural_nodes(N_NODES[kind]) * [2.0, 1.0] + 0.08 * random.standard_normal(
         (N_NODES[kind], 2)

@@ -10,6 +10,7 @@ from corota.errors import InputError
 from corota.model.materials import Elastic
 from corota.plots.surface import shape_functions
 from corota.results import variables as vf
+from corota.results.averaging import extrapolation, natural_nodes, section_of_cells
 
 ROUNDOFF = 1e-12
 
@@ -20,8 +21,8 @@ def test_extrapolation_keeps_linear_fields(kind, points):
     """Enough points give back a linear field at the nodes; too few give back a constant."""
     rng = np.random.default_rng(points)
     at = rng.uniform(0.05, 0.45, (points, 2))
-    nodes = vf.natural_nodes(int(kind[-1]))
-    matrix = vf.extrapolation(shape_functions(kind, at))
+    nodes = natural_nodes(int(kind[-1]))
+    matrix = extrapolation(shape_functions(kind, at))
     assert matrix @ np.full(points, 7.0) == pytest.approx(np.full(len(nodes), 7.0), abs=1e-10)
     if points >= 3:
         values = 2.0 + 3.0 * at[:, 0] - 5.0 * at[:, 1]
@@ -31,7 +32,7 @@ def test_extrapolation_keeps_linear_fields(kind, points):
 
 @pytest.mark.parametrize("kind", ["tri3", "tri6", "quad4", "quad8", "quad9"])
 def test_drawn_shape_functions_are_one_at_their_node(kind):
-    nodes = vf.natural_nodes(int(kind[-1]))
+    nodes = natural_nodes(int(kind[-1]))
     assert shape_functions(kind, nodes) == pytest.approx(np.eye(len(nodes)), abs=ROUNDOFF)
 
 
@@ -75,7 +76,7 @@ def test_averages_do_not_cross_sections(model, fake):
 
 def test_equal_sections_of_different_cell_kinds_are_one_group(model):
     model.section([1], element="Q4", material=Elastic(E=1000.0, nu=0.3), thickness=0.1)
-    assert vf.section_of_cells(model).tolist() == [0, 0]
+    assert section_of_cells(model).tolist() == [0, 0]
 
 
 def test_unknown_variable_names_the_nearest_and_lists_all(results):

@@ -22,7 +22,7 @@ from corota.plots.figure import (
 from corota.plots.lines import draw_lines
 from corota.plots.rigid import draw_rigid
 from corota.plots.surface import edge_lines, outline, surface
-from corota.results.variables import section_of_cells
+from corota.results.averaging import section_of_cells
 
 if TYPE_CHECKING:
     from os import PathLike

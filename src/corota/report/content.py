@@ -22,6 +22,7 @@ from corota.report.chunk import pack
 from corota.report.fields import NodalArrays
 from corota.report.records import ITERATION, Records, records_of_files, records_of_results
 from corota.results import variables as vf
+from corota.results.averaging import AVERAGING
 from corota.results.derived import DERIVED
 
 if TYPE_CHECKING:
@@ -234,7 +235,7 @@ def model_chunk(results: Results, level: int = 9) -> bytes:
         "description": described,
         "meaning": {n: vf.described(n, units) for n in (*vf.MEANING, *derived)},
         "units": {of: units.label(of) for of in DIMENSIONS},
-        "averaging": vf.AVERAGING,
+        "averaging": AVERAGING,
         "line elements": list(elements.line_names()),
     }
     return pack(header, arrays, level)

@@ -10,7 +10,9 @@ import numpy as np
 
 from corota.errors import InputError, ResourceError
 from corota.results import variables as vf
+from corota.results.averaging import AVERAGING
 from corota.results.history import History
+from corota.results.reduction import variable_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,7 +71,7 @@ def to_xarray(
             parts = [_stack(results, name + part, chosen) for part in TENSOR]
             data[name] = (("frame", "node", "tensor"), np.stack(parts, axis=-1), attributes(name))
         else:
-            name = results._known(name)
+            name = variable_name(results, name)
             data[name] = (("frame", "node"), _stack(results, name, chosen), attributes(name))
     states = [results.frame(i) for i in chosen]
     coordinates: dict[str, Any] = {
@@ -87,7 +89,7 @@ def to_xarray(
         coordinates["component"] = ["x", "y"]
     if "tensor" in used:
         coordinates["tensor"] = list(TENSOR)
-    head = {"job": results.model.name, "averaging": vf.AVERAGING}
+    head = {"job": results.model.name, "averaging": AVERAGING}
     if units:
         head["units"] = str(units)
     return xarray.Dataset(data, coordinates, head)

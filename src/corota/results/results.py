@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from corota.display import CELLS_DRAWN, Brief, brief, picture, table
 from corota.errors import InputError
-from corota.mesh.selection import names
-from corota.names import choose
 from corota.results.frame import Frame, PointFields
 
 if TYPE_CHECKING:
@@ -24,11 +22,11 @@ if TYPE_CHECKING:
     from corota.model.model import Model
     from corota.model.paths import CriticalPoint, Modes
     from corota.model.steps import Step
+    from corota.results.averaging import Averaging
     from corota.results.history import History
     from corota.results.members import Members
     from corota.results.probe import Line, Place
     from corota.results.section import SectionDiagram, SectionForces
-    from corota.results.variables import Averaging
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -94,7 +92,7 @@ class Results(Brief):
     def averaging(self) -> Averaging:
         """Map from points to nodes; computed once."""
         if self._averaging is None:
-            from corota.results.variables import Averaging
+            from corota.results.averaging import Averaging
 
             self._averaging = Averaging(self.model.mesh)
         return self._averaging
@@ -123,7 +121,7 @@ class Results(Brief):
         """Values at the nodes, shape (n_nodes,).
 
         Quantities of points are extrapolated and averaged
-        (:data:`corota.results.variables.AVERAGING`).
+        (:data:`corota.results.averaging.AVERAGING`).
 
         Parameters
         ----------
@@ -139,7 +137,8 @@ class Results(Brief):
         InputError
             If there is no such variable.
         """
-        from corota.results.variables import NODAL, canonical, nodal_value, stored_at_nodes
+        from corota.results.averaging import stored_at_nodes
+        from corota.results.variables import NODAL, canonical, nodal_value
 
         frame = self.frame(index)
         name = canonical(name, frame)
@@ -152,7 +151,7 @@ class Results(Brief):
 
     def sections(self) -> Ints:
         """Section group of each cell, -1 without; shape (n_cells,)."""
-        from corota.results.variables import section_of_cells
+        from corota.results.averaging import section_of_cells
 
         return section_of_cells(self.model)
 
@@ -161,48 +160,17 @@ class Results(Brief):
 
         Invariants are taken from the averaged components.
         """
-        import numpy as np
-
-        from corota.results.variables import (
-            COMPONENTS,
-            INVARIANTS,
-            canonical,
-            cell_mean,
-            invariant,
-            stored_at_cells,
-        )
+        from corota.results.averaging import cell_values
+        from corota.results.variables import canonical
 
         frame = self.frame(index)
-        name = canonical(name, frame)
-        if not frame.fields:
-            return stored_at_cells(frame, name, self.mesh.n_cells)
-        tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
-        out = np.zeros(self.mesh.n_cells)
-        for block in frame.fields:
-            if tensor not in block.values:
-                continue
-            mean = cell_mean(block, tensor)
-            if name in INVARIANTS:
-                mean = invariant(name, mean)
-            out[block.cells] = mean[:, column] if column >= 0 else mean
-        return out
+        return cell_values(frame, canonical(name, frame), self.mesh.n_cells)
 
     def cells_with(self, name: str, index: int = -1) -> NDArray[np.bool_]:
         """Whether each cell has a variable at its points, shape (n_cells,)."""
-        import numpy as np
+        from corota.results.averaging import cells_with
 
-        from corota.results.variables import COMPONENTS, INVARIANTS
-
-        frame = self.frame(index)
-        tensor = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0],))[0]
-        if not frame.fields:
-            none = np.zeros(self.mesh.n_cells, dtype=bool)
-            return frame.cells_with.get(tensor, none)
-        out = np.zeros(self.mesh.n_cells, dtype=bool)
-        for block in frame.fields:
-            if tensor in block.values:
-                out[block.cells] = True
-        return out
+        return cells_with(self.frame(index), name, self.mesh.n_cells)
 
     def history(
         self,
@@ -243,78 +211,9 @@ class Results(Brief):
 
         ``deflection.plot(against="load factor")`` draws the curve.
         """
-        import numpy as np
+        from corota.results.reduction import history
 
-        from corota.results.history import History
-        from corota.results.variables import UNKNOWN
-
-        simple = {
-            "time": "time",
-            "step time": "step_time",
-            "load factor": "factor",
-            "factor": "factor",
-            "step": "step",
-            "increment": "increment",
-        }
-        if name in simple:
-            values = [float(getattr(f, simple[name])) for f in self.frames]
-            return History("load factor" if name == "factor" else name, np.array(values), self)
-        if any(name in f.scalars for f in self.frames):
-            missing = np.nan if name in UNKNOWN else 0.0
-            values = [f.scalars.get(name, missing) for f in self.frames]
-            return History(name, np.array(values), self)
-        choose(combine, ("auto", "sum", "mean", "max"), "way to combine")
-        name = self._known(name)
-        nodes = None if at is None else self.mesh.node_indices(at)
-        values = [self._one(name, i, nodes, combine) for i in range(len(self.frames))]
-        where = "" if at is None else f" at {_place(at)}"
-        return History(name + where, np.array(values), self)
-
-    def _known(self, name: str) -> str:
-        """Name of a variable of any frame.
-
-        Raises
-        ------
-        InputError
-            With all existing names, including scalars of frames.
-        """
-        from corota.results.variables import match_name
-
-        if not self.frames:
-            raise InputError("there are no frames yet")
-        valid = list(dict.fromkeys([*self.variables(-1), *self.variables(0)]))
-        try:
-            return match_name(name, valid)
-        except InputError as error:
-            scalars = sorted({key for f in (self.frames[0], self.frames[-1]) for key in f.scalars})
-            raise InputError(
-                f"{error.message}; of the whole: time, step time, load factor, step, increment, "
-                + ", ".join(scalars)
-            ) from None
-
-    def _one(self, name: str, index: int, at: Ints | None, combine: str) -> float:
-        import numpy as np
-
-        from corota.results.variables import NODAL, point_value
-
-        frame = self.frame(index)
-        if name in NODAL and getattr(frame, NODAL[name][0]) is None:
-            return float("nan")  # such as a velocity before the first dynamic step
-        if at is None and name not in NODAL and combine in ("auto", "max"):
-            if not frame.fields:
-                return float(self.nodal(name, index).max())
-            return max(float(point_value(b, name).max()) for b in frame.fields)
-        values = self.nodal(name, index)
-        if at is not None:
-            values = values[at]
-        if combine == "auto":
-            force = name in NODAL and name[0] in "RFM"
-            combine = "sum" if force else "mean" if at is not None else "size"
-        if combine == "size":
-            return float(values[np.argmax(np.abs(values))])
-        if combine == "sum":
-            return float(values.sum())
-        return float(values.mean() if combine == "mean" else values.max())
+        return history(self, name, at, combine)
 
     def plot(self, name: str = "", **options: Any) -> Any:
         """Draw a contour on the deformed shape; see :func:`corota.plots.contour`.
@@ -681,16 +580,3 @@ class Results(Brief):
         for number, note in enumerate(self.notes[:10], 1):
             rows[f"note {number}"] = note
         return drawn + table(rows)
-
-
-def _place(at: Any) -> str:
-    """A place in few words: a set's name, a node, or a number of nodes."""
-    import numpy as np
-
-    if isinstance(at, str):
-        return at
-    if several := names(at):
-        return ", ".join(several)
-    array = np.atleast_1d(np.asarray(at))
-    count = int(array.sum()) if array.dtype == bool else len(array)
-    return f"node {array[0]}" if count == 1 and array.dtype != bool else f"{count} nodes"

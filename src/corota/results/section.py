@@ -16,8 +16,8 @@ from corota.mesh.data import EDGES
 from corota.mesh.parts import parts_without
 from corota.mesh.shape_functions import shape_functions
 from corota.model import elements
+from corota.results.averaging import natural_nodes
 from corota.results.history import History
-from corota.results.variables import natural_nodes
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

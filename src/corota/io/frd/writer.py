@@ -28,7 +28,7 @@ from corota.io.frd.layout import (
 from corota.io.requests import in_force
 from corota.io.tables.dat import internal_force
 from corota.io.vtk.vtkhdf import point_data
-from corota.results import variables as vf
+from corota.results.averaging import Averaging
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class FrdWriter:
         self.path, self._model, self._steps, self._binary = path, model, steps, binary
         fields = (options or FileOptions()).fields
         self._fields = None if isinstance(fields, str) else {name.upper() for name in fields}
-        self._averaging = vf.Averaging(model.mesh)
+        self._averaging = Averaging(model.mesh)
         self._curves = rigid_curves(model)
         lines = [np.concatenate(rigid_lines(curve)) for curve in self._curves]
         self._lines = lines

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.results import variables as vf
+from corota.results.averaging import section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class Grid:
         mesh = self._mesh = model.mesh
         self._model = model
         self.chain, self.ends, self.types, self._index = topology(mesh)
-        self._sections = vf.section_of_cells(model) if sections is None else sections
+        self._sections = section_of_cells(model) if sections is None else sections
         self._curves = rigid_curves(model)
         lines = [np.concatenate(rigid_lines(curve)) for curve in self._curves]
         self.n_rigid = len(lines)

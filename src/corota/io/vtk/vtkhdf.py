@@ -22,6 +22,7 @@ from corota.io.finite import check, check_frame
 from corota.io.vtk.grid import Grid
 from corota.io.vtk.packing import packed
 from corota.results import variables as vf
+from corota.results.averaging import AVERAGING, Averaging, cell_mean, section_of_cells
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,7 +55,7 @@ def six(tensor: Floats) -> Floats:
     return np.concatenate([tensor, np.zeros((*tensor.shape[:-1], 2))], axis=-1)
 
 
-def point_data(frame: Frame, averaging: vf.Averaging) -> dict[str, Floats]:
+def point_data(frame: Frame, averaging: Averaging) -> dict[str, Floats]:
     """Arrays at the nodes by the names they have in files."""
     n = len(frame.U)
     data = {
@@ -101,7 +102,7 @@ def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
         for name in block.values:
             if name == "MISES":
                 continue
-            mean = vf.cell_mean(block, name)
+            mean = cell_mean(block, name)
             label = {"S": "stress", "E": "strain"}.get(name, name)
             if name in vf.TENSORS:
                 mean = six(mean)
@@ -150,7 +151,7 @@ def _missing(place: str, name: str) -> float:
 
 def _groups(model: Model) -> dict[int, tuple[NDArray[np.bool_], Ints]]:
     """Cells and nodes of each section group of planar elements."""
-    mesh, of_cells = model.mesh, vf.section_of_cells(model)
+    mesh, of_cells = model.mesh, section_of_cells(model)
     planar = np.zeros(mesh.n_cells, dtype=bool)
     for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
         planar[offset : offset + len(cells)] = cells.kind.startswith(("tri", "quad"))
@@ -202,7 +203,7 @@ class VtkhdfWriter:
         self._steps = model.steps if steps is None else steps
         self._chosen = self._options.chosen(self._steps)
         self._twin = AtomicFile(path, keep=resume is not None)
-        self._averaging = vf.Averaging(model.mesh)
+        self._averaging = Averaging(model.mesh)
         self._groups = _groups(model)
         self._grid = Grid(model, sections)
         try:
@@ -320,7 +321,7 @@ class VtkhdfWriter:
         own.attrs["job"] = self.model.name
         own.attrs["run"] = self.run
         own.attrs["units"] = str(self.model.unit_system)
-        own.attrs["averaging"] = vf.AVERAGING
+        own.attrs["averaging"] = AVERAGING
         own.attrs["tensors"] = "order xx yy zz xy yz xz; shear strain is the angle (engineering)"
         store(own, "node labels", mesh.node_labels)
         store(own, "cell labels", mesh.cell_labels)

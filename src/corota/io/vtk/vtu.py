@@ -19,6 +19,7 @@ from corota.io.finite import check_frame
 from corota.io.vtk.grid import Grid
 from corota.io.vtk.vtkhdf import cell_data, point_data
 from corota.results import variables as vf
+from corota.results.averaging import Averaging
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,7 +32,7 @@ _NAMES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 
 
 def vtu_bytes(
-    model: Model, frame: Frame, averaging: vf.Averaging, sections: vf.Ints | None = None
+    model: Model, frame: Frame, averaging: Averaging, sections: vf.Ints | None = None
 ) -> bytes:
     """Bytes of one ``.vtu`` file.
 
@@ -130,7 +131,7 @@ class PvdWriter:
         sections: vf.Ints | None = None,
     ) -> None:
         self.path, self.model, self._sections = path, model, sections
-        self._averaging = vf.Averaging(model.mesh)
+        self._averaging = Averaging(model.mesh)
         self._entries: list[str] = [] if resume is None else list(resume["entries"])
 
     @property

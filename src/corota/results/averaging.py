@@ -1,0 +1,267 @@
+"""Values of variables at nodes and cells: averages of those at points."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.results.variables import (
+    COMPONENTS,
+    INVARIANTS,
+    STORED,
+    averaged_value,
+    invariant,
+    stored_as,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.mesh import Mesh
+    from corota.model.model import Model
+    from corota.results.frame import Frame, PointFields
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: The order of operations, written into result files.
+AVERAGING = (
+    "Components at the quadrature points are extrapolated to the nodes of each cell (linear fit in "
+    "triangles, bilinear in quadrilaterals, least squares), averaged over the cells at a node with "
+    "equal weights, and invariants are taken from the averaged components."
+)
+
+
+#: Natural coordinates of the nodes of each cell kind, in the order of the mesh.
+_TRIANGLE = [(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]
+_SQUARE = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)]
+
+
+def natural_nodes(n_nodes: int) -> Floats:
+    """Natural coordinates of the nodes of a cell, shape (n_nodes, 2)."""
+    table = _TRIANGLE if n_nodes in (3, 6) else _SQUARE
+    return np.array(table[:n_nodes], dtype=np.float64)
+
+
+def extrapolation(shape: Floats) -> Floats:
+    """Matrix from values at the points of a cell to values at its nodes, shape (k, p).
+
+    A least-squares fit: constant with one or two points, otherwise linear in triangles and
+    bilinear in quadrilaterals (linear if there are three points).
+
+    Parameters
+    ----------
+    shape : ndarray, shape (p, k)
+        Shape functions at the points.
+    """
+    points, nodes = shape.shape
+    corners = natural_nodes(nodes)
+    at = shape @ corners
+    terms = 1 if points < 3 else 3 if nodes in (3, 6) or points == 3 else 4
+
+    def basis(x: Floats) -> Floats:
+        every = [np.ones(len(x)), x[:, 0], x[:, 1], x[:, 0] * x[:, 1]]
+        return np.stack(every[:terms], axis=1)
+
+    return np.asarray(basis(corners) @ np.linalg.pinv(basis(at)))
+
+
+def section_of_cells(model: Model) -> Ints:
+    """Number of the section group of each cell, -1 without; shape (n_cells,).
+
+    Sections that share material, thickness, state and orientation make one group: triangles
+    and quadrilaterals of one part are averaged together.
+    """
+    group = np.full(model.mesh.n_cells, -1, dtype=np.int64)
+    kinds: list[tuple[object, ...]] = []
+    for section in model.sections:
+        nodal = section.nodal_thickness
+        key = (
+            section.material,
+            section.thickness if nodal is None else nodal.tobytes(),
+            section.plane,
+            section.orientation,
+        )
+        if key not in kinds:
+            kinds.append(key)
+        where = section.cells
+        if isinstance(where, str):
+            if where in model.mesh.cell_sets:
+                group[model.mesh.cell_sets[where]] = kinds.index(key)
+            else:
+                group[:] = kinds.index(key)
+        else:
+            group[where] = kinds.index(key)
+    return group
+
+
+class Averaging:
+    """Point values averaged at nodes; caches the maps of the last blocks.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        self._nodes: dict[tuple[int, int, int], tuple[Ints, Ints]] = {}
+
+    def cell_nodes(self, cells: Ints) -> Ints:
+        """Node indices of cells of one kind, shape (n, k)."""
+        key = (len(cells), int(cells[0]), int(cells[-1]))
+        known = self._nodes.get(key)
+        if known is not None and (known[0] is cells or np.array_equal(known[0], cells)):
+            return known[1]
+        block, _ = self.mesh.locate(int(cells[0]))
+        offset = int(self.mesh.offsets[block])
+        nodes = self.mesh.cells[block].nodes[cells - offset]
+        self._nodes[key] = (cells, nodes)
+        return nodes
+
+    def average(
+        self,
+        fields: list[PointFields],
+        names: list[str],
+        chosen: NDArray[np.bool_] | None = None,
+    ) -> dict[str, Floats]:
+        """Average stored values (tensors and scalars) at nodes.
+
+        Parameters
+        ----------
+        fields : list of PointFields
+        names : list of str
+            Keys of ``values``; a block without one counts as zero.
+        chosen : ndarray of bool, shape (n_cells,), optional
+            Cells that take part; all by default.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (n_nodes, 4) or (n_nodes,)
+            Zero at nodes without a cell.
+        """
+        n = self.mesh.n_nodes
+        count = np.zeros(n)
+        sums: dict[str, Floats] = {}
+        for name in names:
+            width = {b.values[name].shape[2:] for b in fields if name in b.values} or {()}
+            sums[name] = np.zeros((n, *width.pop()))
+        for block in fields:
+            pick = slice(None) if chosen is None else chosen[block.cells]
+            nodes = self.cell_nodes(block.cells)[pick]
+            flat = nodes.ravel()
+            if not flat.size:
+                continue
+            count += np.bincount(flat, minlength=n)
+            matrix = extrapolation(block.shape)
+            # einsum, not @: threads of a BLAS would compete with the solver for a small product.
+            for name in names:
+                if name not in block.values:
+                    continue
+                values = block.values[name][pick]
+                if values.ndim == 2:
+                    at = np.einsum("np,kp->nk", values, matrix)
+                    if (values >= 0.0).all():
+                        # Energy densities and similar: linear extrapolation must not make them < 0.
+                        np.maximum(at, 0.0, out=at)
+                    sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
+                    continue
+                for column in range(values.shape[2]):
+                    at = np.einsum("np,kp->nk", values[..., column], matrix)
+                    sums[name][:, column] += np.bincount(flat, at.ravel(), minlength=n)
+        share = 1.0 / np.maximum(count, 1.0)
+        return {k: (v.T * share).T for k, v in sums.items()}
+
+    def nodal(
+        self, fields: list[PointFields], name: str, chosen: NDArray[np.bool_] | None = None
+    ) -> Floats:
+        """One component, invariant or scalar at the nodes, shape (n_nodes,)."""
+        if name in COMPONENTS:
+            tensor, column = COMPONENTS[name]
+            return self.average(fields, [tensor], chosen)[tensor][:, column]
+        if name in INVARIANTS:
+            tensor = INVARIANTS[name][0]
+            return invariant(name, self.average(fields, [tensor], chosen)[tensor])
+        return self.average(fields, [name], chosen)[name]
+
+
+def cell_mean(block: PointFields, name: str) -> Floats:
+    """Volume average over each cell of stored values, shape (n,) or (n, 4)."""
+    whole = block.volume.sum(axis=1, keepdims=True)
+    # Springs have no volume.
+    weight = np.where(whole > 0.0, block.volume, 1.0)
+    weight = weight / weight.sum(axis=1, keepdims=True)
+    values = block.values[name]
+    return np.asarray(np.einsum("np,np...->n...", weight, values))
+
+
+def stored_at_nodes(frame: Frame, name: str, section: int | None) -> Floats:
+    """A variable of a frame without values at points, at the nodes; shape (n_nodes,).
+
+    With a section its own averages, where the frame has them, and 0 at other nodes.
+    """
+    own = None if section is None else frame.section_averages.get(section)
+    if own is None:
+        array = stored_as(name)[0]
+        tensor = STORED[INVARIANTS[name][0]] if name in INVARIANTS else array
+        if array not in frame.averages and tensor not in frame.averages:
+            return np.zeros(len(frame.U))  # a variable of line elements only
+        return averaged_value(frame.averages, name)
+    out = np.zeros(len(frame.U))
+    tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+    if tensor in own:
+        values = own[tensor]
+        nodes = np.asarray(own["nodes"], dtype=np.int64)
+        out[nodes] = (
+            invariant(name, values)
+            if name in INVARIANTS
+            else (values if column < 0 else values[:, column])
+        )
+    return out
+
+
+def stored_at_cells(frame: Frame, name: str, n_cells: int) -> Floats:
+    """A variable of a frame without values at points, over the cells; shape (n_cells,)."""
+    of_cells = {n.removeprefix("cell "): n for n in frame.cell_averages}
+    tensor = INVARIANTS[name][0] if name in INVARIANTS else COMPONENTS.get(name, (name,))[0]
+    array = of_cells.get(STORED.get(tensor, tensor))
+    if array is None:
+        return np.zeros(n_cells)
+    values = frame.cell_averages[array]
+    if name in INVARIANTS:
+        return invariant(name, values[:, :4])
+    column = COMPONENTS[name][1] if name in COMPONENTS else -1
+    return np.asarray(values if column < 0 else values[:, column], dtype=np.float64)
+
+
+def cell_values(frame: Frame, name: str, n_cells: int) -> Floats:
+    """Volume averages over the cells, shape (n_cells,), 0 where there are none.
+
+    Invariants are taken from the averaged components.
+    """
+    if not frame.fields:
+        return stored_at_cells(frame, name, n_cells)
+    tensor, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+    out = np.zeros(n_cells)
+    for block in frame.fields:
+        if tensor not in block.values:
+            continue
+        mean = cell_mean(block, tensor)
+        if name in INVARIANTS:
+            mean = invariant(name, mean)
+        out[block.cells] = mean[:, column] if column >= 0 else mean
+    return out
+
+
+def cells_with(frame: Frame, name: str, n_cells: int) -> NDArray[np.bool_]:
+    """Whether each cell has a variable at its points, shape (n_cells,)."""
+    tensor = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0],))[0]
+    out = np.zeros(n_cells, dtype=bool)
+    if not frame.fields:
+        return frame.cells_with.get(tensor, out)
+    for block in frame.fields:
+        if tensor in block.values:
+            out[block.cells] = True
+    return out
