@@ -4,19 +4,19 @@ Unknowns are the free dofs and then the multipliers. The pattern holds every cou
 seen so far and those next to them, so that it, the ordering and the symbolic factorization remain
 valid while contact moves. The unsymmetric part of slipping friction and follower loads is kept
 separate: the symmetric part is factorized, and a few steps of GMRES, preconditioned with it,
-include
-the rest; where they do not converge, an LU factorization of the whole matrix is used.
+include the rest; where they do not converge, an LU factorization of the whole matrix is used.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from corota.analysis.linear.gmres import gmres
 from corota.analysis.linear.matrix import SymmetricPattern
 from corota.analysis.linear.reduction import _union
 from corota.analysis.linear.triplets import Triplets
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.linear.coupling import Coupling
     from corota.analysis.linear.system import LinearSystem
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
@@ -37,41 +38,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: GMRES: relative residual that is enough, and steps after which LU takes over.
-GMRES_TOLERANCE, GMRES_STEPS = 1e-9, 60
 #: Independent fraction of a constraint below which it is dropped, and the largest number of
 #: constraints for this test.
 DEPENDENT, MOST_DENSE = 1e-9, 2000
 #: Relative size of a product that consists of rounding errors only.
 NULL = 1e-10
-
-
-@dataclass
-class Coupling:
-    """Contribution of contact to the linearized equations, in dofs and multipliers.
-
-    Parameters
-    ----------
-    bend : Triplets
-        Symmetric part at dofs, both triangles.
-    rows : Triplets
-        Dofs by multipliers: derivatives of the forces by the tractions, and transposed those
-        of the constraints.
-    follow : Triplets
-        Dofs by multipliers without the transposed part.
-    diagonal : ndarray, shape (n_multipliers,)
-    force : ndarray, shape (n_dofs,)
-        Added to the right-hand side of equilibrium, in global axes.
-    near : tuple of ndarray of int
-        Dofs and multipliers (-1 none) of pairs that may soon couple, for the pattern.
-    """
-
-    geometric_stiffness: Triplets
-    rows: Triplets
-    follow: Triplets
-    diagonal: Floats
-    force: Floats
-    near: tuple[Ints, Ints]
 
 
 class Reduced(Protocol):
@@ -397,55 +368,15 @@ class SaddlePointSystem:
         return self._by_lu(data, rest, b) if x is None else x
 
     def _gmres_all(self, rest: Triplets, b: Floats) -> Floats | None:
-        """:meth:`_gmres` for all columns."""
+        """Solution by GMRES for all columns; none if one of them stalls."""
         out = np.empty_like(b)
         for k in range(b.shape[1]):
-            x = self._gmres(self.system.linear.solver.solve, rest, b[:, k])
+            x, steps = gmres(self.system.linear.solver.solve, rest, b[:, k], self.nf)
+            self.steps += steps
             if x is None:
                 return None
             out[:, k] = x
         return out
-
-    def _gmres(self, solve: Callable[[Floats], Floats], rest: Triplets, b: Floats) -> Floats | None:
-        """Solution of (M + N) x = b with M factorized and N few entries; None if it stalls."""
-
-        def apply(v: Floats) -> Floats:
-            product = np.zeros(self.size)
-            np.add.at(product, rest.rows, rest.values * v[rest.columns])
-            return v + solve(product)
-
-        r = solve(b)
-        # Multipliers and displacements have different magnitudes.
-        scale = np.ones(self.size)
-        for part in (slice(0, self.nf), slice(self.nf, self.size)):
-            top = float(np.abs(r[part]).max(initial=0.0))
-            scale[part] = top if top > 0.0 else 1.0
-        r = r / scale
-        beta = _length(r)
-        if beta == 0.0:
-            return r
-        basis, h = [r / beta], np.zeros((GMRES_STEPS + 1, GMRES_STEPS))
-        for k in range(GMRES_STEPS):
-            w = apply(basis[k] * scale) / scale
-            for _ in range(2):
-                for i, v in enumerate(basis):
-                    part_of = _product(v, w)
-                    h[i, k] += part_of
-                    w = w - part_of * v
-            h[k + 1, k] = _length(w)
-            small = np.zeros(k + 2)
-            small[0] = beta
-            y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
-            left = _length(small - (h[: k + 2, : k + 1] * y).sum(axis=1))
-            self.steps += 1
-            if left <= GMRES_TOLERANCE * beta or h[k + 1, k] <= 1e-15 * beta:
-                return np.asarray(
-                    scale * np.sum([c * v for c, v in zip(y, basis, strict=False)], axis=0)
-                )
-            if k > 20 and left > 0.5 * beta:
-                return None
-            basis.append(w / h[k + 1, k])
-        return None
 
     def _by_lu(self, data: Floats, rest: Triplets, b: Floats) -> Floats:
         import scipy.sparse as sp
@@ -483,13 +414,4 @@ class SaddlePointSystem:
         return scale
 
 
-def _product(a: Floats, b: Floats) -> float:
-    """Scalar product without the threads of BLAS, which cost more than they save here."""
-    return float(np.einsum("i,i->", a, b))
-
-
-def _length(a: Floats) -> float:
-    return float(np.sqrt(_product(a, a)))
-
-
-__all__ = ["Coupling", "SaddlePointSystem"]
+__all__ = ["SaddlePointSystem"]

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.linear.saddle_point import Coupling
+    from corota.analysis.linear.coupling import Coupling
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

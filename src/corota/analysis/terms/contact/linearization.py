@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.linear.saddle_point import Coupling
+from corota.analysis.linear.coupling import Coupling
 from corota.analysis.linear.triplets import Triplets
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 

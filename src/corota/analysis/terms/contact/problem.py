@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.linear.saddle_point import Coupling, SaddlePointSystem
+    from corota.analysis.linear.coupling import Coupling
+    from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.analysis.terms.contact.contact import ContactState, ContactTerm
 
     Floats = NDArray[np.float64]

@@ -1,0 +1,48 @@
+"""What contact adds to the linearized equations."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from corota.analysis.linear.triplets import Triplets
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+
+@dataclass
+class Coupling:
+    """Contribution of contact to the linearized equations, in dofs and multipliers.
+
+    Parameters
+    ----------
+    geometric_stiffness : Triplets
+        Symmetric part at dofs, both triangles.
+    rows : Triplets
+        Dofs by multipliers: derivatives of the forces by the tractions, and transposed those
+        of the constraints.
+    follow : Triplets
+        Dofs by multipliers without the transposed part.
+    diagonal : ndarray, shape (n_multipliers,)
+    force : ndarray, shape (n_dofs,)
+        Added to the right-hand side of equilibrium, in global axes.
+    near : tuple of ndarray of int
+        Dofs and multipliers (-1 none) of pairs that may soon couple, for the pattern.
+    """
+
+    geometric_stiffness: Triplets
+    rows: Triplets
+    follow: Triplets
+    diagonal: Floats
+    force: Floats
+    near: tuple[Ints, Ints]
+
+
+__all__ = ["Coupling"]
