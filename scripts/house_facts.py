@@ -113,6 +113,8 @@ def in_circles(tree: Path, part: str = "") -> int:
     return sum(len(g) for g in circles({k: v for k, v in graph.items() if k.startswith(start)}))
 
 
+#: Start of a line with a condition.
+CONDITION = r"\b(if|elif|while|assert|and|or|not)\b.*"
 #: Names of elements, as a user writes them.
 ELEMENT_NAME = re.compile(r"(Q[489][A-Z]*|T[36]|OPT|SPRING\w*|BEAM|TRUSS)")
 
@@ -143,6 +145,21 @@ def rust_lines_with(tree: Path, pattern: str) -> int:
     return sum(bool(re.search(pattern, line)) for t in texts for line in t.splitlines())
 
 
+def rust_folders(tree: Path) -> dict[str, set[str]]:
+    """Folders of the core that each folder imports from, tests left out."""
+    home = tree / "rust" / "src"
+    graph: dict[str, set[str]] = {p.name: set() for p in home.iterdir() if p.is_dir()}
+    for name, found in graph.items():
+        for path in (home / name).rglob("*.rs"):
+            if "test" in path.relative_to(home).as_posix():
+                continue
+            text = path.read_text(encoding="utf-8").partition("#[cfg(test)]")[0]
+            text = re.sub(r"//.*", "", text)
+            for one, group in re.findall(r"crate::(?:(\w+)|\{([^}]*)\})", text):
+                found |= {one, *re.findall(r"\w+", group)} & graph.keys() - {name}
+    return graph
+
+
 #: Facts by their names.
 FACTS: dict[str, Callable[[Path], int]] = {
     "reads of `indptr` outside `analysis/linear`": lambda t: lines_with(
@@ -159,6 +176,12 @@ FACTS: dict[str, Callable[[Path], int]] = {
     "`contact_term.joins`, `.pairs` or `.opens` outside `terms/contact`": lambda t: lines_with(
         t, r"contact_term\.(joins|acts|pairs|opens)", r"^analysis/terms/contact/"
     ),
+    "`contact_term.n` or `.damped` in conditions outside `terms/contact`": lambda t: lines_with(
+        t, rf"{CONDITION}\bcontact_term\.(n|damped)\b", r"^analysis/terms/contact/"
+    ),
+    "`couples` or `dependent` in conditions outside `analysis/constraints`": lambda t: lines_with(
+        t, rf"{CONDITION}\b(link|constraints)\.(couples|dependent)\b", r"^analysis/constraints/"
+    ),
     "element names in conditions": lambda t: names_in_conditions(t, ELEMENT_NAME),
     "law names in conditions": lambda t: lines_with(t, r"law (==|!=) \"", r"^io/deck/"),
     "`# fmt: skip`": lambda t: lines_with(t, r"# fmt: skip"),
@@ -167,6 +190,7 @@ FACTS: dict[str, Callable[[Path], int]] = {
         f"modules in import circles, {part}": lambda t, part=part: in_circles(t, part)
         for part in PARTS
     },
+    "folders of Rust in import circles": lambda t: sum(len(g) for g in circles(rust_folders(t))),
     "names of contact discretizations matched in Rust": lambda t: rust_lines_with(
         t, r"Method::(Mortar|NodeToSegment)"
     ),

@@ -337,7 +337,7 @@ class StaticStepper(NewtonStepper):
         """
         system, step, state, control = self.system, self.step, self.state, self.control
         number, observers, save = self.loop.number, self.loop.observers, self.loop.save
-        if system.contact_term.damped.any():
+        if any(term.fades for term in system.terms):
             return False  # damping needs a time
         try:
             system.conditions.check_proportional()

@@ -63,7 +63,7 @@ def collapse(
     why : str
         Why the last attempt failed: where all yields at once, by a mechanism.
     """
-    if system.contact_term.damped.any():
+    if any(term.fades for term in system.terms):
         return ""  # a body moves away at the end of its damping: not a collapse
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):

@@ -68,6 +68,11 @@ class Term(Protocol):
         """Whether its force may begin and end within an increment."""
         return False
 
+    @property
+    def fades(self) -> bool:
+        """Whether it damps motions over the time of the step, to nothing at its end."""
+        return False
+
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
         """Start a step at a total time from a displacement, and the reactions there."""
         return

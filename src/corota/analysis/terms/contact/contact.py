@@ -153,6 +153,11 @@ class ContactTerm(Term):
         return any(not pair.tied for pair in self.pairs)
 
     @property
+    def fades(self) -> bool:
+        """Whether the step stabilizes any surfaces."""
+        return bool(self.damped.any())
+
+    @property
     def tied_nodes(self) -> Ints:
         """Nodes of both sides of ties."""
         tied = [pair for pair in self.pairs if pair.tied]
