@@ -45,7 +45,53 @@ class Driven:
     a: Floats
 
 
-class NewmarkMotion:
+class Motion:
+    """One increment of a time scheme: what Newton's method needs besides an evaluation.
+
+    Parameters
+    ----------
+    system : System
+    inertia : Inertia
+    start : MotionState
+    dt : float
+    driven : Driven
+        Prescribed motion at the end.
+    damping : Damping
+
+    Attributes
+    ----------
+    end : MotionState
+        State of the last evaluation.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        inertia: Inertia,
+        start: MotionState,
+        dt: float,
+        driven: Driven,
+        damping: Damping,
+    ) -> None:
+        self.system, self.inertia = system, inertia
+        self.start, self.dt, self.driven = start, dt, driven
+        self.damping = damping
+        self.end = start
+
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
+        """Newton correction."""
+        return self.system.predict(at, du_prescribed)
+
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
+        """Size of the residual."""
+        return self.system.residual_norms(at, u)
+
+    def return_tangent(self, at: Evaluation) -> None:
+        """Take the memory of a tangent back."""
+        self.system.return_tangent(at)
+
+
+class NewmarkMotion(Motion):
     """One increment of a scheme with Newmark's relations, for Newton's method.
 
     The equation of motion holds at the end of the increment, with the true acceleration there;
@@ -59,14 +105,9 @@ class NewmarkMotion:
 
     Parameters
     ----------
-    system : System
-    inertia : Inertia
+    system, inertia, start, dt, driven, damping
+        As of :class:`Motion`.
     scheme : Scheme
-    start : MotionState
-    dt : float
-    driven : Driven
-        Prescribed motion at the end.
-    damping : Damping
     """
 
     def __init__(
@@ -79,10 +120,8 @@ class NewmarkMotion:
         driven: Driven,
         damping: Damping,
     ) -> None:
-        self.system, self.inertia, self.scheme = system, inertia, scheme
-        self.start, self.dt, self.driven = start, dt, driven
-        self.damping = damping
-        self.end = start
+        super().__init__(system, inertia, start, dt, driven, damping)
+        self.scheme = scheme
         # Derivatives of velocity and acceleration by displacement.
         s = scheme
         self.c_v = s.gamma / (s.beta * dt)
@@ -105,8 +144,7 @@ class NewmarkMotion:
         constrained = driven.constrained
         if constrained.any():
             # Newton's method moves prescribed dofs in its first correction: until then the rates
-            # differ
-            # by what the tangent takes them for.
+            # differ by what the tangent takes them for.
             rest = (u - driven.u)[constrained]
             v[constrained] = driven.v[constrained] + self.c_v * rest
             a[constrained] = driven.a[constrained] + self.c_a * rest
@@ -133,39 +171,13 @@ class NewmarkMotion:
             at.internal += self.begun
         return at
 
-    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
-        """Newton correction."""
-        return self.system.predict(at, du_prescribed)
 
-    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
-        """Size of the residual."""
-        return self.system.residual_norms(at, u)
-
-    def return_tangent(self, at: Evaluation) -> None:
-        """Take the memory of a tangent back."""
-        self.system.return_tangent(at)
-
-
-class ConservingMotion:
+class ConservingMotion(Motion):
     """One increment of the energy-momentum scheme.
 
     Loads are taken at the middle of the increment. The increment that moments do work on is
     ``2 tan(dphi / 2)``, which also carries the rotational velocities.
     """
-
-    def __init__(
-        self,
-        system: System,
-        inertia: Inertia,
-        start: MotionState,
-        dt: float,
-        driven: Driven,
-        damping: Damping,
-    ) -> None:
-        self.system, self.inertia = system, inertia
-        self.start, self.dt, self.driven = start, dt, driven
-        self.damping = damping
-        self.end = start
 
     def increment(self, u: Floats) -> Floats:
         """Increment that the forces do work on, shape (n_dofs,)."""
@@ -219,15 +231,3 @@ class ConservingMotion:
         mean = self.increment(self.driven.u)[constrained] / self.dt
         out[constrained] = mean - 0.5 * (self.driven.v - self.start.v)[constrained]
         return out
-
-    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
-        """Newton correction."""
-        return self.system.predict(at, du_prescribed)
-
-    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
-        """Size of the residual."""
-        return self.system.residual_norms(at, u)
-
-    def return_tangent(self, at: Evaluation) -> None:
-        """Take the memory of a tangent back."""
-        self.system.return_tangent(at)
