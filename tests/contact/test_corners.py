@@ -237,8 +237,31 @@ def test_the_message_of_a_run_that_stops_names_a_corner_under_a_pressure_law() -
     assert "sharp corner of the master at node" in sunk_corner(term)
 
 
-def test_a_hook_past_a_sharp_catch_finishes() -> None:
-    """It stopped with the corner of the catch inside the hook."""
-    row = run(193, limit=60, size=0.5)
+@pytest.mark.parametrize(
+    ("degrees", "flat", "with_corner"), [(11.0, 0, 1), (33.0, 0, 2), (77.0, 1, 2)]
+)
+def test_blunt_vertices_of_a_slave_count_against_a_master_with_corners(
+    degrees: float, flat: int, with_corner: int
+) -> None:
+    """Against a flat master from 50 degrees on, against one with a corner, its own, from 20."""
+    height = 0.5 * np.tan(np.radians(0.5 * degrees))
+    wedge = np.array([[0.0, 0.5 + height], [0.5, 0.5], [1.0, 0.5 + height]])
+    slave = chain("linear", wedge, 0)
+    thick = np.full(2, 2.0)
+    more: dict[str, Any] = {"method": "mortar", "corners": True, **LENGTHS}
+    found = []
+    for rise in (0.0, 1.0):
+        opposite = np.array([[1.2, -rise], [0.5, 0.0], [-0.2, -rise]])
+        m = chain("linear", opposite, 3)
+        X = np.vstack([slave[0], m[0]])
+        pair = _core.Contact.edges(X, slave[1], slave[2], thick, m[1], m[2], **more)
+        found.append(len(pair.corners))
+    assert found == [flat, with_corner]
+
+
+@pytest.mark.parametrize("number", [49, 193])
+def test_a_hook_past_a_catch_finishes(number: int) -> None:
+    """193 stopped with the corner of the catch inside the hook; 49 with vertices of the hook."""
+    row = run(number, limit=60, size=0.5)
     assert row["end"] == "done", row["why"]
     assert row["balance"] < 1e-8
