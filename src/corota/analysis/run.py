@@ -198,6 +198,7 @@ class Analysis:
             self.system = System(self.model, self.solver, self.threads)
             results.info["n_dofs"] = self.system.n_dofs
             results.info["threads"] = self.threads
+            results.info["processes"] = self.communicator.size
             self.observers.start(self.model, self.steps)
             if self.observers.takes_checkpoints:
                 self.as_built = arrays_as_built({"system": self.system}, self.known(), "")

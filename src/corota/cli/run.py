@@ -147,6 +147,7 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
         single=args.single,
         fields=args.fields,
         compression=args.compression,
+        parts=communicator.size,
         profile={"read": read},
         checkpoint_every=every or 0,
         checkpoint_seconds=CHECKPOINT_SECONDS if every is None else 0.0,

@@ -53,16 +53,22 @@ class FileOptions:
         ``*NODE FILE``, ``*EL FILE`` and ``*CONTACT FILE``. Displacements are always written.
     compression : int
         Level of gzip from 1 to 9, after sorting bytes by their place; 0 for none.
+    parts : int
+        Parts of the grid in a VTKHDF file, those that a run on as many processes has: ParaView on
+        several processes gives each some of them.
     """
 
     points: bool = False
     single: bool = False
     fields: str | tuple[str, ...] = "all"
     compression: int = LEVEL
+    parts: int = 1
 
     def __post_init__(self) -> None:
         if not 0 <= self.compression <= 9:
             raise InputError(f"compression is a level from 0 to 9, not {self.compression}")
+        if self.parts < 1:
+            raise InputError(f"a grid has one part or more, not {self.parts}")
         if isinstance(self.fields, str):
             if self.fields not in ("all", "requested"):
                 raise InputError(
@@ -107,7 +113,9 @@ def from_keywords(options: dict[str, Any]) -> FileOptions:
     try:
         return FileOptions(**given)
     except TypeError as error:
-        raise InputError(f"{error}; options are points, single, fields, compression") from None
+        raise InputError(
+            f"{error}; options are points, single, fields, compression, parts"
+        ) from None
 
 
 __all__ = ["FIELDS", "FileOptions", "from_keywords", "wanted"]

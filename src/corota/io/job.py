@@ -80,6 +80,8 @@ class JobFiles(BaseObserver):
         Fields of the result file; see :class:`corota.io.file_options.FileOptions`.
     compression : int
         Level of gzip, 0 for none.
+    parts : int
+        Parts of the grid in the result file: the number of processes of the run.
     profile : dict of str to float, optional
         Seconds of phases before the analysis, such as ``read``.
     checkpoint_every : int
@@ -125,6 +127,7 @@ class JobFiles(BaseObserver):
         single: bool = False,
         fields: str | Sequence[str] = "all",
         compression: int = LEVEL,
+        parts: int = 1,
         profile: dict[str, float] | None = None,
         checkpoint_every: int = 0,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
@@ -137,7 +140,7 @@ class JobFiles(BaseObserver):
         self._formats = [choose(form, STREAMS, "result format") for form in formats]
         self._extra = histories
         chosen = fields if isinstance(fields, str) else tuple(fields)
-        self._form = FileOptions(points, single, chosen, compression)
+        self._form = FileOptions(points, single, chosen, compression, parts)
         self._profile = profile or {}
         self._last_tried = (0.0, 0)
         self._stored: tuple[Any, list[Any], str] | tuple[()] | None = None
@@ -414,6 +417,7 @@ class JobFiles(BaseObserver):
             "single": self._form.single,
             "fields": self._form.fields,
             "compression": self._form.compression,
+            "parts": self._form.parts,
             "every": self._every,
             "seconds": self._seconds,
             "source": self._place,

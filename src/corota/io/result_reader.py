@@ -16,6 +16,7 @@ from corota.errors import FileError, InputError
 from corota.io.contacts import contacts_of_results
 from corota.io.description import description_of_results
 from corota.io.vtk.grid import VTK_TYPES
+from corota.io.vtk.parts import whole
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
 from corota.model.model import Model
@@ -174,6 +175,31 @@ def _cells_with(blocks: list[Any], n_cells: int) -> dict[str, NDArray[np.bool_]]
     return found
 
 
+class _Rows:
+    """Rows of nodes and of cells in the arrays of a grid, where rigid curves follow.
+
+    Attributes
+    ----------
+    nodes, cells : slice or ndarray of int
+        Row of each node, of those in several parts the first one, and of each cell.
+    """
+
+    nodes: slice | Ints
+    cells: slice | Ints
+
+    def __init__(self, file: Any) -> None:
+        own = file["corota"]
+        n_nodes, n_cells = len(own["node labels"]), len(own["cell labels"])
+        if "parts" not in own:
+            self.nodes, self.cells = slice(n_nodes), slice(n_cells)
+            return
+        nodes, cells = own["parts/nodes"][:], own["parts/cells"][:]
+        self.nodes, self.cells = np.full(n_nodes, -1), np.full(n_cells, -1)
+        self.nodes[nodes[::-1]] = np.arange(len(nodes))[::-1]
+        self.cells[cells] = np.arange(len(cells))
+        _whole(bool((self.nodes >= 0).all() and (self.cells >= 0).all()), "rows of parts")
+
+
 class FileFrames(Sequence[Frame]):
     """Frames of a file, read on demand; the last one is cached."""
 
@@ -189,7 +215,8 @@ class FileFrames(Sequence[Frame]):
         self._fixed = [
             (str(b.attrs["element"]), b["cells"][:], b["shape functions"][:]) for b in self._blocks
         ]
-        types = file["VTKHDF/Types"][: self._cells]
+        self._rows = _Rows(file)
+        types = file["VTKHDF/Types"][:][self._rows.cells]
         run = np.cumsum(np.diff(types, prepend=types[:1]) != 0)
         for cells in (block["cells"][:] for block in every):
             inside = len(cells) and cells.min() >= 0 and cells.max() < len(types)
@@ -240,9 +267,7 @@ class FileFrames(Sequence[Frame]):
             data = self._file["VTKHDF/PointData"][name]
             rows = len(data) // self._count
             _whole(rows >= self._nodes and data.dtype.kind == "f", f"{name} at {rows} nodes")
-            # Behind the nodes are points of rigid curves.
-            first = number * rows
-            return _finite(name, data[first : first + self._nodes])
+            return _finite(name, data[number * rows : (number + 1) * rows][self._rows.nodes])
 
     def at_cells(self, name: str, number: int) -> Floats:
         """An array of ``CellData`` in a frame."""
@@ -251,8 +276,7 @@ class FileFrames(Sequence[Frame]):
             rows = len(data) // self._count
             good = rows >= self._cells and data.dtype.kind == "f"
             _whole(good, f"{name} of {rows} elements")
-            first = number * rows
-            return _finite(name, data[first : first + self._cells])
+            return _finite(name, data[number * rows : (number + 1) * rows][self._rows.cells])
 
     def _read(self, number: int) -> Frame:
         group = self._file["corota/frames"]
@@ -348,7 +372,8 @@ class FileFrames(Sequence[Frame]):
         position = group["position"][number * n : (number + 1) * n]
         turns = self._file["VTKHDF/CellData/frame rotation"]
         rows = len(turns) // self._count
-        rotation = turns[number * rows : (number + 1) * rows][np.minimum(cells, rows - 1)]
+        every = turns[number * rows : (number + 1) * rows][self._rows.cells]
+        rotation = every[np.minimum(cells, len(every) - 1)]
         return PointFields(
             element, cells, position, shape, rotation, group["reference volume"][:], values
         )
@@ -384,7 +409,7 @@ class FileResults(Results):
         self.attributes = {n: str(own.attrs[n]) for n in names if n in own.attrs}
         self.path = str(file.filename)
         self._file = file
-        self._section = file["VTKHDF/CellData/section"][: len(own["cell labels"])]
+        self._section = file["VTKHDF/CellData/section"][:][_Rows(file).cells]
         self.frames = FileFrames(file)  # type: ignore[assignment]
 
     def sections(self) -> Ints:
@@ -421,9 +446,14 @@ class FileResults(Results):
 def _mesh(file: Any) -> Mesh:
     """Mesh of a file: its cells, labels and sets."""
     root, own = file["VTKHDF"], file["corota"]
-    n_nodes, n_cells = len(own["node labels"]), len(own["cell labels"])
-    types, chain, offsets = root["Types"][:n_cells], root["Connectivity"][:], root["Offsets"][:]
-    labels = root["CellData/element label"][:n_cells]
+    rows = _Rows(file)
+    types, chain, offsets = (root[name][:] for name in ("Types", "Connectivity", "Offsets"))
+    types = types[rows.cells]
+    labels = root["CellData/element label"][:][rows.cells]
+    if "parts" in own:
+        counts = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+        sizes = np.column_stack([root[name][:] for name in counts])
+        chain, offsets = whole(chain, offsets, sizes, own["parts/nodes"][:], own["parts/cells"][:])
     cells: list[Cells] = []
     cuts = [0, *(np.flatnonzero(np.diff(types)) + 1).tolist(), len(types)]
     for first, end in pairwise(cuts):
@@ -434,7 +464,7 @@ def _mesh(file: Any) -> Mesh:
             raise InputError(f"cell type {types[first]} is not one of Corota's")
         nodes = chain[offsets[first] : offsets[end]].reshape(-1, N_NODES[kind])
         cells.append(Cells(kind, nodes, labels[first:end]))
-    points = root["Points"][:n_nodes, :2]
+    points = root["Points"][:][rows.nodes, :2]
     _whole(bool(np.isfinite(points).all()), "coordinates that are not numbers")
     for block in cells:
         inside = block.nodes.size and block.nodes.min() >= 0 and block.nodes.max() < len(points)

@@ -120,6 +120,7 @@ def files_of(saved: Saved, folder: str | PathLike[str] | None = None) -> JobFile
         single=options["single"],
         fields=options["fields"],
         compression=options["compression"],
+        parts=options["parts"],
         checkpoint_every=options["every"],
         checkpoint_seconds=options["seconds"],
         source=options["source"],

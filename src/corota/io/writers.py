@@ -26,6 +26,8 @@ def _vtkhdf(results: Results, path: Path, **options: Any) -> None:
     from corota.io.file_options import from_keywords
     from corota.io.vtk.vtkhdf import VtkhdfWriter
 
+    if results.model.sections:
+        options.setdefault("parts", results.info.get("processes", 1))
     writer = VtkhdfWriter(
         path,
         results.model,

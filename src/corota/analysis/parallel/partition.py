@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.blocks import blocks_of
 from corota.errors import InputError
 from corota.model import elements
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.blocks import BlockOfCells
     from corota.analysis.parallel.communicator import Communicator
+    from corota.model.model import Model
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -70,6 +72,15 @@ def partition(blocks: Sequence[BlockOfCells], points: Floats, count: int) -> Int
     return bisected(np.concatenate(places), np.concatenate(work), count)
 
 
+def process_of_cells(model: Model, count: int) -> Ints:
+    """Process of every cell of a model, 0 for those without a section; shape (n_cells,)."""
+    blocks = blocks_of(model)
+    found = np.zeros(model.mesh.n_cells, np.int64)
+    cells = np.concatenate([block.cells for block in blocks])
+    found[cells] = partition(blocks, model.mesh.points, count)
+    return found
+
+
 def bisected(places: Floats, work: Floats, count: int) -> Ints:
     """Groups of points with about the same work, shape (n,).
 
@@ -102,4 +113,4 @@ def bisected(places: Floats, work: Floats, count: int) -> Ints:
     return part
 
 
-__all__ = ["bisected", "own_blocks", "partition"]
+__all__ = ["bisected", "own_blocks", "partition", "process_of_cells"]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.io.vtk.parts import Parts
 from corota.results.averaging import section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
@@ -65,31 +66,49 @@ class Grid:
     model : Model
     sections : ndarray of int, shape (n_cells,), optional
         Section group of each cell; those of the model by default.
+    parts : ndarray of int, shape (n_cells,), optional
+        Part of each cell, where the grid has several; see :class:`corota.io.vtk.parts.Parts`.
 
     Attributes
     ----------
     points : ndarray, shape (n, 3)
         Reference coordinates, nodes first.
     chain, ends, types : ndarray
-        Connectivity, offsets (one more than cells), cell types.
+        Connectivity, offsets (one more than cells), cell types; of one part after the other.
+    sizes : ndarray of int, shape (n_parts, 3)
+        Points, cells and entries of the connectivity of each part.
+    rows : dict of str to ndarray
+        Of several parts: ``nodes`` and ``cells`` of the rows.
     n_rigid : int
         Rigid curves, the last cells.
     """
 
-    def __init__(self, model: Model, sections: Ints | None = None) -> None:
+    def __init__(
+        self, model: Model, sections: Ints | None = None, parts: Ints | None = None
+    ) -> None:
         mesh = self._mesh = model.mesh
         self._model = model
         self.chain, self.ends, self.types, self._index = topology(mesh)
+        self.sizes = np.array([[mesh.n_nodes, len(self.types), len(self.chain)]])
+        self.rows: dict[str, Ints] = {}
+        points = mesh.points
+        if parts is not None:
+            cut = Parts(self.chain, self.ends, parts[self._index], mesh.n_nodes)
+            self.chain, self.ends, self.sizes = cut.chain, cut.ends, cut.sizes
+            self.types, self._index = self.types[cut.cells], self._index[cut.cells]
+            self.rows = {"nodes": cut.nodes, "cells": self._index}
+            points = points[cut.nodes]
         self._sections = section_of_cells(model) if sections is None else sections
         self._curves = rigid_curves(model)
         lines = [np.concatenate(rigid_lines(curve)) for curve in self._curves]
         self.n_rigid = len(lines)
         self._rigid = np.concatenate([np.zeros((0, 2)), *lines])
-        flat = np.concatenate([mesh.points, self._rigid])
+        flat = np.concatenate([points, self._rigid])
         self.points = np.column_stack([flat, np.zeros(len(flat))])
         if lines:
             sizes = [len(line) for line in lines]
-            more = np.arange(len(self._rigid), dtype=np.int64) + mesh.n_nodes
+            more = np.arange(len(self._rigid), dtype=np.int64) + self.sizes[-1, 0]
+            self.sizes[-1] += len(self._rigid), len(lines), len(self._rigid)
             self.chain = np.concatenate([self.chain, more])
             start = self.ends[-1:] if len(self.ends) else np.zeros(1, np.int64)
             self.ends = np.concatenate(
@@ -108,14 +127,16 @@ class Grid:
         }
 
     def at_points(self, data: dict[str, Floats], frame: Frame) -> dict[str, Floats]:
-        """Arrays at the nodes, continued on rigid curves."""
+        """Arrays at the nodes in the order of the grid, continued on rigid curves."""
+        if self.rows:
+            data = {name: values[self.rows["nodes"]] for name, values in data.items()}
         if not self.n_rigid:
             return data
         found = {name: _longer(values, len(self._rigid)) for name, values in data.items()}
         if "displacement" in found:
             lines = [line for curve in self._curves for line in moved(self._model, curve, frame)]
             shift = np.concatenate(lines) - self._rigid
-            found["displacement"][self._mesh.n_nodes :, :2] = shift
+            found["displacement"][-len(shift) :, :2] = shift
         return found
 
     def at_cells(self, data: dict[str, Floats]) -> dict[str, Floats]:

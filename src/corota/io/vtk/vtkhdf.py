@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.parallel.partition import process_of_cells
 from corota.arrays import distinct
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
@@ -205,7 +206,8 @@ class VtkhdfWriter:
         self._twin = AtomicFile(path, keep=resume is not None)
         self._averaging = Averaging(model.mesh)
         self._groups = _groups(model)
-        self._grid = Grid(model, sections)
+        count = self._options.parts
+        self._grid = Grid(model, sections, process_of_cells(model, count) if count > 1 else None)
         try:
             # A small chunk cache: every chunk is written once and never read back.
             mode = "w" if resume is None else "r+"
@@ -295,9 +297,9 @@ class VtkhdfWriter:
         root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
         root.attrs["Type"] = np.bytes_("UnstructuredGrid")
         static = {
-            "NumberOfPoints": np.array([len(grid.points)]),
-            "NumberOfCells": np.array([len(grid.types)]),
-            "NumberOfConnectivityIds": np.array([len(grid.chain)]),
+            "NumberOfPoints": grid.sizes[:, 0],
+            "NumberOfCells": grid.sizes[:, 1],
+            "NumberOfConnectivityIds": grid.sizes[:, 2],
             "Points": grid.points,
             "Connectivity": grid.chain,
             "Offsets": grid.ends,
@@ -333,6 +335,10 @@ class VtkhdfWriter:
         store_description(own, self.model, self._steps)
         own.create_group("frames")
         own.create_group("points")
+        if grid.rows:
+            parts = own.create_group("parts")
+            for name, values in grid.rows.items():
+                self._once(parts, name, values)
         own.create_group("sections")
         self._still = list(grid.still)
         for name, labels in grid.still.items():
@@ -473,7 +479,7 @@ class VtkhdfWriter:
         for name in self._still:
             self._offsets("CellData", name).resize(end, axis=0)
         for name, values in (
-            ("NumberOfParts", np.ones(end - first, np.int64)),
+            ("NumberOfParts", np.full(end - first, len(self._grid.sizes))),
             ("Values", np.array([time for time, _ in self._taken])),
         ):
             steps[name].resize(end, axis=0)
