@@ -206,6 +206,10 @@ def difference(ours: Any, theirs: Any) -> dict[str, float]:
         values = [(getattr(a, name), getattr(b, name)) for a, b in pairs]
         size = max(float(np.abs(a).max()) for a, _ in values)
         found[name] = max(float(np.abs(a - b).max()) for a, b in values) / max(size, 1e-6)
+    located = {float(point.factor) for point in ours.critical_points}
+    size = max(float(np.abs(a.U).max()) for a, _ in pairs)
+    between = [(a.U, b.U) for a, b in pairs if a.factor not in located]
+    found["U between"] = max(float(np.abs(a - b).max()) for a, b in between) / max(size, 1e-6)
     for name in SCALARS:
         numbers = [(a.scalars.get(name, 0.0), b.scalars.get(name, 0.0)) for a, b in pairs]
         size = max(abs(float(a)) for a, _ in numbers)
