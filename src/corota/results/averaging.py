@@ -169,6 +169,8 @@ class Averaging:
                     sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
                     continue
                 for column in range(values.shape[2]):
+                    if not values[..., column].any():
+                        continue
                     at = np.einsum("np,kp->nk", values[..., column], matrix)
                     sums[name][:, column] += np.bincount(flat, at.ravel(), minlength=n)
         share = 1.0 / np.maximum(count, 1.0)
@@ -187,14 +189,26 @@ class Averaging:
         return self.average(fields, [name], chosen)[name]
 
 
-def cell_mean(block: PointFields, name: str) -> Floats:
-    """Volume average over each cell of stored values, shape (n,) or (n, 4)."""
+def cell_weights(block: PointFields) -> Floats:
+    """Share of each point in the average over its cell, shape (n, p)."""
     whole = block.volume.sum(axis=1, keepdims=True)
     # Springs have no volume.
     weight = np.where(whole > 0.0, block.volume, 1.0)
-    weight = weight / weight.sum(axis=1, keepdims=True)
-    values = block.values[name]
-    return np.asarray(np.einsum("np,np...->n...", weight, values))
+    return np.asarray(weight / weight.sum(axis=1, keepdims=True))
+
+
+def cell_mean(block: PointFields, name: str, weights: Floats | None = None) -> Floats:
+    """Volume average over each cell of stored values, shape (n,) or (n, 4).
+
+    Parameters
+    ----------
+    block : PointFields
+    name : str
+    weights : ndarray, shape (n, p), optional
+        :func:`cell_weights` of the block, where several of its values are averaged.
+    """
+    weight = cell_weights(block) if weights is None else weights
+    return np.asarray(np.einsum("np,np...->n...", weight, block.values[name]))
 
 
 def stored_at_nodes(frame: Frame, name: str, section: int | None) -> Floats:

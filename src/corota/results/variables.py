@@ -296,8 +296,9 @@ def principal(tensor: Floats, shear: float = 1.0) -> Floats:
     """
     xx, yy, zz, xy = (tensor[..., i] for i in range(4))
     middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), shear * xy)
-    three = np.stack([middle + radius, middle - radius, zz], axis=-1)
-    return np.asarray(-np.sort(-three, axis=-1), dtype=np.float64)
+    high, low = middle + radius, middle - radius
+    between = np.maximum(low, np.minimum(high, zz))
+    return np.stack([np.maximum(high, zz), between, np.minimum(low, zz)], axis=-1)
 
 
 def invariant(name: str, tensor: Floats) -> Floats:

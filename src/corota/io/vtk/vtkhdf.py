@@ -23,7 +23,13 @@ from corota.io.finite import check, check_frame
 from corota.io.vtk.grid import Grid
 from corota.io.vtk.packing import packed
 from corota.results import variables as vf
-from corota.results.averaging import AVERAGING, Averaging, cell_mean, section_of_cells
+from corota.results.averaging import (
+    AVERAGING,
+    Averaging,
+    cell_mean,
+    cell_weights,
+    section_of_cells,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -100,10 +106,11 @@ def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
     data: dict[str, Floats] = {"frame rotation": np.zeros(n_cells)}
     for block in frame.fields:
         data["frame rotation"][block.cells] = block.frame_rotation
+        weights = cell_weights(block)
         for name in block.values:
             if name == "MISES":
                 continue
-            mean = cell_mean(block, name)
+            mean = cell_mean(block, name, weights)
             label = {"S": "stress", "E": "strain"}.get(name, name)
             if name in vf.TENSORS:
                 mean = six(mean)
@@ -505,7 +512,9 @@ class VtkhdfWriter:
                 (0, *rest),
                 like.dtype,
                 maxshape=(None, *rest),
-                chunks=(max(1, size), *rest),
+                # Where a chunk is a whole frame, one for each component: those that are zero take
+                # no space and no time, and the digits of others pack better among their own.
+                chunks=(max(1, size), *((1,) if len(rest) == 1 and size == rows else rest)),
                 fillvalue=_missing(place, name),
                 fletcher32=True,
                 **(packed if level and rows * row >= SMALL else {}),
@@ -528,15 +537,18 @@ class VtkhdfWriter:
             series[first * rows :] = np.concatenate(frames)
             return
         # Chunks are whole frames, compressed here because HDF5 would block the interpreter.
-        rest = (0,) * (frames[0].ndim - 1)
+        flat = series.chunks[1:] == (1,)
         for number, values in enumerate(frames, first):
-            if not values.any() and not np.isnan(series.fillvalue):
-                continue  # rows that are not written are 0
-            data = np.ascontiguousarray(values, series.dtype)
-            planes = data.view(np.uint8).reshape(-1, data.itemsize).T
-            chunk = packed([plane.tobytes() for plane in planes], self._options.compression)
-            chunk += fletcher32(chunk).to_bytes(4, "little")
-            series.id.write_direct_chunk((number * rows, *rest), chunk)
+            parts = list(values.T) if flat else [values]
+            for column, part in enumerate(parts):
+                if not part.any() and not np.isnan(series.fillvalue):
+                    continue  # rows that are not written are 0
+                data = np.ascontiguousarray(part, series.dtype)
+                planes = data.view(np.uint8).reshape(-1, data.itemsize).T
+                chunk = packed([plane.tobytes() for plane in planes], self._options.compression)
+                chunk += fletcher32(chunk).to_bytes(4, "little")
+                place = (column,) if flat else (0,) * (data.ndim - 1)
+                series.id.write_direct_chunk((number * rows, *place), chunk)
 
     def commit(self) -> None:
         """Make all frames so far visible on disk, at once or not at all.
