@@ -218,7 +218,14 @@ BUILDERS = {
 LIKE = {"P3f": "P3", "P4x2": "P4"}
 #: Elements across (P1, P4: the height; P2: an eighth of the hole), linear and quadratic.
 SIZES: dict[str, dict[str, tuple[int, int]]] = {
-    "P1": {"400": (4, 2), "4k": (14, 8), "40k": (45, 26), "400k": (141, 81), "1M": (223, 129)},
+    "P1": {
+        "400": (4, 2),
+        "4k": (14, 8),
+        "40k": (45, 26),
+        "250k": (111, 64),
+        "400k": (141, 81),
+        "1M": (223, 129),
+    },
     "P2": {"400": (8, 5), "4k": (26, 15), "40k": (85, 49), "400k": (267, 154), "1M": (422, 244)},
 }
 SIZES["P3"] = {k: (n, n) for k, n in {"1k": 10, "4k": 20, "33k": 57, "200k": 141}.items()}
@@ -226,12 +233,12 @@ SIZES["P3f"] = SIZES["P3"]
 SIZES["P4"] = SIZES["P4x2"] = SIZES["P1"]
 #: Increments that are run where the whole problem would take the peers hours.
 LAST: dict[str, dict[str, int]] = {
-    "P1": {"40k": 1, "400k": 1, "1M": 1},
+    "P1": {"40k": 1, "250k": 1, "400k": 1, "1M": 1},
     "P2": {"40k": 2, "400k": 1, "1M": 1},
     "P3": {"200k": 1},
     "P3f": {"200k": 1},
-    "P4": {"4k": 20, "40k": 2, "400k": 1, "1M": 1},
-    "P4x2": {"40k": 2, "400k": 1, "1M": 1},
+    "P4": {"4k": 20, "40k": 2, "250k": 1, "400k": 1, "1M": 1},
+    "P4x2": {"40k": 2, "250k": 1, "400k": 1, "1M": 1},
 }
 
 

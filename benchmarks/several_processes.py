@@ -3,13 +3,19 @@
 ``python -m benchmarks.several_processes`` starts ``mpiexec`` for each row:
 
 ``--catalogue`` runs the analyses of a part of the verification catalogue, of all kinds, again with
-the solver ``petsc`` on all processes together: displacements and reactions of every frame against
-those of the default solver.
+the solver ``petsc`` on all processes together: displacements and reactions of every frame,
+displacements at the end and factors of modes, against those of the default solver. ``rounded`` is
+the default solver again, for matrices whose entries are changed by a rounding error each: what it
+changes is as large as results are certain.
 
-``--problems P1:40k P2:40k`` runs increments of the benchmark problems; ``--gamg 143 286`` the
-multigrid on a clamped square with so many elements a side. ``--times`` adds wall and processor time
-[s]: a process that waits for a message uses its core, so they mean something only on a quiet
-machine. ``--write`` puts the tables into docs/scale.md.
+``--problems P1:40k P2:40k`` runs increments of the benchmark problems; ``--gamg 143 250`` the
+multigrid on a clamped square with so many elements a side. ``--times`` adds wall time, processor
+time [s] and the efficiency, time of one process over all of several: a process that waits for a
+message uses its core, so they mean something only on a quiet machine.
+
+Each row is kept in a file when it is measured (``--rows``, results/several_processes.json), and
+``--continue`` takes those of a run that was stopped. ``--limit`` ends a row after so many seconds.
+``--write`` puts the tables into docs/scale.md.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -19,6 +25,7 @@ import argparse
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -35,14 +42,16 @@ from benchmarks.common import machine, table, write_between
 from benchmarks.peers.run_corota import model_of
 from benchmarks.problems import build
 from benchmarks.solvers_agree import NAMES
+from corota.analysis.linear.solvers import Multifrontal
 from corota.errors import CorotaError
 
-PAGE = Path(__file__).parents[1] / "docs" / "scale.md"
-#: Problems of the catalogue that are too small to be cut, or take minutes.
-LEFT_OUT = {"best_fit_frame"}
-CATALOGUE = [name for name in NAMES if name not in LEFT_OUT]
-#: Time of one row [s].
-LIMIT = 1800.0
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "scale.md"
+#: Problems of the catalogue that are too small to be cut, or solve nothing.
+LEFT_OUT = {"best_fit_frame", "rigid_spin", "zero_modes"}
+CATALOGUE = [*(n for n in NAMES if n not in LEFT_OUT), "pendulum", "thick_cylinder_plastic"]
+#: Share of the stiffness times the displacements below which reactions are rounding errors.
+ROUNDING = 1e-9
 
 
 # -- on every process --------------------------------------------------------------------
@@ -78,48 +87,69 @@ def analyses(name: str) -> list[tuple[Any, Any]]:
     return found
 
 
-def differences(ours: Any, theirs: Any) -> tuple[float, float]:
-    """Largest relative differences of displacements and of forces.
+def differences(ours: Any, theirs: Any) -> tuple[float, ...]:
+    """Largest relative differences: displacements, those of the last frame, reactions, modes.
 
-    Reactions are compared with the largest of reactions, loads and the mean force in the body,
-    because in free expansion reactions are rounding errors of that.
+    Infinite where the frames are not those of the same increments. Reactions that are rounding
+    errors, as in free expansion, are compared with the force of the displacements in the stiffness.
     """
+    if len(ours.frames) != len(theirs.frames):
+        return (np.inf,) * 4
     pairs = list(zip(ours.frames, theirs.frames, strict=True))
-    moved = max((float(np.abs(a.U).max()) for a, _ in pairs), default=0.0)
-    error = max((float(np.abs(a.U - b.U).max()) for a, b in pairs), default=0.0)
-    force = max((max(float(np.abs(x).max()) for x in (a.RF, a.F)) for a, _ in pairs), default=0.0)
-    held = max((float(np.abs(a.RF - b.RF).max()) for a, b in pairs), default=0.0)
-    for a in (a for a, _ in pairs if a.fields):
-        size = float(
-            np.ptp(np.concatenate([f.points.reshape(-1, 2) for f in a.fields]), axis=0).max()
-        )
-        inside = sum(float((np.abs(f.values["S"]).max(axis=2) * f.volume).sum()) for f in a.fields)
-        force = max(force, inside / size)
-    return error / moved if moved else 0.0, held / force if force else 0.0
+    moved = max((_size(a.U) for a, _ in pairs), default=0.0)
+    errors = [_size(a.U - b.U) for a, b in pairs] or [0.0]
+    force = max((max(_size(a.RF), _size(a.F)) for a, _ in pairs), default=0.0)
+    held = max((_size(a.RF - b.RF) for a, b in pairs), default=0.0)
+    moduli = [getattr(s.material, "E", 0.0) * s.thickness for s in ours.model.sections]
+    stiff = max(moduli, default=0.0) * moved
+    force = force if force > ROUNDING * stiff else stiff
+    modes = [
+        _size(a.factors - b.factors) / (_size(a.factors) or 1.0)
+        for a, b in zip(ours.modes, theirs.modes, strict=True)
+    ]
+    moved = moved or 1.0  # then all are zero
+    return max(errors) / moved, errors[-1] / moved, held / (force or 1.0), max(modes, default=0.0)
 
 
-def catalogue_rows(names: list[str]) -> list[list[object]]:
-    """Name, analyses, frames and the two differences of each problem."""
+def _size(values: Any) -> float:
+    return float(np.abs(values).max(initial=0.0))
+
+
+class Rounded(Multifrontal):
+    """The default solver for matrices whose entries are changed by a rounding error each."""
+
+    def __init__(self, symmetric: bool = True) -> None:
+        super().__init__(symmetric)
+        self._random = np.random.default_rng(1)
+
+    def factorize(self, data: Any) -> Any:
+        error = np.finfo(float).eps * self._random.uniform(-1.0, 1.0, len(data))
+        return super().factorize(data * (1.0 + error))
+
+
+def catalogue_rows(names: list[str], solver: str) -> list[list[object]]:
+    """Name, analyses, frames and the differences of each problem."""
     rows: list[list[object]] = []
     for name in names:
-        worst = (0.0, 0.0)
+        worst = np.zeros(4)
         count = frames = 0
         for given, ours in analyses(name):
             model, steps, _, _, _, keep, fields, start = given
             if ours is None or start is not None:
                 continue
+            own = Rounded() if solver == "rounded" else solver
             try:
                 theirs = analysis.solve(
-                    model, steps, solver="petsc", threads=1, keep=keep, fields=fields
+                    model, steps, solver=own, threads=1, keep=keep, fields=fields
                 )
             except CorotaError as error:
                 if "each process needs an element" in str(error):
                     continue
                 raise
             count, frames = count + 1, frames + len(ours.frames)
-            u, rf = differences(ours, theirs)
-            worst = max(worst[0], u), max(worst[1], rf)
-        rows.append([name, count, frames, f"{worst[0]:.1e}", f"{worst[1]:.1e}"])
+            worst = np.maximum(worst, differences(ours, theirs))
+        told = [f"{value:.1e}" if np.isfinite(value) else "other increments" for value in worst]
+        rows.append([name, count, frames, *told])
         sys.stderr.write(f"{rows[-1]}\n")
     return rows
 
@@ -171,7 +201,7 @@ def worker(job: str, path: Path) -> None:
     kind, *rest = job.split(":")
     found: Any
     if kind == "catalogue":
-        found = catalogue_rows(rest)
+        found = catalogue_rows(rest[:1], ":".join(rest[1:]))
     elif kind == "square":
         found = solved(*square(int(rest[0])), ":".join(rest[1:]))
     else:
@@ -188,32 +218,85 @@ def worker(job: str, path: Path) -> None:
 # -- the process that starts them --------------------------------------------------------
 
 
-def started(job: str, count: int) -> list[Any]:
-    """What each of `count` processes found; 0 is this program without mpiexec."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "found.json"
-        command = [sys.executable, "-m", "benchmarks.several_processes", "--worker", job, str(path)]
-        if count:
-            command = ["mpiexec", "-n", str(count), *command]
-        own = {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "0"}
-        subprocess.run(command, env=os.environ | own, check=True, timeout=LIMIT)
-        found: list[Any] = json.loads(path.read_text())
-        return found
+class Starter:
+    """Starts rows of tables, and keeps what they found in a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    again : bool
+        Whether rows of a run before are taken from the file; they stay in it in either case.
+    limit : float
+        Time after which a row is given up [s].
+    """
+
+    def __init__(self, path: Path, again: bool, limit: float) -> None:
+        self.path, self.limit = path, limit
+        self.kept: dict[str, list[Any]] = {}
+        if path.exists():
+            self.kept = json.loads(path.read_text(encoding="utf-8"))
+        self.known = dict(self.kept) if again else {}
+
+    def started(self, job: str, count: int) -> list[Any]:
+        """What each of `count` processes found, nothing after the limit; 0 is without mpiexec."""
+        key = f"{job} on {count}"
+        if key not in self.known:
+            found = self._run(job, count)
+            if not found:
+                return []
+            self.known[key] = self.kept[key] = found
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self.path.write_text(json.dumps(self.kept, indent=1), encoding="utf-8")
+        return self.known[key]
+
+    def _run(self, job: str, count: int) -> list[Any]:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "found.json"
+            command = [sys.executable, "-m", "benchmarks.several_processes", "--worker"]
+            command += [job, str(path)]
+            if count:
+                command = ["mpiexec", "-n", str(count), *command]
+            own = {
+                "OMP_NUM_THREADS": "1",
+                "OMPI_MCA_mpi_yield_when_idle": "0",
+                "OMPI_ALLOW_RUN_AS_ROOT": "1",  # containers
+                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            }
+            with subprocess.Popen(command, env=os.environ | own, start_new_session=True) as run:
+                try:
+                    code = run.wait(self.limit)
+                except subprocess.TimeoutExpired:
+                    os.killpg(run.pid, signal.SIGTERM)
+                    sys.stderr.write(f"{job} on {count}: given up after {self.limit:g} s\n")
+                    return []
+            if code:
+                raise SystemExit(f"{job} on {count} processes: exit code {code}")
+            found: list[Any] = json.loads(path.read_text(encoding="utf-8"))
+            return found
 
 
-def cost_rows(jobs: list[tuple[str, str, list[int]]], times: bool) -> list[list[object]]:
+def cost_rows(
+    starter: Starter, jobs: list[tuple[str, str, list[int]]], times: bool
+) -> list[list[object]]:
     """A row for each job and number of processes; values against the first row of a job."""
     rows: list[list[object]] = []
     reference: dict[str, list[float]] = {}
     for job, solver, counts in jobs:
+        alone = 0.0
         for count in counts:
-            found = started(f"{job}:{solver}", count)
+            found = starter.started(f"{job}:{solver}", count)
+            if not found:
+                continue
             one = found[0]
             expected = reference.setdefault(job, one["U"])
             error = max(abs(a / b - 1.0) for a, b in zip(one["U"], expected, strict=True))
+            wall = max(f["wall"] for f in found)
+            alone = wall if count == 1 else alone
             spent = [
-                f"{max(f['wall'] for f in found):.1f}",
+                f"{wall:.1f}",
                 " ".join(f"{f['cpu']:.1f}" for f in found),
+                f"{alone / wall / count:.2f}" if count > 1 and alone else "",
             ]
             rows.append(
                 [
@@ -233,8 +316,8 @@ def cost_rows(jobs: list[tuple[str, str, list[int]]], times: bool) -> list[list[
 
 
 COST = ["problem", "dofs", "solver", "processes", "Newton", "CG", "GB", "values"]
-TIMES = ["wall s", "CPU s"]
-VALUES = ["problem", "analyses", "frames", "U", "RF"]
+TIMES = ["wall s", "CPU s", "efficiency"]
+VALUES = ["problem", "solver", "processes", "analyses", "frames", "U", "last U", "RF", "modes"]
 
 
 def main() -> int:
@@ -246,37 +329,39 @@ def main() -> int:
     parser.add_argument("--gamg", type=int, nargs="*", default=[], metavar="SIDE")
     parser.add_argument("--times", action="store_true", help="wall and processor time too")
     parser.add_argument("--write", action="store_true", help="put the tables into docs/scale.md")
+    parser.add_argument("--rows", type=Path, default=ROOT / "results" / "several_processes.json")
+    parser.add_argument("--continue", dest="again", action="store_true", help="take known rows")
+    parser.add_argument("--limit", type=float, default=900.0, help="seconds for a row")
     args = parser.parse_args()
     if args.worker:
         worker(args.worker[0], Path(args.worker[1]))
         return 0
+    starter = Starter(args.rows, args.again, args.limit)
     sys.stdout.write(f"{machine()}\n\n")
     if args.catalogue is not None:
         names = args.catalogue or CATALOGUE
         rows = []
-        for count in args.processes:
-            for name in names:
-                row = started(f"catalogue:{name}", count)[0][0]
-                rows.append([row[0], count, *row[1:]])
-        text = table([VALUES[0], "processes", *VALUES[1:]], rows)
+        for name in names:
+            for solver, counts in (("rounded", [0]), ("petsc", args.processes)):
+                for count in counts:
+                    for row in starter.started(f"catalogue:{name}:{solver}", count)[:1]:
+                        rows.append([name, solver, max(count, 1), *row[0][1:]])
+        text = table(VALUES, rows)
         sys.stdout.write(f"{text}\n\n")
         if args.write:
             write_between(PAGE, "catalogue", text)
-    jobs = [
-        (p, s, c)
-        for p in args.problems
-        for s, c in (("multifrontal", [0]), ("petsc", args.processes))
-    ]
-    jobs += [
-        (f"square:{side}", s, c)
-        for side in args.gamg
-        for s, c in (("multifrontal", [0]), ("petsc:gamg", args.processes))
-    ]
-    if jobs:
-        text = table([*COST, *(TIMES if args.times else [])], cost_rows(jobs, args.times))
-        sys.stdout.write(f"{text}\n")
+    for name, of, solver in (
+        ("distributed", args.problems, "petsc"),
+        ("multigrid", [f"square:{side}" for side in args.gamg], "petsc:gamg"),
+    ):
+        jobs = [(p, s, c) for p in of for s, c in (("multifrontal", [0]), (solver, args.processes))]
+        if not jobs:
+            continue
+        head = [*COST, *(TIMES if args.times else [])]
+        text = table(head, cost_rows(starter, jobs, args.times))
+        sys.stdout.write(f"{text}\n\n")
         if args.write:
-            write_between(PAGE, "distributed", text)
+            write_between(PAGE, name, text)
     return 0
 
 
