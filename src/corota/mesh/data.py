@@ -46,7 +46,7 @@ N_NODES = {
 }
 
 
-@dataclass
+@dataclass(repr=False)
 class Cells(Brief):
     """Cells of one kind.
 
@@ -84,7 +84,7 @@ class Cells(Brief):
         return len(self.nodes)
 
 
-@dataclass
+@dataclass(repr=False)
 class Mesh(Brief):
     """Points and cells with the user's numbers and named sets.
 

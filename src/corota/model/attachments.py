@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints
 
 
-@dataclass
+@dataclass(repr=False)
 class PointMass(Brief):
     """A mass, and an inertia about its axis, at each node of a set.
 
@@ -41,7 +41,7 @@ class PointMass(Brief):
             )
 
 
-@dataclass
+@dataclass(repr=False)
 class Dashpot(Brief):
     """A linear damper between two nodes, along their line, or from a node to the ground.
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 
-@dataclass
+@dataclass(repr=False)
 class Equation(Brief):
     """A linear relation ``sum coefficient * dof = rhs``; its first term is eliminated.
 
@@ -48,7 +48,7 @@ class Equation(Brief):
             )
 
 
-@dataclass
+@dataclass(repr=False)
 class Coupling(Brief):
     """Nodes that move with a reference node, or a reference node that follows nodes.
 
@@ -87,7 +87,7 @@ class Coupling(Brief):
                 raise InputError("the weights of a coupling must be > 0", self.where)
 
 
-@dataclass
+@dataclass(repr=False)
 class LocalAxes(Brief):
     """Local axes of nodes for their supports, forces and equations.
 
@@ -111,7 +111,7 @@ class LocalAxes(Brief):
             raise InputError("the angle and the center of local axes must be finite", self.where)
 
 
-@dataclass
+@dataclass(repr=False)
 class StraightLine(Brief):
     """Nodes that stay on the straight line through two others, in any motion of these.
 

@@ -30,7 +30,7 @@ METHODS: dict[str, dict[str, Any]] = {
 }
 
 
-@dataclass
+@dataclass(repr=False)
 class RigidCurve(Brief):
     """A rigid curve of straight lines and arcs; the deformable body lies to its left.
 
@@ -176,7 +176,7 @@ class RigidCurve(Brief):
         return back
 
 
-@dataclass
+@dataclass(repr=False)
 class PressureLaw(Brief):
     """Pressure [force/length^2] against overclosure [length], in place of hard contact.
 
@@ -245,7 +245,7 @@ class PressureLaw(Brief):
         return pressure, slope, energy
 
 
-@dataclass
+@dataclass(repr=False)
 class ContactPair(Brief):
     """Two surfaces, or a surface and a rigid curve, that may come into contact.
 
@@ -339,7 +339,7 @@ class ContactPair(Brief):
         return np.array_equal(self.slave, np.asarray(self.master))
 
 
-@dataclass
+@dataclass(repr=False)
 class Tie(Brief):
     """Two surfaces joined without common nodes.
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 
-@dataclass
+@dataclass(repr=False)
 class Amplitude(Brief):
     """A table of factor against time, constant outside.
 
@@ -169,7 +169,7 @@ def finite(value: object, what: str, where: Location | None) -> float | NDArray[
     return found
 
 
-@dataclass
+@dataclass(repr=False)
 class Fixed(Brief):
     """A prescribed displacement or rotation.
 
@@ -205,7 +205,7 @@ class Fixed(Brief):
         self.amplitude = _amplitude(self.amplitude, self.where)
 
 
-@dataclass
+@dataclass(repr=False)
 class NodalForce(Brief):
     """A force [force] or drilling moment [force*length] at each node of a set.
 
@@ -239,7 +239,7 @@ class NodalForce(Brief):
         self.follower = self.follower and self.dof < 2
 
 
-@dataclass
+@dataclass(repr=False)
 class Force(Brief):
     """A dead force: a resultant on edges, and per node on nodes.
 
@@ -339,7 +339,7 @@ class Force(Brief):
 EDGE_LOADS = ("pressure", "traction", "following traction", "shear")
 
 
-@dataclass
+@dataclass(repr=False)
 class EdgeLoad(Brief):
     """A distributed load on element edges.
 
@@ -374,7 +374,7 @@ class EdgeLoad(Brief):
         self.amplitude = _amplitude(self.amplitude, self.where)
 
 
-@dataclass
+@dataclass(repr=False)
 class BodyForce(Brief):
     """A load on the volume of cells.
 
@@ -412,7 +412,7 @@ class BodyForce(Brief):
         return along / size if size > 0.0 else None
 
 
-@dataclass
+@dataclass(repr=False)
 class InitialVelocity(Brief):
     """Velocity of nodes at the start of the first dynamic step.
 
@@ -437,7 +437,7 @@ class InitialVelocity(Brief):
         self.value = tuple(number(v, "an initial velocity", self.where) for v in self.value)
 
 
-@dataclass
+@dataclass(repr=False)
 class Temperature(Brief):
     """A prescribed temperature of nodes.
 
@@ -461,7 +461,7 @@ class Temperature(Brief):
         self.amplitude = _amplitude(self.amplitude, self.where)
 
 
-@dataclass
+@dataclass(repr=False)
 class InitialTemperature(Brief):
     """Temperature of nodes without thermal strain; 0 where none is given.
 
@@ -478,7 +478,7 @@ class InitialTemperature(Brief):
     where: Location | None = field(default=None, compare=False, repr=False)
 
 
-@dataclass
+@dataclass(repr=False)
 class InitialStress(Brief):
     """Stress of cells in the reference, before any displacement.
 

@@ -38,7 +38,7 @@ def _positive(value: float, name: str, where: Location | None) -> None:
         raise InputError(f"{name} must be a positive number, not {value!r}", where)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Expansion(Brief):
     """Thermal expansion, constant or a table over the temperature.
 
@@ -106,7 +106,7 @@ class Expansion(Brief):
         return from_zero(temperature) - from_zero(start)
 
 
-@dataclass
+@dataclass(repr=False)
 class Material(Brief):
     """Common data of all materials.
 

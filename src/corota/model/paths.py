@@ -24,7 +24,7 @@ class Label(int):
     """A node by its number in the deck, where an index from 0 would be taken otherwise."""
 
 
-@dataclass(kw_only=True)
+@dataclass(kw_only=True, repr=False)
 class ArcLength(Brief):
     """Follow the path by arc length: through limit points and snap-back, without tuning.
 
@@ -93,7 +93,7 @@ class ArcLength(Brief):
             self.factor = 1.0
 
 
-@dataclass
+@dataclass(repr=False)
 class DisplacementControl(Brief):
     """Follow the path by a displacement that grows to a target while the load adapts.
 
@@ -144,7 +144,7 @@ class DisplacementControl(Brief):
         return [(self.where, self.dof, 1.0), *self.also]
 
 
-@dataclass
+@dataclass(repr=False)
 class CriticalPoint(Brief):
     """A limit or bifurcation point of a path.
 
@@ -187,7 +187,7 @@ class CriticalPoint(Brief):
         )
 
 
-@dataclass
+@dataclass(repr=False)
 class Modes(Brief):
     """Eigenvalues with their shapes.
 

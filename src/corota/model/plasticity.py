@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 MAX_BACK_STRESSES = 6
 
 
-@dataclass
+@dataclass(repr=False)
 class Voce(Brief):
     """Isotropic hardening that saturates: ``Q (1 - exp(-b p)) + H p`` above the yield stress.
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-@dataclass
+@dataclass(repr=False)
 class Section(Brief):
     """Element type, material and thickness of a set of cells.
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 MASSES = ("consistent", "constant", "lumped")
 
 
-@dataclass
+@dataclass(repr=False)
 class Output(Brief):
     """One print, file or history request.
 
@@ -63,7 +63,7 @@ class Output(Brief):
     in_global: bool = False
 
 
-@dataclass(kw_only=True)
+@dataclass(kw_only=True, repr=False)
 class Step(Brief, Loading):
     """Common data of all steps.
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 
-@dataclass
+@dataclass(repr=False)
 class PointFields(Brief):
     """Values at the quadrature points of the cells of one block (same element, section).
 
@@ -49,7 +49,7 @@ class PointFields(Brief):
     values: dict[str, Floats]
 
 
-@dataclass
+@dataclass(repr=False)
 class Frame(Brief):
     """One converged increment.
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "power": "**"}
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class History(Brief, NDArrayOperatorsMixin):
     """A quantity at every kept increment; an array of numbers with a name.
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 
-@dataclass
+@dataclass(repr=False)
 class Members(Brief):
     """Section forces at both ends of line elements, in co-rotated axes.
 

@@ -111,7 +111,7 @@ def natural(kind: str, corners: Floats, point: Floats) -> Floats | None:
     return at if inside else None
 
 
-@dataclass
+@dataclass(repr=False)
 class Place(Brief):
     """Results at one place; ``place["U2"]`` is the history of a variable there.
 
@@ -184,7 +184,7 @@ def place(
     return Place(results, where if isinstance(where, str) else f"{len(nodes)} nodes", nodes)
 
 
-@dataclass
+@dataclass(repr=False)
 class Line(Brief):
     """Results along a line of the undeformed shape; ``line["S11"]`` are values at its points.
 

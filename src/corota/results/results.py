@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Frame", "PointFields", "Results"]
 
 
-@dataclass
+@dataclass(repr=False)
 class Results(Brief):
     """All frames of an analysis.
 

@@ -35,7 +35,7 @@ ON = 1e-7
 BALANCED = 1e-6
 
 
-@dataclass
+@dataclass(repr=False)
 class SectionForces(Brief):
     """Resultant of a cut, in axes that rotate with the body.
 
@@ -512,7 +512,7 @@ def _thickness(results: Results, crossing: _Crossing, nodes: Ints) -> Floats:
     return found
 
 
-@dataclass
+@dataclass(repr=False)
 class SectionDiagram(Brief):
     """Section forces of cuts across an axis; see :meth:`corota.results.Results.section_diagram`.
 

@@ -31,7 +31,7 @@ def smooth_steps(time: Floats, value: Floats) -> tuple[Floats, Floats]:
     return np.concatenate(times), np.concatenate(values)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Curve:
     """A curve without an end: ``PERIODIC`` or ``DECAY``, sampled when the steps are known.
 

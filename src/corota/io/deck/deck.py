@@ -45,7 +45,7 @@ FOLLOWS = re.compile(
 MAX_DIAGNOSTICS = 200
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Deck:
     """All data read so far, and all errors found."""
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from corota.model.steps import Output, Step
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class NodeBlock:
     """Nodes of consecutive lines: labels (n,), coordinates (n, 3), line numbers (n,)."""
 
@@ -27,7 +27,7 @@ class NodeBlock:
     lines: Ints
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class ElementBlock:
     """Elements of one type: labels (n,), node labels (n, k), line numbers (n,)."""
 
@@ -39,7 +39,7 @@ class ElementBlock:
     lines: Ints
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Entry:
     """Labels, or the name of another set, in a set."""
 
@@ -48,7 +48,7 @@ class Entry:
     name: str = ""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class NamedSet:
     """A node or element set: entries in the user's order."""
 
@@ -57,7 +57,7 @@ class NamedSet:
     entries: list[Entry] = field(default_factory=list)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class SurfaceRow:
     """One line of a surface: element label or set, and a face such as ``S2``."""
 
@@ -67,7 +67,7 @@ class SurfaceRow:
     face: str
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Surface:
     """A surface of element edges, of nodes, or a rigid profile.
 
@@ -84,7 +84,7 @@ class Surface:
     fillet: float = 0.0
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class SectionDraft:
     """One ``*SOLID SECTION``."""
 
@@ -101,7 +101,7 @@ class SectionDraft:
     nodal: bool = False
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class PlasticDraft:
     """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING``; ``ready`` is false after an error."""
 
@@ -113,7 +113,7 @@ class PlasticDraft:
     cyclic: list[CurveDraft] | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class CurveDraft:
     """Yield stress against plastic strain at one temperature, with the places of the rows.
 
@@ -127,7 +127,7 @@ class CurveDraft:
     voce: tuple[float, float] | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class MaterialDraft:
     """One ``*MATERIAL`` with the numbers of the cards below it."""
 
@@ -154,7 +154,7 @@ class MaterialDraft:
         return max(counts) > 1
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Draft:
     """One data line of a support or a load, its target not yet looked up.
 
@@ -176,7 +176,7 @@ class Draft:
     keep: bool = False
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class InitialDraft:
     """A line of initial temperature or stress; ``point`` from 1, 0 for all."""
 
@@ -184,7 +184,7 @@ class InitialDraft:
     point: int = 0
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class StepDraft:
     """One step as written."""
 
@@ -211,7 +211,7 @@ class StepDraft:
     preload: bool | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Instance:
     """A part placed in the plane: shift, then turn by ``angle`` about ``centre``."""
 
@@ -224,7 +224,7 @@ class Instance:
     scope: Scope = field(default_factory=lambda: Scope())
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Scope:
     """One name space: the flat model, a part, or an instance's own data."""
 
@@ -253,7 +253,7 @@ class Scope:
         )
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class AttachedDraft:
     """One ``*ELEMENT`` card of point masses or dashpots.
 
@@ -276,7 +276,7 @@ class AttachedDraft:
     value: float | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class InteractionDraft:
     """One ``*SURFACE INTERACTION`` with the cards below it.
 
@@ -292,7 +292,7 @@ class InteractionDraft:
     friction: float = 0.0
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class PairDraft:
     """One line of ``*CONTACT PAIR`` or ``*TIE``: slave, master and options."""
 
@@ -317,7 +317,7 @@ class PairDraft:
         return (key(self.slave), key(self.master)) == (key(slave), key(master))
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class GeneralDraft:
     """General contact: whether all outer edges take part, or the pairs of its lines."""
 
@@ -329,7 +329,7 @@ class GeneralDraft:
     where: Location | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class LineDraft:
     """A section of line elements: ``role`` is ``beam`` or ``spring``."""
 
@@ -342,7 +342,7 @@ class LineDraft:
     rows: list[Row] = field(default_factory=list)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class PretensionDraft:
     """One section: its surface, its node, and the normal, if it is given."""
 
@@ -352,7 +352,7 @@ class PretensionDraft:
     normal: tuple[float, float] | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class TieDraft:
     """One constraint as written.
 

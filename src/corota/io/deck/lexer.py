@@ -65,7 +65,7 @@ class Chunk:
         return self.source.data[self.start : self.stop]
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Row:
     """One data line as fields with their columns (from 1)."""
 
@@ -88,7 +88,7 @@ class Row:
         return self.fields[index] if index < len(self.fields) else ""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Parameter:
     """One parameter of a keyword line; ``value`` is empty if none was given."""
 
@@ -98,7 +98,7 @@ class Parameter:
     value_column: int
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Card:
     """One keyword line with its data lines.
 

@@ -58,7 +58,7 @@ class Lookup:
         return np.where(self._labels[at] == labels, self._indices[at], -1)
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class View:
     """One name space placed in the model: the flat deck, or an instance of a part."""
 
@@ -72,7 +72,7 @@ class View:
     cell_offset: int = 0
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Placed:
     """Valid cells of one block."""
 

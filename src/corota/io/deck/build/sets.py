@@ -29,7 +29,7 @@ _FACE = re.compile(r"S(\d{1,9})\Z", re.ASCII)
 _NONE: Ints = np.zeros(0, np.int64)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Elements:
     """Contents of an element set: cells, and line elements of curves."""
 
