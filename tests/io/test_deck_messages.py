@@ -73,6 +73,13 @@ def test_hints_do_not_change_the_answer(tmp_path: Path) -> None:
     assert "CPS" not in found[0].hint.replace("known: CPS and CPE", "")
 
 
+def test_a_node_that_only_a_thickness_uses_must_exist(tmp_path: Path) -> None:
+    given = "*NSET, NSET=thin\n1, 4711\n*NODAL THICKNESS\nthin, 4.\n*BOUNDARY"
+    text = DECK.replace("*BOUNDARY", given, 1).replace("MATERIAL=", "NODAL THICKNESS, MATERIAL=")
+    found = faults(tmp_path, text)
+    assert [d.message for d in found] == ["node 4711 in set thin: not defined in the deck"]
+
+
 def test_nodal_thickness_replaces_that_of_the_section(tmp_path: Path) -> None:
     given = "*NODAL THICKNESS\nnall, 4.\n*BOUNDARY"
     text = DECK.replace("*BOUNDARY", given, 1)

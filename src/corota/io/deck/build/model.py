@@ -89,21 +89,13 @@ class ModelBuilder:
                 step.restart = draft.restart
                 model.steps.append(step)
         pretension.share_fields()
-        self.sets.report_missing(self._names_used())
+        self.sets.report_missing(targets.used | {key(tie.surface) for tie in deck.ties})
         model.time_points = deck.time_points
         model.title = " ".join(deck.heading)
         self._move_supports()
         self._unused()
         model.notes += deck.notes
         return model
-
-    def _names_used(self) -> set[str]:
-        """Keys of the names that supports, loads and constraints use."""
-        deck = self.deck
-        drafts = deck.supports + deck.velocities + [item.draft for item in deck.initial]
-        drafts += [d for step in deck.steps for d in step.supports + step.loads]
-        drafts += [d for tie in deck.ties for d in (*tie.terms, tie.target) if d is not None]
-        return {key(d.target) for d in drafts} | {key(tie.surface) for tie in deck.ties}
 
     def _unused(self) -> None:
         deck = self.deck

@@ -46,11 +46,14 @@ class Targets:
         self.sets = Sets(meshes, self.mesh)
         self.at = meshes.views[0]
         self.rotating = np.zeros(self.mesh.n_nodes, bool)
+        #: Keys of the names of node sets that were looked up.
+        self.used: set[str] = set()
         self.twins: tuple[Ints, Ints] = (np.zeros(0, np.int64), np.zeros(0, np.int64))
 
     def nodes(self, draft: Draft) -> str | Ints | None:
         """Name in the mesh, or indices, of a target of supports and nodal forces."""
         target, row = draft.target, draft.row
+        self.used.add(key(target))
         found: tuple[View, str] | None
         if numerals.is_integer(target):
             found = (self.numbering(self.at, target, "nodes"), target)
