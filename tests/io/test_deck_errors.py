@@ -15,6 +15,7 @@ CASES = [
     # Keywords and parameters.
     ("*NODE, NSET", "*NODES, NSET", 1, 1, "did you mean *NODE?"),
     ("*SOLID SECTION", "*SOLID SECTON", 14, 1, "did you mean *SOLID SECTION?"),
+    ("*STATIC", "*MODAL DYNAMC", 20, 1, "did you mean *MODAL DYNAMIC?"),
     ("*STATIC", "*QWERTY", 20, 1, "unknown keyword *QWERTY"),
     ("*STATIC", "*VISCO", 20, 1, "not part of this version"),
     ("*STATIC", "*STATIC, DIRCT", 20, 10, "did you mean DIRECT?"),

@@ -73,7 +73,8 @@ _FILE_IGNORED = (
     "VARIABLE SUMMARY"
 )
 
-KEYWORDS: dict[str, Keyword] = {
+#: Keywords by their usual spelling.
+_TABLE: dict[str, Keyword] = {
     "HEADING": Keyword(heading, ignored="UNITS"),
     "PARAMETER": Keyword(parameter, ignored="DEPENDENT INDEPENDENT"),
     "NODE": Keyword(mesh.node, "NSET SYSTEM", place="model"),
@@ -100,40 +101,40 @@ KEYWORDS: dict[str, Keyword] = {
     "ELASTIC": Keyword(material.elastic, "TYPE", "MODULI", place="model"),
     # Laws with a card of their own.
     **{
-        name: Keyword(partial(material.constants, law=name), place="model")
+        law.card: Keyword(partial(material.constants, law=name), place="model")
         for name, law in LAWS.items()
         if key(law.card) == name
     },
     "DENSITY": Keyword(material.density, place="model"),
     "EXPANSION": Keyword(thermal.expansion, "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(plastic.plastic, "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"),
-    "CYCLICHARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
-    "SOLIDSECTION": Keyword(
+    "CYCLIC HARDENING": Keyword(plastic.cyclic_hardening, "PARAMETERS", place="model"),
+    "SOLID SECTION": Keyword(
         material.solid_section,
         "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0 NODALTHICKNESS",
         "CONTROLS OFFSET REFNODE",
         place="model",
     ),
-    "SHELLSECTION": Keyword(
+    "SHELL SECTION": Keyword(
         material.shell_section,
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
         "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO",
         place="model",
     ),
-    "NODALTHICKNESS": Keyword(material.nodal_thickness, place="model"),
-    "MEMBRANESECTION": Keyword(
+    "NODAL THICKNESS": Keyword(material.nodal_thickness, place="model"),
+    "MEMBRANE SECTION": Keyword(
         material.shell_section,
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
         "CONTROLS POISSON",
         place="model",
     ),
-    "BEAMSECTION": Keyword(
+    "BEAM SECTION": Keyword(
         lines.beam_section,
         "ELSET MATERIAL SECTION OFFSET1 OFFSET2 TEMPERATURE POISSON",
         "LUMP ROTARYINERTIA CONTROLS ORIENTATION",
         place="model",
     ),
-    "BEAMGENERALSECTION": Keyword(
+    "BEAM GENERAL SECTION": Keyword(
         lines.beam_general_section,
         "ELSET SECTION DENSITY OFFSET1 OFFSET2",
         "POISSON LUMP ROTARYINERTIA ZERO",
@@ -146,13 +147,13 @@ KEYWORDS: dict[str, Keyword] = {
         "NAME TIME SHIFTX SHIFTY DEFINITION VALUE FIXEDINTERVAL BEGIN",
         "SMOOTH",
     ),
-    "TIMEPOINTS": Keyword(amplitudes.time_points, "NAME TIME GENERATE"),
+    "TIME POINTS": Keyword(amplitudes.time_points, "NAME TIME GENERATE"),
     "STEP": Keyword(
         step.step,
         "NLGEOM INC AMPLITUDE PERTURBATION",
         "NAME UNSYMM EXTRAPOLATION SOLVER CONVERTSDI",
     ),
-    "ENDSTEP": Keyword(step.end_step),
+    "END STEP": Keyword(step.end_step),
     "STATIC": Keyword(
         path.static,
         "DIRECT RIKS STABILIZE",
@@ -166,25 +167,25 @@ KEYWORDS: dict[str, Keyword] = {
         "SOLVER RELATIVETOABSOLUTE NOHAF HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
         "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD",
     ),
-    "COMPLEXFREQUENCY": Keyword(dynamic.complex_frequency, "CORIOLIS", "SOLVER STORAGE"),
+    "COMPLEX FREQUENCY": Keyword(dynamic.complex_frequency, "CORIOLIS", "SOLVER STORAGE"),
     "FREQUENCY": Keyword(
         dynamic.frequency,
         "",
         "SOLVER STORAGE EIGENSOLVER NORMALIZATION ACOUSTICCOUPLING RESIDUALMODES "
         "NUMBERINTERVAL SIM",
     ),
-    "MODALDYNAMIC": Keyword(dynamic.modal_dynamic, "", "SOLVER DIRECT"),
-    "STEADYSTATEDYNAMICS": Keyword(
+    "MODAL DYNAMIC": Keyword(dynamic.modal_dynamic, "", "SOLVER DIRECT"),
+    "STEADY STATE DYNAMICS": Keyword(
         dynamic.steady_state, "DIRECT", "SOLVER FREQUENCYSCALE INTERVAL FRICTIONDAMPING"
     ),
-    "MODALDAMPING": Keyword(dynamic.modal_damping, "RAYLEIGH", "MODAL"),
+    "MODAL DAMPING": Keyword(dynamic.modal_damping, "RAYLEIGH", "MODAL"),
     "DAMPING": Keyword(dynamic.damping, "ALPHA BETA", place="model"),
     "MASS": Keyword(attachments.mass, "ELSET", place="model"),
     "DASHPOT": Keyword(attachments.dashpot, "ELSET", place="model"),
-    "INITIALCONDITIONS": Keyword(dynamic.initial_conditions, "TYPE", place="model"),
+    "INITIAL CONDITIONS": Keyword(dynamic.initial_conditions, "TYPE", place="model"),
     "EQUATION": Keyword(tie.equation, place="model"),
     "MPC": Keyword(tie.mpc, place="model"),
-    "RIGIDBODY": Keyword(
+    "RIGID BODY": Keyword(
         tie.rigid_body,
         "NSET ELSET ANALYTICALSURFACE REFNODE ROTNODE PINNSET TIENSET",
         "POSITION ISOTHERMAL",
@@ -193,15 +194,15 @@ KEYWORDS: dict[str, Keyword] = {
     "COUPLING": Keyword(
         tie.coupling, "REFNODE SURFACE INFLUENCERADIUS", "CONSTRAINTNAME", place="model"
     ),
-    "KINEMATICCOUPLING": Keyword(tie.kinematic_coupling, "REFNODE", place="model"),
-    "DISTRIBUTINGCOUPLING": Keyword(tie.distributing_coupling, "ELSET", place="model"),
+    "KINEMATIC COUPLING": Keyword(tie.kinematic_coupling, "REFNODE", place="model"),
+    "DISTRIBUTING COUPLING": Keyword(tie.distributing_coupling, "ELSET", place="model"),
     "KINEMATIC": Keyword(tie.kinematic, place="model"),
     "DISTRIBUTING": Keyword(tie.distributing, "WEIGHTINGMETHOD", ignored="COUPLING", place="model"),
-    "PRE-TENSIONSECTION": Keyword(
+    "PRE-TENSION SECTION": Keyword(
         pretension.pretension, "SURFACE ELEMENT NODE", "NAME", place="model"
     ),
     "TRANSFORM": Keyword(tie.transform, "NSET TYPE", place="model"),
-    "CONTACTPAIR": Keyword(
+    "CONTACT PAIR": Keyword(
         contact.contact_pair,
         "INTERACTION TYPE ADJUST SMALLSLIDING SMOOTH",
         "EXTENSIONZONE HCRIT TRACKING NOTHICKNESS SUPPLEMENTARYCONSTRAINTS OP WEIGHT CPSET "
@@ -209,17 +210,17 @@ KEYWORDS: dict[str, Keyword] = {
         place="model",
     ),
     "CONTACT": Keyword(contact.general, "", "OP", place="model"),
-    "CONTACTINCLUSIONS": Keyword(contact.inclusions, "ALLEXTERIOR", place="model"),
-    "CONTACTPROPERTYASSIGNMENT": Keyword(contact.property_assignment, place="model"),
-    "CONTACTFORMULATION": Keyword(contact.formulation, "TYPE", place="model"),
-    "SURFACEPROPERTYASSIGNMENT": Keyword(contact.formulation, "PROPERTY", place="model"),
-    "SURFACEINTERACTION": Keyword(
+    "CONTACT INCLUSIONS": Keyword(contact.inclusions, "ALLEXTERIOR", place="model"),
+    "CONTACT PROPERTY ASSIGNMENT": Keyword(contact.property_assignment, place="model"),
+    "CONTACT FORMULATION": Keyword(contact.formulation, "TYPE", place="model"),
+    "SURFACE PROPERTY ASSIGNMENT": Keyword(contact.formulation, "PROPERTY", place="model"),
+    "SURFACE INTERACTION": Keyword(
         contact.surface_interaction,
         "NAME",
         "DEPVAR PROPERTIES UNSYMM PADTHICKNESS TRACKINGTHICKNESS",
         place="model",
     ),
-    "SURFACEBEHAVIOR": Keyword(
+    "SURFACE BEHAVIOR": Keyword(
         contact.surface_behavior,
         "PRESSURE-OVERCLOSURE",
         "AUGMENTEDLAGRANGE DIRECT PENALTY",
@@ -230,20 +231,20 @@ KEYWORDS: dict[str, Keyword] = {
     "TIE": Keyword(
         contact.tie, "NAME POSITIONTOLERANCE ADJUST", "TYPE NOROTATION NOTHICKNESS", place="model"
     ),
-    "CONTACTCONTROLS": Keyword(
+    "CONTACT CONTROLS": Keyword(
         contact.contact_controls,
         "STABILIZE SLAVE MASTER",
         "RESET AUTOMATICTOLERANCES APPROACH MAXCHP PERRMX UERRMX FRICTIONONSET TANGENTFRACTION "
         "LAGRANGEMULTIPLIER",
     ),
-    "CONTACTINTERFERENCE": Keyword(contact.contact_interference, "SHRINK", "TYPE OP"),
-    "CONTACTPRINT": Keyword(
+    "CONTACT INTERFERENCE": Keyword(contact.contact_interference, "SHRINK", "TYPE OP"),
+    "CONTACT PRINT": Keyword(
         output.contact_print,
         "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
         "SUMMARY NSET",
     ),
-    "CONTACTFILE": Keyword(output.contact_file, _FILE, "NSET SLAVE MASTER"),
-    "CONTACTOUTPUT": Keyword(
+    "CONTACT FILE": Keyword(output.contact_file, _FILE, "NSET SLAVE MASTER"),
+    "CONTACT OUTPUT": Keyword(
         output.contact_file,
         _FILE,
         "NSET SLAVE MASTER VARIABLE CPSET SURFACE",
@@ -255,12 +256,12 @@ KEYWORDS: dict[str, Keyword] = {
         loads.dsload, "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
     ),
     "TEMPERATURE": Keyword(thermal.temperature, "OP AMPLITUDE", "LOADCASE"),
-    "NODEPRINT": Keyword(output.node_print, f"NSET {_PRINT} GLOBAL", "SUMMARY"),
-    "ELPRINT": Keyword(output.el_print, f"ELSET {_PRINT}", "GLOBAL POSITION SUMMARY"),
-    "NODEFILE": Keyword(output.node_file, f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
-    "NODEOUTPUT": Keyword(output.node_file, f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
-    "ELFILE": Keyword(output.el_file, f"NSET ELSET {_FILE}", _FILE_IGNORED),
-    "ELEMENTOUTPUT": Keyword(output.el_file, f"NSET ELSET {_FILE}", _FILE_IGNORED),
+    "NODE PRINT": Keyword(output.node_print, f"NSET {_PRINT} GLOBAL", "SUMMARY"),
+    "EL PRINT": Keyword(output.el_print, f"ELSET {_PRINT}", "GLOBAL POSITION SUMMARY"),
+    "NODE FILE": Keyword(output.node_file, f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
+    "NODE OUTPUT": Keyword(output.node_file, f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
+    "EL FILE": Keyword(output.el_file, f"NSET ELSET {_FILE}", _FILE_IGNORED),
+    "ELEMENT OUTPUT": Keyword(output.el_file, f"NSET ELSET {_FILE}", _FILE_IGNORED),
     "RESTART": Keyword(output.restart, "WRITE READ FREQUENCY STEP INC ENDSTEP JOB", "OVERLAY"),
     "OUTPUT": Keyword(
         output.output,
@@ -268,45 +269,16 @@ KEYWORDS: dict[str, Keyword] = {
         "FIELD HISTORY NAME OP NUMBERINTERVAL TIMEMARKS TIMEINTERVAL TIMEPOINTS",
     ),
     "PART": Keyword(assembly.part, "NAME", place="model"),
-    "ENDPART": Keyword(assembly.end_part, place="model"),
+    "END PART": Keyword(assembly.end_part, place="model"),
     "ASSEMBLY": Keyword(assembly.assembly, "NAME", place="model"),
-    "ENDASSEMBLY": Keyword(assembly.end_assembly, place="model"),
+    "END ASSEMBLY": Keyword(assembly.end_assembly, place="model"),
     "INSTANCE": Keyword(assembly.instance, "NAME PART", place="model"),
-    "ENDINSTANCE": Keyword(assembly.end_instance, place="model"),
+    "END INSTANCE": Keyword(assembly.end_instance, place="model"),
 }
 
+KEYWORDS: dict[str, Keyword] = {key(name): keyword for name, keyword in _TABLE.items()}
+
 #: Usual spelling of names of several words.
-SPELLED = {
-    key(name): name
-    for name in (
-        "SOLID SECTION",
-        "SHELL SECTION",
-        "TIME POINTS",
-        "END STEP",
-        "NODE PRINT",
-        "EL PRINT",
-        "NODE FILE",
-        "NODE OUTPUT",
-        "EL FILE",
-        "ELEMENT OUTPUT",
-        "END PART",
-        "END ASSEMBLY",
-        "END INSTANCE",
-        "CONTACT PAIR",
-        "BEAM SECTION",
-        "RIGID BODY",
-        "SURFACE INTERACTION",
-        "SURFACE BEHAVIOR",
-        "CONTACT PRINT",
-        "CONTACT FILE",
-        "CONTACT OUTPUT",
-        "CONTACT CONTROLS",
-        "CONTACT INTERFERENCE",
-        "INITIAL CONDITIONS",
-        "SECTION PRINT",
-        "NODAL THICKNESS",
-        *(law.card for law in LAWS.values()),
-    )
-}
+SPELLED = {key(name): name for name in (*_TABLE, "SECTION PRINT")}
 
 __all__ = ["KEYWORDS", "SPELLED", "Keyword"]
