@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from corota.io.deck.laws import LAWS
+from corota.io.deck.lexer import key
 
 #: Cards without effect here; each is listed in ``Model.notes``.
 IGNORED: dict[str, str] = {
@@ -59,7 +60,8 @@ _CONTACT = "name the pairs of surfaces by *CONTACT PAIR with a *SURFACE INTERACT
 _CHANGE = "contact pairs and their interactions apply to all steps"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
-PLASTIC = "the material laws are *ELASTIC, *PLASTIC and *DEFORMATION PLASTICITY; use these"
+_OWN_CARDS = ", ".join(f"*{law.card}" for name, law in LAWS.items() if key(law.card) == name)
+PLASTIC = f"the material laws are *ELASTIC, *PLASTIC, {_OWN_CARDS}; use these"
 RUBBER = (
     "use *ELASTIC with E = 3 G, G the initial shear modulus (Neo-Hooke: G = 2 C10, Mooney-Rivlin: "
     "G = 2 (C10 + C01)), a Poisson's ratio of 0.45 to 0.499, PLANE=STRAIN and LOCAL "
