@@ -223,6 +223,8 @@ CASES: dict[str, Callable[[], tuple[ct.Model, Any]]] = {
     "Q4D 615": lambda: bending(40, 4, "Q4D"),
     "Q4I 41k": lambda: bending(450, 45, "Q4I"),
     "Q4D 41k": lambda: bending(370, 37, "Q4D"),
+    "Q4I 250k": lambda: bending(1115, 111, "Q4I"),
+    "Q4D 250k": lambda: bending(912, 91, "Q4D"),
     "J2 41k": lambda: yielding(450, 45),
     "P3 contact": lambda: contact(24, 0.0),
     "P3 friction": lambda: contact(24, 0.3),
@@ -240,7 +242,7 @@ def case(name: str) -> list[tuple[str, float]]:
 
 
 MODELS: dict[str, Callable[[], tuple[ct.Model, Any]]] = {
-    **{name: CASES[name] for name in CASES if not name.endswith("41k")},
+    **{name: CASES[name] for name in CASES if not name.endswith(("41k", "250k"))},
     **{
         f"Python material, {element}, {scheme}": lambda element=element, scheme=scheme: own(
             element,
