@@ -20,6 +20,10 @@ STOPPED = (7, 10, 16)
 CAUSES = (36, 41, 69, 15)
 
 
+#: Left end, height and elements of blocks on each other.
+STACK = ((-0.1087, 0.3943186160, 4), (0.0161, 0.2475914511, 3), (0.0349, 0.3147265696, 4))
+
+
 @pytest.mark.parametrize("number", STOPPED + CAUSES)
 def test_what_stopped_finishes(number):
     row = run(number, limit=60)
@@ -56,6 +60,50 @@ def test_a_body_that_only_friction_will_hold_finds_its_first_equilibrium():
     assert row["end"] == "done", row["why"]
     assert row["residual"] < 1e-8
     assert row["balance"] < 1e-8
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e3, 33.0])
+def test_a_stack_that_only_contact_holds_finds_its_first_equilibrium(scale):
+    # At a scale of 1000, rounding opens some of the joints; every body is free at the start.
+    bodies, y = {}, 0.0
+    for i, (x, high, n) in enumerate(
+        [(-0.1087, 0.3943186, 4), (0.0161, 0.2476, 3), (0.035, 0.3147, 4)]
+    ):
+        bodies[f"b{i}"] = ct.mesh.rectangle(1.0, high, n, 1, origin=(x, y))
+        y += high
+    model = ct.Model(ct.mesh.move(ct.mesh.assembly(**bodies), scale=scale))
+    material = ct.Elastic(E=1e3, nu=0.3, rho=1.0 / scale)
+    model.section(
+        "all", element="Q4I", material=material, plane="strain", local_strain="logarithmic"
+    )
+    floor = ct.RigidCurve.line((-3.0 * scale, 0.0), (4.0 * scale, 0.0))
+    model.contact("b0.bottom", floor, friction=0.2, name="floor")
+    for i in (1, 2):
+        model.contact(f"b{i}.bottom", f"b{i - 1}.top", friction=0.2, name=f"joint{i}")
+    model.gravity(x=1.2, y=-10.0)
+    results = ct.solve(model, ct.Static(), threads=1)
+    weight = 10.0 * scale * y
+    assert results.history("floor: force y").values[-1] == pytest.approx(weight)
+    assert results.history("floor: force x").values[-1] == pytest.approx(-0.12 * weight)
+
+
+def test_a_ring_that_yields_is_found_between_the_gap_and_the_first_collapse():
+    # With mortar contact the facets leave a gap of .01. No contact closes in the third increment
+    # tried, and the fourth, three times as long, finds no equilibrium.
+    mesh = ct.mesh.annulus(0.75, 1.0, 2, 24)
+    plate = ct.mesh.add_node(mesh, 0.0, 1.0, "plate")
+    model = ct.Model(mesh)
+    metal = ct.Mises(E=1e3, nu=0.3, yield_stress=2.0, isotropic=10.0)
+    model.section("all", element="Q4I", material=metal, plane="strain", local_strain="logarithmic")
+    floor = ct.RigidCurve.line((-3.0, -1.0), (3.0, -1.0))
+    roof = ct.RigidCurve.line((3.0, 1.0), (-3.0, 1.0), plate)
+    model.contact("outer", floor, friction=0.5, name="floor")
+    model.contact("outer", roof, friction=0.5, name="roof")
+    model.fix("plate", x=0.0, y=-0.2, rotation=True)
+    results = ct.solve(model, ct.Static(first_increment=0.01), threads=1)
+    up, down = (results.history(f"{name}: force y").values[-1] for name in ("floor", "roof"))
+    assert up == pytest.approx(-down)
+    assert up == pytest.approx(0.23520, rel=1e-3)  # with the nodes of the axis held in x
 
 
 def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():

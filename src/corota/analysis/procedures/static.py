@@ -12,7 +12,6 @@ import numpy as np
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
 from corota.analysis.procedures.stopping import at_limit, collapse, driven, explained
-from corota.analysis.terms.contact.corners import sunk_corner
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
@@ -31,14 +30,10 @@ if TYPE_CHECKING:
     from corota.model.steps import Static
 
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
-relax = lazy("corota.analysis.terms.contact.relaxation:relax")
+by_relaxation = lazy("corota.analysis.procedures.static_relaxation:by_relaxation")
 
 #: Failed attempts with increasing negative pivots before a limit point is searched.
 STALLED = 3
-#: Increments tried by relaxation where no shorter one is found, relative to the period.
-RELAXED = (1e-3, 1e-2)
-#: The same for first increments, in which bodies held only by contact come into contact.
-FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.3)
 #: Attempt from which an increment is tried by relaxation before it is cut further.
 RESTS = 4
 #: Residual after a first iteration with the elastic tangent up to which an increment unloads.
@@ -204,7 +199,7 @@ class StaticStepper(NewtonStepper):
         control, outcome = self.control, failed.outcome
         early = control.attempt == RESTS and not end
         if end or early:
-            relaxed = self.relaxed(early)
+            relaxed = by_relaxation(self, early)
             if isinstance(relaxed, Attempt):
                 return relaxed
             outcome.reason += relaxed
@@ -276,56 +271,6 @@ class StaticStepper(NewtonStepper):
         if not self.system.joined:
             return False
         return not np.any(self.system.load_rate(self.state.u)[0])
-
-    def relaxed(self, early: bool) -> Attempt | str:
-        """The increment by relaxation, where contact is driven by supports; or why it fails.
-
-        With loads, the end of an equilibrium is a limit point, which the user has to
-        assess. While increments may still be cut (`early`), a distant state is refused.
-        """
-        system, state, control = self.system, self.state, self.control
-        if not self.may_relax():
-            return ""
-        first = self.loop.number == 1 and not control.number
-        period = control.step.period
-        sizes = [control.size] if early or control.step.fixed_increments else []
-        for size in sizes or [s * period for s in (FIRST_RELAXED if first else RELAXED)]:
-            target = min([control.time + size, *(s for s in control.stops if s > control.time)])
-            prescribed = system.conditions.supports.at(target, state.u)
-            try:
-                outcome, contact = relax(
-                    system, state.u, prescribed, target, self.settings, self.report
-                )
-            except SingularError:
-                continue
-            if outcome.converged and first and not contact.presses:
-                # Unconstrained bodies did not move: this is not a first equilibrium.
-                system.contact_term.restore()
-                outcome.reason = "no contact has closed"
-                continue
-            if outcome.converged and early and not contact.near(outcome.u):
-                system.contact_term.restore()
-                return ""
-            if outcome.converged and first:
-                state.notes.append(
-                    f"step time {target:.6g}: at the start the bodies are supported by contact "
-                    f"alone, which was still open; this is the first equilibrium ({outcome.note})"
-                )
-            elif outcome.converged:
-                jump = float(np.abs(outcome.u - state.u)[~system.is_rotation].max())
-                if not contact.near(outcome.u):
-                    state.notes.append(
-                        f"step time {target:.6g}: the equilibrium ended (a snap, or a node past "
-                        f"a corner) and the bodies moved on to another one, by up to {jump:.3g} "
-                        f"({outcome.note}); it may be one of several: Dynamic follows the motion"
-                    )
-            if outcome.converged:
-                control.size = max(target - control.time, control.step.smallest_increment)
-                return Attempt(target, outcome, contact)
-        said = "; relaxation from the last converged state found no equilibrium nearby"
-        if sunk_corner(system.contact_term):
-            return said  # the message has the reason
-        return f"{said}: the bodies snap or fold; use Dynamic to follow that"
 
     def go_along_path(self) -> bool:
         """Continue by arc length from where load control stalls; False where that does not help.

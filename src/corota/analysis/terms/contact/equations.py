@@ -23,7 +23,7 @@ from corota.analysis.terms.contact.kink_correction import along_kink, keeps_kink
 from corota.analysis.terms.contact.kinks import Kink, Sides, again, both_sides
 from corota.analysis.terms.contact.linearization import linearized
 from corota.analysis.terms.contact.messages import explained
-from corota.analysis.terms.contact.pair import CLOSED
+from corota.analysis.terms.contact.pair import CLOSED, OPEN
 from corota.analysis.terms.contact.pivoting import pivoted
 from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
 from corota.analysis.terms.contact.state_choice import chosen
@@ -343,18 +343,28 @@ class ContactEquations:
                 return far
         if not self.system.nlgeom:
             return ""
+        moves = self.inner is not self.system
+        since = None if moves else self.since
         old, new = (
-            self.contact_term.positions(self.contact_term.u if self.since is None else self.since),
+            self.contact_term.positions(self.contact_term.u if since is None else since),
             self.contact_term.positions(z[: self.n]),
         )
-        still = self.pivoted and not self.relaxing and self.inner is self.system
+        still = self.pivoted and not self.relaxing and not moves
         if still and not self.near(z[: self.n]):
             return (
                 "the equilibrium found is far from the last one: the bodies would jump in this "
                 "increment"
             )
-        for pair, terms, (p, q) in self._pairs(at.contact_state):
-            found = passed(pair, old, new, pair.states(terms, p, q))
+        committed = None if self.contact_term.at is None else self.contact_term.at.states
+        for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
+            outside = np.zeros(pair.n)
+            if since is None:
+                # An open node may touch, or be behind where a scheme closes gaps after an impact.
+                # A closed one may leave its surface around a corner.
+                was_open = committed[k] == OPEN if committed else np.ones(pair.n, bool)
+                behind = pair.depth if moves and np.isfinite(pair.depth) else pair.noise
+                outside[was_open] = -behind
+            found = passed(pair, old, new, pair.states(terms, p, q), terms, outside)
             if len(found):
                 return (
                     f"node {self.contact_term.label(pair, int(found[0]))} passed through the "

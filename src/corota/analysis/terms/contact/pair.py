@@ -67,7 +67,7 @@ class Pair:
         self.friction = 0.0 if isinstance(item, Tie) else item.friction
         self.law = None if isinstance(item, Tie) else item.law
         build: Any = tie_core if self.tied else contact_core
-        self.core, self.slave, self.master, self.reach = build(system, item)
+        self.core, self.slave, self.master, self.reach, self.depth = build(system, item)
         self.nodes = np.asarray(self.core.nodes, np.int64)
         self.n = len(self.nodes)
         self.of_nodes = len(distinct(self.nodes))

@@ -59,13 +59,17 @@ def relax(
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     inner: Any = None,
+    nearby: bool = False,
 ) -> tuple[Outcome[Evaluation], ContactEquations]:
     """Find an equilibrium by creep; in dynamics (`inner`) with the inertia of an increment.
 
     The parameters and results are those of
-    :func:`corota.analysis.terms.contact.newton.solve_increment`.
+    :func:`corota.analysis.terms.contact.newton.solve_increment`; with `nearby`, no node may move
+    farther than half of the shortest edge of the slave surfaces.
     """
     creep = _Creep(inner or system, system, u, prescribed, step_time, settings, report)
+    if nearby:
+        creep.within = u.copy()
     return creep.problem.settle(creep.run()), creep.problem
 
 
@@ -91,6 +95,8 @@ class _Creep:
         tolerance = max(REACHED, settings.tolerance)
         self.each = replace(self.last, tolerance=tolerance, max_iterations=EACH)
         self.corrections = 0
+        #: Displacements that the bodies have to stay near.
+        self.within: Floats | None = None
         edges = [float(p.slave.length.min()) for p in self.problem.contact_term.pairs]
         self.farthest = FARTHEST * min(edges)
         self.stiffness = self.problem.contact_term.nodal
@@ -99,17 +105,21 @@ class _Creep:
         share, tries = FIRST, 0
         while self.corrections < MOST and share <= LARGEST:
             out = self._place(share)
-            moved = float(np.abs(out.u - self.z)[: self.problem.n][~self.system.is_rotation].max())
+            moved = self._moved(out.u, self.z)
             if out.converged and out.at is not None:
                 out.reason = self.problem.refuse(out.at, out.u)
             if not out.converged or out.reason or moved > self.farthest:
                 share *= TIGHTENED
                 continue
+            if self._leaves(out.u):
+                break
             self.z, self.left = out.u, np.zeros_like(self.left)
             share *= EASED if out.iterations <= FEW else KEPT
             if share >= LEAST:
                 continue
             out = self._place(0.0)
+            if out.converged and self._leaves(out.u):
+                break
             if out.converged:
                 out.iterations = self.corrections
                 out.note = f"found by relaxation in {self.corrections} iterations"
@@ -123,6 +133,15 @@ class _Creep:
             f"relaxation found no equilibrium in {self.corrections} iterations ({out.reason})"
         )
         return out
+
+    def _moved(self, z: Floats, since: Floats) -> float:
+        """Largest displacement of a node between two positions [length]."""
+        n, turns = self.problem.n, self.system.is_rotation
+        return float(np.abs(z[:n] - since[:n])[~turns].max())
+
+    def _leaves(self, z: Floats) -> bool:
+        """Whether a position is farther from the start than it may be."""
+        return self.within is not None and self._moved(z, self.within) > self.farthest
 
     def _place(self, share: float) -> Outcome[ContactEvaluation]:
         """The next position, with springs of a fraction of the nodal stiffness."""

@@ -118,8 +118,8 @@ def along_contour(found: Surface) -> Surface:
 
 def contact_core(
     system: NumberedModel, item: ContactPair
-) -> tuple[Any, Surface, Surface | None, float]:
-    """The core's pair, its surfaces and its search distance.
+) -> tuple[Any, Surface, Surface | None, float, float]:
+    """The core's pair, its surfaces, its search distance and the depth of a penetration it sees.
 
     Raises
     ------
@@ -139,8 +139,11 @@ def contact_core(
     common: dict[str, Any] = {"method": item.method, "reach": reach, "margin": 0.5 * reach}
     # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
     common["corners"] = item.law is None
+    thickness = _thickness(system, slave)
+    # Deeper inside a body, the core takes the opposite side for that of another body.
+    depth = 0.5 * float(thickness.min()) if item.itself else float(thickness.max())
     if not item.itself:
-        common["depth"] = _thickness(system, slave)
+        common["depth"] = depth
     try:
         if item.itself:
             slave = along_contour(slave)
@@ -182,18 +185,18 @@ def contact_core(
             )
     except ValueError as error:
         raise ModelError(f"contact pair {item.name!r}: {error}", item.where) from None
-    return core, slave, master, reach
+    return core, slave, master, reach, depth
 
 
-def _thickness(system: NumberedModel, slave: Surface) -> float:
-    """Largest thickness of the body behind a surface, inwards: the limit of a penetration.
+def _thickness(system: NumberedModel, slave: Surface) -> Floats:
+    """Thickness of the body behind edges of its surface, inwards.
 
     Infinite where there is nothing behind, and for surfaces too large to search.
     """
     mesh = system.model.mesh
     boundary = mesh.boundary_edges()
     if len(boundary) * len(slave.nodes) > MOST_LOOKED_AT:
-        return float("inf")
+        return np.full(1, np.inf)
     part = part_of_cells(mesh)
     boundary = boundary[np.isin(part[boundary[:, 0]], part[slave.edges[:, 0]])]
     ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(boundary)])
@@ -209,10 +212,10 @@ def _thickness(system: NumberedModel, slave: Surface) -> float:
     hit = (s > SAME * slave.length[:, None]) & (t > -SAME) & (t < 1.0 + SAME)
     found = np.where(hit, s, np.inf).min(axis=1)
     found = found[np.isfinite(found)]
-    return float(found.max()) if len(found) else float("inf")
+    return found if len(found) else np.full(1, np.inf)
 
 
-def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, float]:
+def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, float, float]:
     """The same for a tie; slave edges out of its tolerance are not tied."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
@@ -234,7 +237,7 @@ def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, f
         )
     except ValueError as error:
         raise ModelError(f"tie {item.name!r}: {error}", item.where) from None
-    return core, slave, master, reach
+    return core, slave, master, reach, np.inf
 
 
 def _check_pair(

@@ -1,7 +1,8 @@
 """Nodes that passed through the opposite surface within one increment.
 
-The core searches no farther than its reach. A node that moved farther may be behind the opposite
-surface without contact; such an increment is refused.
+The core searches no farther than its reach, and a penetration deeper than the body is no contact. A
+node that moved farther may be behind the opposite surface without contact; such an increment is
+refused.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -12,24 +13,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.pair import CLOSED, SLIPPING
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, SLIPPING
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.pair import Pair
+    from corota.analysis.terms.contact.pair import Pair, Terms
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
 #: Fraction of the reach that a node may move without this check.
 UNSEEN = 0.5
+#: Nodes times pieces that are compared at once.
+AT_ONCE = 1_000_000
 #: Angle of the chords of arcs [rad].
 CHORD = math.radians(4.0)
 
 
-def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Ints:
+def passed(
+    pair: Pair,
+    old: Floats,
+    new: Floats,
+    state: NDArray[np.int8],
+    terms: Terms,
+    outside: Floats,
+) -> Ints:
     """Constraints whose node crossed the other side from outside to inside and is open.
 
     Parameters
@@ -39,6 +49,10 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
         Positions at both ends of the increment.
     state : ndarray of int, shape (n,)
         States at the end.
+    terms : Terms
+        Gaps at the end.
+    outside : ndarray, shape (n,)
+        Distance from the other side from which a node starts outside; not positive.
     """
     if pair.tied:
         return np.zeros(0, np.int64)
@@ -50,13 +64,44 @@ def passed(pair: Pair, old: Floats, new: Floats, state: NDArray[np.int8]) -> Int
     mean = drift.mean(axis=0)
     spread = np.hypot(*(drift - mean).T).max()
     nodes = pair.nodes
-    eliminated = np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach
+    moved = np.hypot(*(move[nodes] - mean).T) + spread
+    unseen = terms.area <= COVERED * pair.full
+    far = (moved > UNSEEN * pair.reach) | (unseen & (moved > pair.depth))
     closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
-    chosen = np.flatnonzero(eliminated & ~closed)
+    chosen = np.flatnonzero(far & ~closed)
+    near = old[nodes[chosen]], new[nodes[chosen]]
+    chosen = chosen[_behind_any(first, last, *near, outside[chosen])]
     hit = [
-        k for k in chosen if time_of_crossing(first, last, ends, old, new, int(nodes[k])) < math.inf
+        k
+        for k in chosen
+        if time_of_crossing(first, last, ends, old, new, int(nodes[k]), outside[k]) < math.inf
     ]
     return np.array(hit, np.int64)
+
+
+def _behind_any(
+    first: Floats, last: Floats, old: Floats, new: Floats, outside: Floats
+) -> NDArray[np.bool_]:
+    """Nodes that change from the outer to the inner side of the line through any piece.
+
+    The outer side begins at a distance for each.
+    """
+    out = np.zeros(len(old), bool)
+    step = max(1, AT_ONCE // len(first))
+    for at in range(0, len(old), step):
+        part = slice(at, at + step)
+        before, after = (
+            _side(pieces[None], x[part, None, :2]) for pieces, x in ((first, old), (last, new))
+        )
+        out[part] = ((before > outside[part, None]) & (after < 0.0)).any(axis=1)
+    return out
+
+
+def _side(pieces: Floats, x: Floats) -> Floats:
+    """Distances of points from lines, positive outside: on the right."""
+    d, r = pieces[..., 1, :] - pieces[..., 0, :], x - pieces[..., 0, :]
+    length = np.hypot(d[..., 0], d[..., 1])
+    return np.asarray((d[..., 1] * r[..., 0] - d[..., 0] * r[..., 1]) / length)
 
 
 def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, Ints]:
@@ -102,25 +147,25 @@ def _carried(pieces: Floats, reference: Floats, at: Floats) -> Floats:
 
 
 def time_of_crossing(
-    first: Floats, last: Floats, ends: Ints, old: Floats, new: Floats, node: int
+    first: Floats,
+    last: Floats,
+    ends: Ints,
+    old: Floats,
+    new: Floats,
+    node: int,
+    outside: float = 0.0,
 ) -> float:
     """Share of the way after which a node goes through a piece from outside; inf if it does not.
 
-    All move evenly.
+    All move evenly. The outer side begins at the distance `outside`.
     """
     own = (ends == node).any(axis=1)
     before, after = first[~own], last[~own]
-
-    def side(piece: Floats, x: Floats) -> Floats:
-        d, r = piece[:, 1] - piece[:, 0], x[:2] - piece[:, 0]
-        # The body lies to the left: outside is positive.
-        return np.asarray(d[:, 1] * r[:, 0] - d[:, 0] * r[:, 1])
-
-    a, b = side(before, old[node]), side(after, new[node])
-    through = (a > 0.0) & (b < 0.0)
+    a, b = _side(before, old[node, :2]), _side(after, new[node, :2])
+    through = (a > outside) & (b < 0.0)
     if not through.any():
         return math.inf
-    share = a[through] / (a[through] - b[through])
+    share = np.maximum(a[through], 0.0) / (np.maximum(a[through], 0.0) - b[through])
     t = share[:, None]
     p = before[through] + t[:, :, None] * (after[through] - before[through])
     x = old[node, :2] + t * (new[node, :2] - old[node, :2])
