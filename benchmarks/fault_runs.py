@@ -35,8 +35,18 @@ LOG = 1_000_000
 EQUILIBRIUM = 1e-7
 
 
-def forked(work: Callable[[], int], log: Path, limit: float = CLOCK) -> tuple[int, float, str]:
+def forked(
+    work: Callable[[], int], log: Path, limit: float = CLOCK, cpu: int = LIMIT
+) -> tuple[int, float, str]:
     """Run in a forked process with its output in a file.
+
+    Parameters
+    ----------
+    work : callable
+        Returns the exit code.
+    log : Path
+    limit, cpu : float, int
+        Most seconds by the clock and of the processor.
 
     Returns
     -------
@@ -55,7 +65,7 @@ def forked(work: Callable[[], int], log: Path, limit: float = CLOCK) -> tuple[in
             target = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
             os.dup2(target, 1)
             os.dup2(target, 2)
-            resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 1))
+            resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 1))
             code = work()
         except BaseException as error:
             os.write(2, f"Traceback: {type(error).__name__}: {error}".encode())
