@@ -7,7 +7,7 @@ at the middle of one of them.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -27,6 +27,9 @@ from tests.contracts.test_contact_gaps import (
     check_invariance,
     moved,
 )
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 DEEP = 0.06
 ELASTIC = ct.Elastic(E=1000.0, nu=0.3, rho=1e-3)
@@ -263,5 +266,57 @@ def test_blunt_vertices_of_a_slave_count_against_a_master_with_corners(
 def test_a_hook_past_a_catch_finishes(number: int) -> None:
     """193 stopped with the corner of the catch inside the hook; 49 with vertices of the hook."""
     row = run(number, limit=60, size=0.5)
+    assert row["end"] == "done", row["why"]
+    assert row["balance"] < 1e-8
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_corner_keeps_its_edge_somewhat_longer_than_it_takes_to_meet_one(method: str) -> None:
+    """It meets an edge up to 20 degrees beside its cone, and leaves it 10 degrees later.
+
+    With one angle for both, a corner that is inside at that angle is in force on one side of it and
+    absent on the other: no equilibrium there.
+    """
+    wedge = np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 1.0]])  # a right angle: a cone of 45 degrees
+    m = chain("linear", wedge, 2)
+
+    def tilted(degrees: float) -> NDArray[np.float64]:
+        """Positions with the edge through the corner turned, the corner .01 inside."""
+        angle = np.radians(degrees)
+        way = np.array([np.cos(angle), np.sin(angle)])
+        up = np.array([-way[1], way[0]])
+        edge = np.array([0.5, 0.5]) + 0.01 * up + np.array([[0.6], [-0.6]]) * way
+        return np.vstack([np.column_stack([edge, np.zeros(2)]), m[0]])
+
+    slave = chain("linear", tilted(0.0)[:2, :2], 0)
+    X = np.vstack([slave[0], m[0]])
+    more: dict[str, Any] = {"method": method, "corners": True, **LENGTHS}
+    pair = _core.Contact.edges(X, slave[1], slave[2], np.ones(1), m[1], m[2], **more)
+    last = len(pair.nodes) - 1
+
+    def met(degrees: float) -> bool:
+        x = tilted(degrees)
+        pair.search(x)
+        found = pair.evaluate(x, None)
+        return bool((found["constraint"] == last).any())
+
+    assert [met(d) for d in (70.0, 64.0, 70.0, 74.0, 76.0, 70.0, 64.0)] == [
+        False,
+        True,
+        True,
+        True,
+        False,
+        False,
+        True,
+    ]
+    # A step that is refused forgets what it met.
+    assert met(64.0)
+    pair.restore()
+    assert not met(70.0)
+
+
+def test_a_hook_returns_past_a_coarse_catch() -> None:
+    """1813 stopped as the corner of the catch, a little inside, met and left a bowed edge."""
+    row = run(1813, limit=60, size=0.5)
     assert row["end"] == "done", row["why"]
     assert row["balance"] < 1e-8

@@ -25,6 +25,10 @@ pub const LEAST_TURN_AT_CORNERS: f64 = 0.349_065_850_398_865_9;
 /// Tilt of an edge out of the cone between the normals of a corner's sides, with which the corner
 /// still meets it [rad]: edges dent. Beyond it a side of the corner meets the edge.
 const DENT: f64 = 0.35;
+/// And a further tilt up to which it still meets the edge that it met before [rad]. As the tilt of an
+/// edge passes `DENT`, the corner may lie inside: in force on one side of this angle and absent on the
+/// other, with no equilibrium on either.
+const KEPT: f64 = 0.175;
 /// Distance of two ends that are one point, in lengths of the pieces that meet there.
 const SAME: f64 = 1e-6;
 /// Most variables of an edge and a corner.
@@ -226,17 +230,20 @@ impl Corners {
         let normal = unit(add(first, second));
         // Half the angle of the cone of normals, and how far an edge may be out of it.
         let half = dot(normal, first).clamp(-1.0, 1.0).acos();
-        let facing = (half + DENT).min(0.5 * std::f64::consts::PI).cos();
+        let facing = |tilt: f64| (half + tilt).min(0.5 * std::f64::consts::PI).cos();
+        let (facing, kept) = (facing(DENT), facing(DENT + KEPT));
+        let before = self.held[0][c];
         let shape = |pair: usize| {
             let i = self.search.candidates[pair].1;
             let edge = self.faces.place(i, x);
             let hit = edge.closest(p);
-            let meets = dot(edge.normal(&hit), normal) <= -facing && -hit.gap <= self.deepest(c, i);
+            let least = if before == Some(i) { kept } else { facing };
+            let meets = dot(edge.normal(&hit), normal) <= -least && -hit.gap <= self.deepest(c, i);
             meets.then_some((pair, edge))
         };
         let shapes: Vec<(usize, Master<f64>)> =
             (self.index[c]..self.index[c + 1]).filter_map(shape).collect();
-        let last = self.held[0][c].and_then(|i| {
+        let last = before.and_then(|i| {
             shapes.iter().map(|s| s.0).find(|&pair| self.search.candidates[pair].1 == i)
         });
         let bounds = Bounds { reach: sides.distances.reach, depth: f64::INFINITY };
