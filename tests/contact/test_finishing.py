@@ -106,6 +106,23 @@ def test_a_ring_that_yields_is_found_between_the_gap_and_the_first_collapse():
     assert up == pytest.approx(0.23520, rel=1e-3)  # with the nodes of the axis held in x
 
 
+def test_bodies_drift_where_no_relaxed_position_balances():
+    # A yielding ring between plates, held by friction alone: 255 iterations, 64 of them in drift.
+    notes = []
+
+    class Log(BaseObserver):
+        def iteration(self, info):
+            notes.append(info.note)
+
+    given = problem(892, size=0.5)
+    results = ct.solve(given.model, given.steps, threads=1, observers=[Log()])
+    assert results.times[-1] == pytest.approx(1.0)
+    assert max(frame.scalars.get("residual", 0.0) for frame in results.frames[1:]) < 1e-8
+    assert any("relaxation, drift" in note for note in notes)
+    assert "relaxation, no springs" in notes  # the state that is accepted has none
+    assert any("this is the first equilibrium" in note for note in results.notes)
+
+
 def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():
     body = ct.mesh.rectangle(1.0, 1.0, 2, 2, "quad4", origin=(0.0, 0.1))
     top = ct.mesh.add_node(body, 0.5, 2.0, "plate")

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Increments tried by relaxation where no shorter one is found, relative to the period.
 RELAXED = (1e-3, 1e-2)
+#: The same with drift, where none of these is found.
+DRIFTED = (1e-3, 1e-2, 3e-2)
 #: The same for first increments, in which bodies held only by contact come into contact.
 FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.2, 0.3)
 #: Halvings of the interval in which a first contact closes.
@@ -37,18 +39,30 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
     loaded = not stepper.may_relax()
     if loaded and (early or not first or not system.joined):
         return ""
+    fractions: tuple[float, ...]
+    drifted: tuple[float, ...]
     if early or control.step.fixed_increments:
-        fractions: tuple[float, ...] = (control.size / control.step.period,)
+        fractions = drifted = (control.size / control.step.period,)
     else:
         fractions = FIRST_RELAXED if first else RELAXED
-    tries = _Sizes(fractions, HALVINGS if first else 0)
-    for fraction in tries:
+        drifted = FIRST_RELAXED if first else DRIFTED
+    if early or loaded:
+        drifted = ()
+    tries = _Sizes(fractions, drifted, HALVINGS if first else 0)
+    for fraction, drifts in tries:
         size = fraction * control.step.period
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
         prescribed = system.conditions.supports.at(target, state.u)
         try:
             outcome, contact = relax(
-                system, state.u, prescribed, target, stepper.settings, stepper.report, nearby=loaded
+                system,
+                state.u,
+                prescribed,
+                target,
+                stepper.settings,
+                stepper.report,
+                nearby=loaded,
+                drifts=drifts,
             )
         except SingularError:
             continue
@@ -84,15 +98,15 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
 
 
 class _Sizes:
-    """Increments to try in turn.
+    """Increments to try in turn, and whether the bodies drift.
 
     Between the largest one that closes no contact and one without an equilibrium the first contact
     is found by bisection.
 
     Parameters
     ----------
-    fractions : tuple of float
-        Of the period.
+    fractions, drifted : tuple of float
+        Of the period, without drift and then with it.
     halvings : int
 
     Attributes
@@ -101,24 +115,28 @@ class _Sizes:
         Set by the caller after a try: whether no contact has closed.
     """
 
-    def __init__(self, fractions: tuple[float, ...], halvings: int) -> None:
-        self.fractions, self.halvings = fractions, halvings
+    def __init__(
+        self, fractions: tuple[float, ...], drifted: tuple[float, ...], halvings: int
+    ) -> None:
+        self.fractions, self.drifted, self.halvings = fractions, drifted, halvings
         self.nothing_closed = False
 
-    def __iter__(self) -> Iterator[float]:
+    def __iter__(self) -> Iterator[tuple[float, bool]]:
         low = 0.0
         for high in self.fractions:
             self.nothing_closed = False
-            yield high
+            yield high, False
             if self.nothing_closed:
                 low = high
                 continue
             for _ in range(self.halvings if low else 0):
                 middle = 0.5 * (low + high)
                 self.nothing_closed = False
-                yield middle
+                yield middle, False
                 low, high = (middle, high) if self.nothing_closed else (low, middle)
             low = 0.0
+        for fraction in self.drifted:
+            yield fraction, True
 
 
 __all__ = ["by_relaxation"]

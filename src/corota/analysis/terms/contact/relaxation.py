@@ -7,6 +7,12 @@ the springs are released, and so on with softer ones (a proximal point method). 
 correction has none, so the state that is found is an equilibrium of the unregularized problem, with
 the exact cone of friction. If there are several, the creep selects one.
 
+Where surfaces change what they meet, gaps may jump, and a position that balances may not exist on
+either side. Then no springs are stiff enough, and the bodies `drift`: single corrections are taken,
+each linearized where the last one ended, without a search for balance between them (time steps
+that are implicit in their linearization only). They pass the jump, or come to where positions are
+found again.
+
 Source: R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control
 Optim. 14 (1976).
 """
@@ -19,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.newton import Outcome, newton
+from corota.analysis.newton import ElementFailure, GiveUp, Outcome, newton
 from corota.analysis.terms.contact.equations import (
     MAX_EXTRA_CONTACT_ITERATIONS,
     PATIENCE,
@@ -47,8 +53,14 @@ FIRST, LARGEST, LEAST = 1e-2, 1e2, 1e-6
 #: Factors on it after a position was reached in few corrections, in more, or not at all; limit of
 #: few.
 EASED, KEPT, TIGHTENED, FEW = 0.25, 0.5, 8.0, 6
-#: Largest distance between positions, in shortest edges of a slave surface.
-FARTHEST = 0.5
+#: Largest distance between positions, in shortest edges of a slave surface; and of a correction in
+#: a drift.
+FARTHEST, FARTHEST_DRIFT = 0.5, 0.25
+#: Springs of a drift; its corrections, at first and at most: every drift has twice as many as the
+#: last.
+DRIFT, FEWEST, LONGEST = 1e-2, 4, 32
+#: Missed positions after which the bodies drift, and those that a position found makes up for.
+MISSED, FORGIVEN = 2.0, 0.25
 
 
 def relax(
@@ -60,14 +72,22 @@ def relax(
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     inner: Any = None,
     nearby: bool = False,
+    drifts: bool = False,
 ) -> tuple[Outcome[Evaluation], ContactEquations]:
     """Find an equilibrium by creep; in dynamics (`inner`) with the inertia of an increment.
 
-    The parameters and results are those of
-    :func:`corota.analysis.terms.contact.newton.solve_increment`; with `nearby`, no node may move
-    farther than half of the shortest edge of the slave surfaces.
+    The other parameters and the results are those of
+    :func:`corota.analysis.terms.contact.newton.solve_increment`.
+
+    Parameters
+    ----------
+    nearby : bool
+        Whether no node may move farther than half of the shortest edge of the slave surfaces.
+    drifts : bool
+        Whether the bodies drift where no positions are found.
     """
     creep = _Creep(inner or system, system, u, prescribed, step_time, settings, report)
+    creep.drifts = drifts
     if nearby:
         creep.within = u.copy()
     return creep.problem.settle(creep.run()), creep.problem
@@ -97,23 +117,30 @@ class _Creep:
         self.corrections = 0
         #: Displacements that the bodies have to stay near.
         self.within: Floats | None = None
+        self.drifts = False
         edges = [float(p.slave.length.min()) for p in self.problem.contact_term.pairs]
-        self.farthest = FARTHEST * min(edges)
+        self.edge = min(edges)
+        self.farthest = FARTHEST * self.edge
         self.stiffness = self.problem.contact_term.nodal
 
     def run(self) -> Outcome[ContactEvaluation]:
         share, tries = FIRST, 0
+        missed, length = 0.0, FEWEST
         while self.corrections < MOST and share <= LARGEST:
             out = self._place(share)
-            moved = self._moved(out.u, self.z)
+            moved = self._largest(out.u - self.z)
             if out.converged and out.at is not None:
                 out.reason = self.problem.refuse(out.at, out.u)
             if not out.converged or out.reason or moved > self.farthest:
-                share *= TIGHTENED
+                share, missed = share * TIGHTENED, missed + 1.0
+                if self.drifts and missed >= MISSED:
+                    share, missed = self._drift(length), 0.0
+                    length = min(2 * length, LONGEST)
                 continue
             if self._leaves(out.u):
                 break
             self.z, self.left = out.u, np.zeros_like(self.left)
+            missed = max(missed - FORGIVEN, 0.0)
             share *= EASED if out.iterations <= FEW else KEPT
             if share >= LEAST:
                 continue
@@ -134,24 +161,67 @@ class _Creep:
         )
         return out
 
-    def _moved(self, z: Floats, since: Floats) -> float:
-        """Largest displacement of a node between two positions [length]."""
-        n, turns = self.problem.n, self.system.is_rotation
-        return float(np.abs(z[:n] - since[:n])[~turns].max())
+    def _largest(self, change: Floats) -> float:
+        """Largest displacement of a change of the unknowns [length]."""
+        return float(np.abs(change[: self.problem.n])[~self.system.is_rotation].max())
 
     def _leaves(self, z: Floats) -> bool:
         """Whether a position is farther from the start than it may be."""
-        return self.within is not None and self._moved(z, self.within) > self.farthest
+        if self.within is None:
+            return False
+        return self._largest(z[: self.problem.n] - self.within) > self.farthest
+
+    def _begin(self, share: float) -> None:
+        """Attach springs of a fraction of the nodal stiffness to the present position."""
+        problem = self.problem
+        states = problem.last
+        problem.forget()
+        problem.last, problem.relaxing = states, True
+        problem.since = self.z[: problem.n].copy()
+        if share:
+            problem.brake = (share * self.stiffness, problem.since)
+
+    def _drift(self, corrections: int) -> float:
+        """Take single corrections, with contact states from the whole linearized problem.
+
+        Returns the springs that were needed.
+        """
+        problem, n, farthest = self.problem, self.problem.n, FARTHEST_DRIFT * self.edge
+        share = DRIFT
+        while corrections and share <= LARGEST:
+            self._begin(share)
+            problem.pivoting = True
+            states, rest = problem.last, self._largest(self.left)
+            part = min(1.0, farthest / rest) if rest else 0.0
+            support = np.zeros(len(self.z))
+            support[:n] = part * self.left
+            self.corrections += 1
+            try:
+                at = problem.evaluate(self.z.copy(), self.step_time)
+                dz, _ = problem.predict(at, support)
+                moved = self._largest(dz)
+                length = min(1.0, farthest / moved) if moved else 1.0
+                z = self.z + length * dz
+                at = problem.evaluate(z, self.step_time)
+                missed = bool(problem.refuse(at, z))
+            except (ElementFailure, GiveUp, SingularError):
+                missed = True
+            if missed:
+                problem.last, share = states, share * TIGHTENED
+                continue
+            self.z, self.left = z, (1.0 - length * part) * self.left
+            corrections -= 1
+            if self.report is not None:
+                norms = problem.residual_norms(at, z)
+                said = f"relaxation, drift, springs {share:.1g}; {problem.stage}".strip("; ")
+                self.report(self.corrections, norms, length * moved, said)
+        return min(share, LARGEST)
 
     def _place(self, share: float) -> Outcome[ContactEvaluation]:
         """The next position, with springs of a fraction of the nodal stiffness."""
         problem, n = self.problem, self.problem.n
         states = problem.last
-        problem.forget()
-        problem.last, problem.relaxing = states, True
-        problem.since = self.z[:n].copy()
-        if share:
-            problem.brake = (share * self.stiffness, problem.since)
+        self._begin(share)
         target = self.z.copy()
         target[:n] += self.left
         settings = self.each if share else self.last
