@@ -31,7 +31,8 @@ def distinct(values: ArrayLike) -> NDArray[Any]:
     >>> distinct([[3, 1], [3, 2]])
     array([1, 2, 3])
     """
-    found = np.sort(np.ravel(values))
+    found = np.array(values).ravel()
+    found.sort()
     first = np.ones(len(found), dtype=bool)
     np.not_equal(found[1:], found[:-1], out=first[1:])
     return found[first]

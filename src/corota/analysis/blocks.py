@@ -152,12 +152,13 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
         if facts.line:
             _check_line(model, block, facts.turns)
             continue
-        corners = points[block.nodes[:, : 3 if "tri" in _cell(block) else 4]]
-        before, after = np.roll(corners, 1, axis=1), np.roll(corners, -1, axis=1)
-        one, two = after - corners, before - corners
-        turn = one[..., 0] * two[..., 1] - one[..., 1] * two[..., 0]
-        size = np.ptp(corners, axis=1).max(axis=1) ** 2
-        bad = np.flatnonzero((turn <= 1e-12 * size[:, None]).any(axis=1))
+        n = 3 if "tri" in facts.cell else 4
+        corners = points.T[:, block.nodes[:, :n].T]  # (2, n, cells): long rows are fast
+        around = np.arange(n)
+        one, two = corners[:, around + 1 - n] - corners, corners[:, around - 1] - corners
+        turn = one[0] * two[1] - one[1] * two[0]
+        size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=0) ** 2
+        bad = (turn <= 1e-12 * size).any(axis=0).nonzero()[0]
         if len(bad):
             raise ModelError(
                 f"element {labels[block.cells[bad[0]]]} is folded, has no area or is clockwise "
@@ -190,7 +191,7 @@ def _check_thickness(model: Model, block: BlockOfCells) -> None:
 def _check_middles(model: Model, block: BlockOfCells) -> None:
     """Refuse mid-side nodes beyond the quarter points: the element folds at a corner there."""
     points, labels = model.mesh.points, model.mesh.cell_labels
-    n = 3 if "tri" in _cell(block) else 4
+    n = 3 if "tri" in elements.find(block.section.element).cell else 4
     if block.nodes.shape[1] < 2 * n:
         return
     corners = points[block.nodes[:, :n]]
@@ -207,7 +208,3 @@ def _check_middles(model: Model, block: BlockOfCells) -> None:
             "move the node towards the middle",
             block.section.where,
         )
-
-
-def _cell(block: BlockOfCells) -> str:
-    return elements.find(block.section.element).cell

@@ -117,7 +117,11 @@ class DistributedLoads:
         """Add the loads of a step in place of those on the same edges, nodes or sets."""
         fresh = self._bodies([i for i in items if isinstance(i, BodyForce)], amplitude)
         fresh += self._on_edges([i for i in items if isinstance(i, EdgeLoad)], amplitude)
-        fresh += self._turning([i for i in items if isinstance(i, NodalForce)], amplitude)
+        # Dead forces only replace earlier loads.
+        fresh += self._turning(
+            [i for i in items if isinstance(i, NodalForce) and (self.loads or not _is_dead(i))],
+            amplitude,
+        )
         for load in fresh:
             self._replace(load)
         self.loads += [load for load in fresh if not _is_dead(load.item)]

@@ -37,7 +37,8 @@ class LoadHistory:
 
     def at(self, ramp: float, removal: float, factors: Floats) -> Floats:
         """Values where loads, removals and amplitudes have these shares and factors."""
-        share = np.where(self.removed, removal, ramp) if self.removed.any() else ramp
+        some = removal != ramp and self.removed.any()
+        share = np.where(self.removed, removal, ramp) if some else ramp
         out: Floats = self.begin + share * (self.end - self.begin)
         if len(factors) > 1:
             named = self.amplitude > 0
@@ -65,7 +66,9 @@ class LoadHistory:
         self.amplitude[:] = 0
         self.removed[:] = True
 
-    def set(self, where: NDArray[np.int64], value: Floats | float, amplitude: int) -> None:
+    def set(
+        self, where: NDArray[np.int64 | np.bool_], value: Floats | float, amplitude: int
+    ) -> None:
         """Give new numbers."""
         self.end[where] = value
         self.amplitude[where] = amplitude

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Bytes for each entry of the element matrices (measured: 4.3 to 6.0), and for each node.
 ENTRY, NODE = 7.0, 700.0
+#: A model of fewer bytes is not checked: the check takes as long as an iteration of such a model.
+SMALL = 4e6
 
 
 def require_model(blocks: Sequence[BlockOfCells], n_nodes: int) -> None:
@@ -34,5 +36,7 @@ def require_model(blocks: Sequence[BlockOfCells], n_nodes: int) -> None:
         dofs = b.nodes.shape[1] * elements.find(b.section.element).dofs_per_node
         entries += len(b.nodes) * float(dofs) ** 2
     bytes_ = ENTRY * entries + NODE * n_nodes
+    if bytes_ < SMALL:
+        return
     count = sum(len(b.nodes) for b in blocks)
     _core.require_memory(bytes_, f"a model of {count} elements and {n_nodes} nodes")

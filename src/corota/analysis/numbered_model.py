@@ -108,8 +108,9 @@ class NumberedModel:
         self.link = self.constraints.link(np.zeros(self.n_dofs))
         if hasattr(solver, "motions"):
             solver.motions = self.rigid_motions()[self.constraints.free]
-        self.length = float(np.ptp(mesh.points, axis=0).max()) or 1.0
-        self.cell_size = max(float(np.ptp(mesh.points[b.nodes], axis=1).max()) for b in self.blocks)
+        rows = mesh.points.T
+        self.length = float(_extent(rows).max()) or 1.0
+        self.cell_size = max(float(_extent(rows[:, b.nodes.T]).max()) for b in self.blocks)
 
     def rigid_motions(self) -> Floats:
         """Two displacements and a rotation about the middle of all nodes, shape (n_dofs, 3)."""
@@ -184,6 +185,12 @@ class NumberedModel:
     def profile(self) -> dict[str, float]:
         """Seconds by phase."""
         return self.linear.profile
+
+
+def _extent(points: Floats) -> Floats:
+    """Extent along x and y of points of shape (2, n, ...): shape (2, ...)."""
+    extent: Floats = points.max(axis=1) - points.min(axis=1)
+    return extent
 
 
 __all__ = ["DOF_NAMES", "NumberedModel"]

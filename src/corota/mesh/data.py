@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -145,7 +146,7 @@ class Mesh(Brief):
     @property
     def offsets(self) -> Ints:
         """Global index of the first cell of each block, and the total; shape (n_blocks + 1,)."""
-        return np.concatenate([[0], np.cumsum([len(c) for c in self.cells])]).astype(np.int64)
+        return np.array([0, *accumulate(len(c) for c in self.cells)], np.int64)
 
     @property
     def cell_labels(self) -> Ints:
@@ -239,6 +240,8 @@ class Mesh(Brief):
             If there is no such set: with the nearest name, and all of them.
         """
         kinds = kinds or ("node", "edge", "cell")
+        if any(name in getattr(self, f"{kind}_sets") for kind in kinds):
+            return name
         names = dict.fromkeys(n for kind in kinds for n in getattr(self, f"{kind}_sets"))
         found = match(str(name), names)
         if found is not None:

@@ -124,7 +124,7 @@ def _array(given: ArrayLike, what: str, where: Location | None) -> NDArray[Any]:
         array = np.asarray(given)
     except ValueError:
         raise InputError(f"{what}s of unequal shape", where) from None
-    if array.size and not (np.issubdtype(array.dtype, np.integer) or array.dtype == np.bool_):
+    if array.size and array.dtype.kind not in "iub":
         example = array.ravel()[0]
         raise InputError(
             f"{what}s are selected by the name of a set, whole numbers from 0, or a mask, not by "

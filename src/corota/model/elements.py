@@ -110,4 +110,5 @@ def find(name: str, where: Location | None = None) -> Element:
     InputError
         If there is none.
     """
-    return _all()[choose(name, _all(), "element", where)]
+    found = known(name) if isinstance(name, str) else None
+    return found or _all()[choose(name, _all(), "element", where)]

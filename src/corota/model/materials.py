@@ -77,15 +77,17 @@ class Expansion(Brief):
             finite = False
         if not (finite and np.isfinite(self.zero)):
             raise InputError(f"one or three finite coefficients are expected, not {self.alpha}")
-        if len(self.alpha) != max(len(table), 1) or (np.diff(table) <= 0.0).any():
+        if len(self.alpha) != max(len(table), 1) or (table[1:] <= table[:-1]).any():
             raise InputError(
                 "each coefficient of a table needs a temperature, and the temperatures must "
                 "increase"
             )
 
     def _rows(self) -> NDArray[np.float64]:
-        rows = np.array([np.broadcast_to(a, 3) for a in self.alpha], dtype=np.float64)
-        return rows.reshape(-1, 3)
+        rows = np.empty((len(self.alpha), 3))
+        for row, alpha in zip(rows, self.alpha, strict=True):
+            row[:] = alpha
+        return rows
 
     def __bool__(self) -> bool:
         return bool(self._rows().any())

@@ -283,7 +283,7 @@ class Conditions(Term):
             dead = not (follow and load.force.follows)
             if dead and (scale := self._scale(load, step_time)) != 0.0:
                 force += scale * load.force.unit()
-        force.flags.writeable = False
+        force.setflags(write=False)
         if len(self._known) >= KNOWN:
             self._known.clear()
         self._known[step_time, follow] = force

@@ -77,16 +77,19 @@ class LoadFactors:
 
     def of_amplitudes(self, step_time: float) -> Floats:
         """Values of all amplitudes, shape (n_names,); 1 for none."""
-        factors = np.ones(len(self.names))
+        factors = [1.0]
         for i in range(1, len(self.names)):
             table, start = self.table(i)
-            factors[i] = table(step_time + start)
-        return factors
+            factors.append(table(step_time + start))
+        return np.array(factors)
 
-    def values(self, history: LoadHistory, step_time: float) -> Floats:
-        """Values of a history."""
-        growth, removal = self.growth(step_time), self.removal(step_time)
-        return history.at(growth, removal, self.of_amplitudes(step_time))
+    def values(
+        self, history: LoadHistory, step_time: float, amplitudes: Floats | None = None
+    ) -> Floats:
+        """Values of a history; `amplitudes`: of that time, if they are known."""
+        if amplitudes is None:
+            amplitudes = self.of_amplitudes(step_time)
+        return history.at(self.growth(step_time), self.removal(step_time), amplitudes)
 
     def table(self, index: int) -> tuple[Amplitude, float]:
         """An amplitude, and its own time at the start of the step [time]."""

@@ -61,8 +61,10 @@ def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
     A contact force that acts on nodes without mass is bounded and does no work in the limit of
     small increments; on nodes with mass it creates energy and chatters.
     """
+    if not redistribute:
+        return None
     massless: NDArray[np.bool_] = system.contact_term.massless_nodes()
-    return massless if redistribute and massless.any() else None
+    return massless if massless.any() else None
 
 
 __all__ = ["MovingMass", "mass_of_step", "massless_nodes"]

@@ -71,35 +71,37 @@ class NodalForces:
         ModelError
             If a node cannot carry the force.
         """
-        self._replace(items)
-        for item in items:
+        places = [self._dofs(item) for item in items]
+        self._replace(items, places)
+        for item, dofs in zip(items, places, strict=True):
             if not item.follower:
                 amplitude = self.factors.index(item.amplitude, item.where)
                 target = self.history.end
                 if amplitude:
                     target = self.timed.setdefault(amplitude, np.zeros(self.system.n_dofs))
-                np.add.at(target, self._dofs(item), item.value)
+                np.add.at(target, dofs, item.value)
 
     def at(self, step_time: float) -> Floats:
         """Forces at a time, shape (n_dofs,)."""
-        force = self.factors.values(self.history, step_time)
         factors = self.factors.of_amplitudes(step_time)
+        force = self.factors.values(self.history, step_time, factors)
         for amplitude, values in self.timed.items():
             force += factors[amplitude] * values
         return force
 
-    def _replace(self, items: list[NodalForce]) -> None:
-        """Remove forces that the step redefines: at once if only amplitudes follow."""
+    def _replace(self, items: list[NodalForce], places: list[Ints]) -> None:
+        """Remove forces at dofs that the step redefines: at once if only amplitudes follow."""
+        if not items:
+            return
         named = np.zeros(self.system.n_dofs, bool)
         ramped = np.zeros(self.system.n_dofs, bool)
-        for item in items:
-            dofs = self._dofs(item)
+        for item, dofs in zip(items, places, strict=True):
             named[dofs] = True
             ramped[dofs] |= not item.amplitude
         for values in self.timed.values():
             values[named] = 0.0
-        self.history.set(np.flatnonzero(named), 0.0, 0)
-        self.history.begin[named] = np.where(ramped, self.reached, 0.0)[named]
+        self.history.set(named, 0.0, 0)
+        self.history.begin[named] = np.where(ramped[named], self.reached[named], 0.0)
 
     def _dofs(self, item: NodalForce) -> Ints:
         nodes = self.system.model.mesh.node_indices(item.nodes)

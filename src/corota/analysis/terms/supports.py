@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.load_history import LoadHistory
-from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.model.dofs import DOFS
 from corota.model.loads import check_supports
@@ -131,8 +130,8 @@ class Supports:
         """Values at prescribed dofs, and `u` elsewhere; shape (n_dofs,)."""
         history, factors = self.history, self.factors
         values = factors.values(history, step_time)
-        on = factors.moves_on[history.amplitude]
-        if on.any():
+        if len(factors.names) > 1 and factors.moves_on.any():
+            on = factors.moves_on[history.amplitude]
             begun = factors.of_amplitudes(0.0)[history.amplitude[on]]
             values[on] += history.begin[on] - history.end[on] * begun
         out: Floats = np.where(self.constrained, values, u)
@@ -174,7 +173,8 @@ class Supports:
 
     def amplitudes(self) -> list[int]:
         """Indices of the amplitudes that move supports."""
-        return [int(i) for i in distinct(self.history.amplitude[self.constrained]) if i]
+        used = np.bincount(self.history.amplitude[self.constrained])
+        return [i for i, count in enumerate(used.tolist()) if i and count]
 
 
 __all__ = ["Supports"]

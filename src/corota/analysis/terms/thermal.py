@@ -26,11 +26,13 @@ from corota.model.materials import Expansion
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import TypeGuard
 
     from numpy.typing import NDArray
 
     from corota.analysis.blocks import BlockOfCells
     from corota.analysis.parallel.communicator import Communicator
+    from corota.model.materials import Material
     from corota.model.model import Model
 
     Floats = NDArray[np.float64]
@@ -120,9 +122,10 @@ class FreeStrains:
         stresses = self._stresses(blocks)
         self._blocks: list[_Block] = []
         for index, block in enumerate(blocks):
-            expansion = Expansion.of(block.section.material.expansion)
-            own = _block(core, index, block, expansion, stresses[index])
-            if expansion or own.stress is not None or own.table is not None:
+            material, stress = block.section.material, stresses[index]
+            expansion = Expansion.of(material.expansion)
+            if expansion or stress is not None or _follows(material):
+                own = _block(core, index, block, expansion, stress)
                 own.start = self.start[own.nodes] @ own.shape.T
                 if own.stress is not None:
                     own.at_start = own.compliance(own.start)
@@ -358,9 +361,9 @@ def _block(
         ]
     )
     material, constant, table = section.material, None, None
-    if isinstance(material, MaterialTable) and material.varies:
+    if _follows(material):
         table = material
-    elif expansion or stress is not None:
+    else:
         constant = turn @ material.compliance() @ turn.T
     return _Block(
         index,
@@ -375,6 +378,11 @@ def _block(
         section.material.flows and section.plane == "strain",
         stress,
     )
+
+
+def _follows(material: Material) -> TypeGuard[MaterialTable]:
+    """Whether constants of the material depend on the temperature."""
+    return isinstance(material, MaterialTable) and material.varies
 
 
 def _nodes(model: Model, where: str | Ints) -> Any:

@@ -129,9 +129,8 @@ class ContactTerm(Term):
         self.damping_work = 0.0
         self._damping_force = np.zeros(0)
         # Dof of each variable 3 node + component, -1 where there is none.
-        dof = np.full(3 * len(system.per_node), -1, np.int64)
-        dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
-        self._dof = np.append(dof, -1)
+        self._dof = np.full(3 * len(system.per_node) + 1, -1, np.int64)
+        self._dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
         self._stiff = False
         #: The kink of the surfaces at which the committed equilibrium lies.
         self.kink: Any = None
@@ -206,15 +205,17 @@ class ContactTerm(Term):
         self.first = min(step.first_increment, step.period) if stays else 0.0
         scheme = getattr(step, "scheme", "")
         self.persistent = scheme == "energy_momentum"
-        if self.number == 1:
-            self._start(getattr(step, "scheme", "") == "central_difference")
+        if self.number == 1 and self.pairs:
+            self._start(scheme == "central_difference")
         if self._stiff:
             self._damp()
-        x = self.positions(self.u)
         for pair in self.pairs:
             pair.fixed = pair.start = None
-            if self.persistent and not pair.tied:
-                pair.persist(pair.evaluate(x, x, self.system.nlgeom))
+        if self.persistent:
+            x = self.positions(self.u)
+            for pair in self.pairs:
+                if not pair.tied:
+                    pair.persist(pair.evaluate(x, x, self.system.nlgeom))
         self.law_share = 1.0
         if scheme in SCHEMES:
             self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
