@@ -426,9 +426,10 @@ class Analysis:
             state.energies.add_to(scalars, elements, (number, increment))
         contact, sums, pairs = contact_output(system.contact_term)
         scalars = {**scalars, **sums}
-        held = None
-        if state.reaction is None:
-            held = system.by_node(state.at.residual - system.reaction(state.at))
+        reaction, held = state.reaction, None
+        if reaction is None:
+            reaction = system.reaction(state.at)
+            held = system.by_node(state.at.residual - reaction)
         frame = Frame(
             number,
             increment,
@@ -437,7 +438,7 @@ class Analysis:
             factor,
             by_node[:, :2].copy(),
             by_node[:, 2].copy(),
-            system.by_node(system.reaction(state.at) if state.reaction is None else state.reaction),
+            system.by_node(reaction),
             system.by_node(state.at.external),
             fields,
             scalars,

@@ -37,7 +37,7 @@ LARGEST_NOISE, FARTHEST = 1e-6, 10.0
 LEAST = 1e-6
 #: A body that moves by this multiple of the model size beyond its supports is unconstrained.
 FAR = 1e2
-EPS = float(np.finfo(float).eps)
+EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
 
 
 class Scales:
@@ -127,22 +127,25 @@ class Scales:
         moved = max(displacement[0], system.cell_size * displacement[1])
         self.moved = float(displacement[0])
         self._noise = EPS * (self.stiffest + at.heft) * moved
-        loaded = bool(at.external.any())
-        if whole <= self.nothing and not loaded:
+        nothing = self.nothing
+        if whole <= nothing and not at.external.any():
             # A slow motion may be that small: its size is unknown before a correction.
             return ResidualNorms(0.0, 0.0, 0.0, 0, idle=at.heft > 0.0 and bool(max(residual)))
         relative = (_ratio(residual[0], force), _ratio(residual[1], moment))
         norms = ResidualNorms(*relative, 0.0, worst[0] if relative[0] >= relative[1] else worst[1])
         norms.honest = (_ratio(residual[0], whole), _ratio(residual[1], whole * length))
         most = LARGEST_NOISE * whole
-        if not loaded:
-            most = max(most, FARTHEST * self.nothing)
+        if FARTHEST * nothing > most and not at.external.any():
+            most = FARTHEST * nothing
         self._most = most
         if norms.size > self.tolerance and max(residual[0], residual[1] / length) <= most:
-            excess = self._beyond_noise(at, moved, force, moment)
-            norms.floor, norms.moment_floor = (
-                r / e if e > 0.0 else r for r, e in zip(relative, excess, strict=True)
-            )
+
+            def measure() -> tuple[float, float]:
+                excess = self._beyond_noise(at, moved, force, moment)
+                floors = [r / e if e > 0.0 else r for r, e in zip(relative, excess, strict=True)]
+                return floors[0], floors[1]
+
+            norms.measure = measure
         return norms
 
     def _beyond_noise(
@@ -157,16 +160,12 @@ class Scales:
         stiffness = self._diagonal(at.values)
         if at.added is not None:
             stiffness = stiffness - at.added
-        noise = EPS * moved * np.abs(stiffness)
         turn = system.is_rotation
-        noise[turn] /= system.cell_size
+        noise = EPS * moved * np.abs(stiffness) / np.where(turn, system.cell_size, 1.0)
         noise = at.link.gather_sizes(noise)
-        out = []
-        for mask, size in ((~turn, force), (turn, moment)):
-            above = left[mask] > self.tolerance * size
-            over = left[mask][above] / np.maximum(noise[mask][above], np.finfo(float).tiny)
-            out.append(float(over.max(initial=0.0)))
-        return out[0], out[1]
+        above = left > np.where(turn, self.tolerance * moment, self.tolerance * force)
+        over, turn = left[above] / np.maximum(noise[above], TINY), turn[above]
+        return float(over[~turn].max(initial=0.0)), float(over[turn].max(initial=0.0))
 
     def add_complementarity(self, norms: ResidualNorms, complementarity: float) -> None:
         """Add the contact residual, a force, to the last residual norms."""
@@ -179,11 +178,17 @@ class Scales:
         norms.honest = (max(least, _ratio(complementarity, max(self.whole, self.nothing))), moment)
         if norms.force > self.tolerance:
             # Gaps become forces by the stiffness of the nodes.
-            rounding = min(self._noise, self._most / FLOOR)
-            norms.floor = max(norms.floor, _ratio(rounding, force))
-            if ratio > 1.0:
-                # The residual is reported as 1, and so is its rounding.
-                norms.floor = min(norms.floor / ratio, _ratio(rounding, complementarity))
+            rounding, of_elements = min(self._noise, self._most / FLOOR), norms.measure
+
+            def measure() -> tuple[float, float]:
+                floor, moment_floor = of_elements() if of_elements is not None else (0.0, 0.0)
+                floor = max(floor, _ratio(rounding, force))
+                if ratio > 1.0:
+                    # The residual is reported as 1, and so is its rounding.
+                    floor = min(floor / ratio, _ratio(rounding, complementarity))
+                return floor, moment_floor
+
+            norms.measure = measure
 
     def senseless(self, u: Floats) -> str:
         """Why a static displacement is implausible; empty if it is not.
@@ -191,15 +196,16 @@ class Scales:
         A constrained body moves at most by its supports and its own deformation.
         """
         system = self.system
-        joined = any(term.joins for term in self.terms)
-        if not self._bodies or not (system.nlgeom or joined):
+        if not self._bodies or not (system.nlgeom or any(term.joins for term in self.terms)):
             return ""
-        begun = np.zeros(system.n_dofs) if self._begun is None else self._begun
-        moved = np.where(system.is_rotation, 0.0, np.abs(u[: system.n_dofs] - begun))
-        constrained = moved[self.conditions.constrained].max(initial=0.0)
-        far = FAR * (system.length + float(constrained))
+        begun = 0.0 if self._begun is None else self._begun
+        moved = np.abs(u[: system.n_dofs] - begun)
+        moved[system.is_rotation] = 0.0
         worst = int(moved.argmax())
-        if moved[worst] <= far:
+        if moved[worst] <= FAR * system.length:
+            return ""
+        constrained = moved[self.conditions.constrained].max(initial=0.0)
+        if moved[worst] <= FAR * (system.length + float(constrained)):
             return ""
         node = system.model.mesh.node_labels[system.node_of_dof[worst]]
         return (

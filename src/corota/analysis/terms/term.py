@@ -3,8 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -20,8 +19,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-@dataclass
-class StatePoint:
+#: Rates or multipliers where there are none.
+NONE = np.zeros(0)
+
+
+class StatePoint(NamedTuple):
     """State at which a term is evaluated, and weights of its derivatives in a time scheme.
 
     Parameters
@@ -42,11 +44,11 @@ class StatePoint:
 
     u: Floats
     time: float
-    v: Floats = field(default_factory=lambda: np.zeros(0))
-    a: Floats = field(default_factory=lambda: np.zeros(0))
+    v: Floats = NONE
+    a: Floats = NONE
     weights: tuple[float, float, float] = (1.0, 0.0, 0.0)
     between: tuple[Floats, Floats, float] | None = None
-    multipliers: Floats = field(default_factory=lambda: np.zeros(0))
+    multipliers: Floats = NONE
 
 
 class Term(Protocol):
