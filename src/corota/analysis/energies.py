@@ -129,7 +129,8 @@ class Energies:
         """
         terms: dict[str, float] = {}
         for term in self.system.terms:
-            terms |= {k: terms.get(k, 0.0) + v for k, v in term.energies().items()}
+            for name, energy in term.energies().items():
+                terms[name] = terms.get(name, 0.0) + energy
         stored = terms.pop("ALLSE", 0.0)
         inside = (
             {"ALLIE": self.internal, "ALLTH": 0.0}
@@ -238,7 +239,8 @@ class Balance:
         account.drive(now.external, now.reaction() - self._contact)
 
     def _kinetic(self, now: MotionState) -> list[float]:
-        return [float(s) for s in self.inertia.momenta(now.u, now.v, self.carried)]
+        momenta: list[float] = self.inertia.momenta(now.u, now.v, self.carried).tolist()
+        return momenta
 
     @property
     def external(self) -> float:

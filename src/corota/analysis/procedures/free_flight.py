@@ -45,11 +45,13 @@ class FreeFlight:
         nodes = np.zeros(len(part), bool)
         nodes[system.node_of_dof[held]] = True
         nodes[system.contact_term.tied_nodes] = True
-        free = part >= 0
-        free &= ~np.isin(part, part[nodes])
+        bound_parts = np.zeros(part.max(initial=-1) + 2, bool)
+        bound_parts[part[nodes]] = True
+        bound_parts[-1] = True  # nodes without elements
         #: Nodes of free bodies, and the number of the body of each.
-        self.nodes = np.flatnonzero(free)
-        self.body = np.unique(part[self.nodes], return_inverse=True)[1]
+        self.nodes = np.flatnonzero(~bound_parts[part])
+        bodies = part[self.nodes]
+        self.body = np.searchsorted(distinct(bodies), bodies)
 
     def guess(self, u: Floats, v: Floats, dt: float) -> Floats:
         """Displacement after a time, with rigid motion of free bodies, shape (n_dofs,)."""

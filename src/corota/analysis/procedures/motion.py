@@ -7,7 +7,8 @@ scheme put into residual and tangent; so there is one Newton's method.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -128,27 +129,31 @@ class NewmarkMotion(Motion):
         self.c_a = (1.0 - s.alpha_m) / ((1.0 - s.alpha_f) * s.beta * dt * dt)
         # What balances the start: the forces of contact there, and rounding.
         self.begun = s.alpha_f * start.reaction() if s.alpha_f else None
+        # Terms of the rates that the start alone determines.
+        before = start.a if start.carried is None else start.carried
+        self._drift = dt * start.v
+        self._before = [f * before for f in (0.5 / s.beta - 1.0, 1.0 - s.gamma, s.alpha_m)]
+        self._balance = s.alpha_f * start.a
+        self._constrained = driven.constrained.nonzero()[0]
 
     def _rates(self, u: Floats) -> tuple[Floats, Floats, Floats]:
         """Velocity, acceleration and the filtered acceleration."""
         s, dt, b, driven = self.scheme, self.dt, self.start, self.driven
-        before = b.a if b.carried is None else b.carried
-        carried = (u - b.u - dt * b.v) / (s.beta * dt * dt) - (0.5 / s.beta - 1.0) * before
-        v = b.v + dt * ((1.0 - s.gamma) * before + s.gamma * carried)
+        carried = (u - b.u - self._drift) / (s.beta * dt * dt) - self._before[0]
+        v = b.v + dt * (self._before[1] + s.gamma * carried)
         a = carried
+        constrained, eliminated = self._constrained, self.system.constraints.eliminated
         if s.alpha_m or s.alpha_f:
-            a = (1.0 - s.alpha_m) * carried + s.alpha_m * before - s.alpha_f * b.a
+            a = (1.0 - s.alpha_m) * carried + self._before[2] - self._balance
             a /= 1.0 - s.alpha_f
-        elif driven.constrained.any() or len(self.system.constraints.eliminated):
+        elif len(constrained) or len(eliminated):
             a = carried.copy()
-        constrained = driven.constrained
-        if constrained.any():
+        if len(constrained):
             # Newton's method moves prescribed dofs in its first correction: until then the rates
             # differ by what the tangent takes them for.
-            rest = (u - driven.u)[constrained]
+            rest = u[constrained] - driven.u[constrained]
             v[constrained] = driven.v[constrained] + self.c_v * rest
             a[constrained] = driven.a[constrained] + self.c_a * rest
-        eliminated = self.system.constraints.eliminated
         self.system.constraints.complete_rates(u, v, a)
         carried[eliminated] = a[eliminated]
         carried[constrained] = a[constrained]
@@ -192,7 +197,7 @@ class ConservingMotion(Motion):
         system, b, dt = self.system, self.start, self.dt
         at = system.blank(system.borrow_tangent())
         system.constraints.complete(u)
-        d, begun = self.increment(u), self._begun()
+        d, begun = self.increment(u), self._begun
         v = 2.0 / dt * d - begun
         a = (v - begun) / dt
         point = StatePoint(
@@ -214,10 +219,11 @@ class ConservingMotion(Motion):
         constrained = self.driven.constrained
         v[constrained], a[constrained] = self.driven.v[constrained], self.driven.a[constrained]
         at.inertia = force - at.internal
-        self.end = end = MotionState.of(replace(point, u=u, v=v), at)
+        self.end = end = MotionState.of(point._replace(u=u, v=v), at)
         at.internal = force + end.damping
         return at
 
+    @cached_property
     def _begun(self) -> Floats:
         """Velocities that the mid-point rule starts from, shape (n_dofs,).
 

@@ -79,10 +79,10 @@ class Attachments:
         ends = np.array([[d.first, d.second] for d in pairs], np.int64).reshape(-1, 2)
         self.c = np.array([d.c for d in pairs])
         self.nodes = ends
-        flat = np.column_stack(
-            [self._dofs(ends[:, e], i, "dashpot") for e in (0, 1) for i in (0, 1)]
-        ).reshape(-1, 4)
-        self.dofs = flat
+        self.dofs = flat = np.zeros((len(pairs), 4), np.int64)
+        if pairs:
+            for column, (e, i) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+                flat[:, column] = self._dofs(ends[:, e], i, "dashpot")
         rows, columns = np.indices((4, 4)).reshape(2, -1)
         self.pair = (rows, columns)
         self.triplets = (flat[:, rows].ravel(), flat[:, columns].ravel())

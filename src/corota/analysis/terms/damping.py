@@ -48,7 +48,7 @@ class Damping(Term):
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Set the damping of `at`, and add its derivative by velocity."""
         system, v, values, weight = self.inertia.system, point.v, at.values, point.weights[1]
-        force = np.zeros_like(v)
+        force = np.zeros(len(v))
         if self.per_mass:
             mass = self.inertia.tangent(point.u)
             force += self.per_mass * system.product(mass, v)

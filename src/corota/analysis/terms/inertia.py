@@ -99,7 +99,8 @@ class Inertia(Term):
         if massless is not None:
             self.massless = massless[system.node_of_dof] & ~system.is_rotation
             self.massless &= self.attached.mass == 0.0
-        coupled = kind == "consistent" and bool(system.is_rotation.any())
+        self._turns = bool(system.is_rotation.any())
+        coupled = kind == "consistent" and self._turns
         zero = np.zeros(system.n_dofs)
         values = self._evaluate(zero, zero, zero, (0.0, 0.0, 1.0), True)[2]
         self.matrix: Floats | None = None if coupled else values
@@ -113,10 +114,9 @@ class Inertia(Term):
         """Set the sizes of inertia of an evaluation: `weight` times the mass of a change `du`."""
         at.heft = weight * self._largest
         terms = weight * self._own * np.abs(du)
-        turn = self.system.is_rotation
-        at.momentum = float(terms[~turn].max(initial=0.0))
-        if turn.any():
-            at.momentum = max(at.momentum, float(terms[turn].max()) / self.system.length)
+        if self._turns:
+            terms[self.system.is_rotation] /= self.system.length
+        at.momentum = float(terms.max(initial=0.0))
 
     def settle(self, begin: MotionState, end: MotionState, dt: float) -> None:
         """Give displacements without mass the mean velocity of the increment, in place.

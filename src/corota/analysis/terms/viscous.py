@@ -21,6 +21,7 @@ import numpy as np
 from corota import _core
 from corota.analysis.blocks import core_input
 from corota.analysis.terms.user_material import UserBlocks
+from corota.model import elements
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,13 +71,12 @@ class ViscousElements:
     def __init__(self, system: System, per_stiffness: float = 0.0) -> None:
         self.system = system
         self.blocks: list[_Block] = []
-        facts = {e["name"]: e for e in _core.elements()}
         #: Whether any element of the model is damped.
         self.any = any(per_stiffness + b.section.material.rayleigh[1] for b in system.blocks)
         for block in system.own_blocks:
             factor = per_stiffness + block.section.material.rayleigh[1]
             if factor:
-                turns = bool(facts[block.section.element]["turns"])
+                turns = elements.find(block.section.element).turns
                 self.blocks.append(self._block(block, factor, turns))
 
     def _block(self, block: BlockOfCells, factor: float, turns: bool) -> _Block:

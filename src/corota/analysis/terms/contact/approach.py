@@ -60,7 +60,9 @@ class Approach:
         #: Displacement of the last increment by node and its time; velocities of nodes without
         #: mass oscillate about it.
         self.moved, self.dt = np.zeros((0, 3)), 0.0
-        part = part_of_nodes(system.model.mesh)
+        mesh = system.model.mesh
+        opens = system.contact_term.opens
+        part = part_of_nodes(mesh) if opens else np.full(mesh.n_nodes, -1, np.int64)
         heavy = np.zeros(len(part), bool)
         heavy[system.node_of_dof[~massless & ~system.is_rotation]] = True
         #: Body of each node, -1 for none, and the nodes whose mean acceleration is the body's.
