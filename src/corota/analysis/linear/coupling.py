@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from corota.analysis.linear.triplets import Triplets
@@ -33,8 +35,8 @@ class Coupling:
     diagonal : ndarray, shape (n_multipliers,)
     force : ndarray, shape (n_dofs,)
         Added to the right-hand side of equilibrium, in global axes.
-    near : tuple of ndarray of int
-        Dofs and multipliers (-1 none) of pairs that may soon couple, for the pattern.
+    near : callable
+        Finds dofs and multipliers (-1 none) of pairs that may soon couple, where the pattern grows.
     """
 
     geometric_stiffness: Triplets
@@ -42,7 +44,7 @@ class Coupling:
     follow: Triplets
     diagonal: Floats
     force: Floats
-    near: tuple[Ints, Ints]
+    near: Callable[[], tuple[Ints, Ints]]
 
 
 __all__ = ["Coupling"]

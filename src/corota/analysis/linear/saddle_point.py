@@ -307,7 +307,8 @@ class SaddlePointSystem:
 
     def _spare(self, c: Coupling, link: LinearizedConstraints) -> Ints:
         """Keys of couplings that may be needed soon, possibly repeated."""
-        dofs, own = link.neighbors(c.near[0]), c.near[1]
+        dofs, own = c.near()
+        dofs = link.neighbors(dofs)
         if not len(dofs):
             return np.zeros(0, np.int64)
         every = np.concatenate([dofs, np.where(own >= 0, own + self.nf, -1)], axis=1)

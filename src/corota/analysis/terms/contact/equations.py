@@ -252,8 +252,8 @@ class ContactEquations:
         self, at: ContactEvaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int]:
         coupling, own, expected = self._coupling(at.contact_state, states)
-        force = right_sides.force + np.outer(self.system.at_nodes(coupling.force), right_sides.own)
-        rows = np.outer(own, right_sides.own)
+        force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
+        rows = own[:, None] * right_sides.own
         du, dp, negative = self.border.solve(at.at, coupling, force, rows, right_sides.constrained)
         return du, dp, negative - expected if negative >= 0 else -1
 

@@ -33,10 +33,10 @@ def held(
 
     Where all nodes in contact with a body slip at once, it is unconstrained: some must stick.
     """
-    stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
     slipping = any((s == SLIPPING).any() for s in states)
-    tries = [states]
+    tries, stuck = [states], states
     if slipping:
+        stuck = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
         tries += [_least_stick(problem, at, states), stuck]
     reason: SingularError | None = None
     for tried in tries:
@@ -53,7 +53,7 @@ def held(
         problem.last = tried
         return du, dp, negative, tried
     assert reason is not None
-    return _close_some(problem, at, stuck if slipping else states, right_sides, reason)
+    return _close_some(problem, at, stuck, right_sides, reason)
 
 
 def _least_stick(problem: ContactProblem, at: ContactEvaluation, states: States) -> States:

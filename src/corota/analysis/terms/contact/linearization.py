@@ -35,7 +35,6 @@ def linearized(
     geometric_stiffness, rows, follow = [], [], []
     diagonal, rhs = np.ones(term.n), np.zeros(term.n)
     force = np.zeros(term.system.n_dofs)
-    near: list[tuple[Ints, Ints]] = []
     expected = 0
     parts = term.parts(at.multipliers)
     for pair, terms, (p, q), state in zip(term.pairs, at.terms, parts, states, strict=True):
@@ -79,14 +78,18 @@ def linearized(
             # Half way an end moves by half.
             half = 1.0 if acting is terms else 0.5
             geometric_stiffness.append(second_derivatives(term, pair, half * share * p, half * q))
-        near.append(_near(term, pair, terms))
+
+    def near() -> tuple[Ints, Ints]:
+        each = zip(term.pairs, at.terms, strict=True)
+        return stacked([_near(term, pair, terms) for pair, terms in each])
+
     coupling = Coupling(
         Triplets.join(geometric_stiffness),
         Triplets.join(rows),
         Triplets.join(follow),
         diagonal,
         force,
-        stacked(near),
+        near,
     )
     return coupling, rhs, expected
 
@@ -97,7 +100,7 @@ def second_derivatives(term: ContactTerm, pair: Pair, p: Floats, q: Floats) -> T
         _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
     where = term.dofs(variables)
     v = where.shape[1]
-    a, b = np.repeat(where, v, axis=1).ravel(), np.tile(where, (1, v)).ravel()
+    a, b = np.repeat(where, v, axis=1).ravel(), np.repeat(where, v, axis=0).ravel()
     entries = -values.reshape(-1)
     keep = (a >= 0) & (b >= 0) & (entries != 0.0)
     return Triplets(a[keep], b[keep], entries[keep])
@@ -141,8 +144,12 @@ def stacked(parts: list[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
     for which in (0, 1):
         tables = [p[which] for p in parts if len(p[which])]
         width = max((t.shape[1] for t in tables), default=0)
-        full = [np.pad(t, ((0, 0), (0, width - t.shape[1])), constant_values=-1) for t in tables]
-        out.append(np.concatenate(full) if full else np.zeros((0, 0), np.int64))
+        full = np.full((sum(len(t) for t in tables), width), -1, np.int64)
+        first = 0
+        for table in tables:
+            full[first : first + len(table), : table.shape[1]] = table
+            first += len(table)
+        out.append(full)
     return out[0], out[1]
 
 

@@ -67,6 +67,8 @@ def passed(
     moved = np.hypot(*(move[nodes] - mean).T) + spread
     unseen = terms.area <= COVERED * pair.full
     far = (moved > UNSEEN * pair.reach) | (unseen & (moved > pair.depth))
+    if not far.any():
+        return np.zeros(0, np.int64)
     closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
     chosen = np.flatnonzero(far & ~closed)
     near = old[nodes[chosen]], new[nodes[chosen]]
