@@ -34,8 +34,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit code: 0 done, 2 input, 3 model, 4 not converged, 5 resource, 6 file,
         7 interrupted, 64 command line, 70 internal.
     """
+    words = sys.argv[1:] if argv is None else argv
     try:
-        args = make_parser().parse_args(argv)
+        args = make_parser(words).parse_args(words)
     except SystemExit as stop:
         return int(stop.code or 0)
     from corota.cli.terminal import Terminal

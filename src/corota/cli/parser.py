@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import argparse
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 #: Names of :data:`corota.analysis.linear.solvers.SOLVERS`, which would load numerics.
 SOLVERS = ("multifrontal", "pardiso", "petsc", "petsc:gamg", "superlu")
@@ -33,42 +36,24 @@ class Version(argparse.Action):
         parser.exit(0)
 
 
-def make_parser() -> Parser:
-    """Build the parser of all commands."""
-    parser = Parser(
-        prog="corota",
-        description="Co-rotational planar finite elements: solve decks, draw and convert results.",
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--version", action=Version, nargs=0, help="print the version")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-
-    def command(name: str, text: str) -> argparse.ArgumentParser:
-        made = commands.add_parser(name, help=text, description=text)
-        made.add_argument("--json", action="store_true", help="JSON lines on standard output")
-        made.add_argument("-q", "--quiet", action="store_true", help="errors only")
-        made.add_argument("-v", "--verbose", action="count", default=0, help="more lines; -vv more")
-        return made
-
-    run = command("run", "Solve the steps of a deck and write the results.")
-    run.add_argument("deck", help="input deck (.inp)")
-    run.add_argument("-o", "--output", metavar="DIR", default=".", help="folder of the results")
-    run.add_argument(
+def _run(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("deck", help="input deck (.inp)")
+    parser.add_argument("-o", "--output", metavar="DIR", default=".", help="folder of the results")
+    parser.add_argument(
         "--name", metavar="JOB", default="", help="name of the job (default: that of the deck)"
     )
-    run.add_argument(
+    parser.add_argument(
         "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
     )
-    _solver(run)
-    run.add_argument(
+    _solver(parser)
+    parser.add_argument(
         "--format",
         dest="formats",
         action="append",
         choices=("vtkhdf", "pvd", "frd", "frd-binary", "npz", "vtu"),
         help="result format, repeatable (default: vtkhdf)",
     )
-    run.add_argument(
+    parser.add_argument(
         "--history",
         dest="histories",
         action="append",
@@ -76,40 +61,40 @@ def make_parser() -> Parser:
         default=[],
         help="column of the CSV file, such as U2@TIP or RF1@17, repeatable",
     )
-    run.add_argument(
+    parser.add_argument(
         "--frd",
         nargs="?",
         const="frd",
         choices=("frd", "frd-binary"),
         help="JOB.frd for cgx, PrePoMax, FreeCAD beside the result file; frd-binary: smaller",
     )
-    run.add_argument("--points", action="store_true", help="also write values at quadrature points")
-    run.add_argument(
+    parser.add_argument(
+        "--points", action="store_true", help="also write values at quadrature points"
+    )
+    parser.add_argument(
         "--single", action="store_true", help="write fields in single precision (4 bytes)"
     )
-    run.add_argument(
+    parser.add_argument(
         "--fields",
         type=_fields,
         default="all",
         metavar="LIST",
         help="fields of the result file, such as U,S,PEEQ; or requested: as *NODE FILE, *EL FILE",
     )
-    run.add_argument(
+    parser.add_argument(
         "--compression", type=int, default=1, metavar="0-9", help="of the result file (default: 1)"
     )
-    _reading(run)
-
-    run.add_argument(
+    _reading(parser)
+    parser.add_argument(
         "--checkpoint-every",
         type=_whole,
         metavar="N",
         help="checkpoint every N increments, 0 for none (default: every minute)",
     )
-    run.add_argument(
+    parser.add_argument(
         "--provenance", action="store_true", help="also write versions and digests of the inputs"
     )
-
-    run.add_argument(
+    parser.add_argument(
         "--serve",
         nargs="?",
         type=_port,
@@ -118,19 +103,21 @@ def make_parser() -> Parser:
         help="show the progress on a local page and print its address",
     )
 
-    resume = command("resume", "Resume a stopped run from its newest checkpoint.")
-    resume.add_argument("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
-    resume.add_argument(
+
+def _resume(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("job", help="deck, checkpoint (.ckpt), or stem of the job's files")
+    parser.add_argument(
         "-o", "--output", metavar="DIR", help="folder of the results (default: that of the job)"
     )
-    resume.add_argument(
+    parser.add_argument(
         "--threads", type=_count, metavar="N", help="number of threads (default: all cores)"
     )
-    _solver(resume)
+    _solver(parser)
 
-    sweep = command("sweep", "Run a deck for many values of its *PARAMETER names.")
-    sweep.add_argument("deck", help="input deck (.inp)")
-    sweep.add_argument(
+
+def _sweep(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("deck", help="input deck (.inp)")
+    parser.add_argument(
         "-p",
         dest="grid",
         action="append",
@@ -139,7 +126,7 @@ def make_parser() -> Parser:
         type=_values,
         help="values t=0.2:0.6:9 (first, last, count) or n=1,2,4; repeatable, all combinations",
     )
-    sweep.add_argument(
+    parser.add_argument(
         "-m",
         dest="measures",
         action="append",
@@ -147,109 +134,115 @@ def make_parser() -> Parser:
         required=True,
         help="measure to keep, such as max(RM3@hub) or last(U2@tip); repeatable",
     )
-    sweep.add_argument(
+    parser.add_argument(
         "--sample",
         type=_count,
         metavar="N",
         help="N points of a Latin hypercube between the first and last values, instead of a grid",
     )
-    sweep.add_argument("--seed", type=int, default=0, help="of the sample")
-    sweep.add_argument(
+    parser.add_argument("--seed", type=int, default=0, help="of the sample")
+    parser.add_argument(
         "--workers", type=_count, metavar="N", help="number of processes (default: all cores)"
     )
-    sweep.add_argument("-o", "--output", metavar="FILE", help="table; else DECK_sweep.csv")
-    sweep.add_argument("--plot", metavar="FILE", help="picture of the first measure")
-    sweep.add_argument("--again", action="store_true", help="run stored rows again")
-    _reading(sweep)
+    parser.add_argument("-o", "--output", metavar="FILE", help="table; else DECK_sweep.csv")
+    parser.add_argument("--plot", metavar="FILE", help="picture of the first measure")
+    parser.add_argument("--again", action="store_true", help="run stored rows again")
+    _reading(parser)
 
-    demo = command("demo", "Run a built-in example; needs no file and no network.")
-    demo.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
-    demo.add_argument("--list", action="store_true", help="list the examples")
-    demo.add_argument(
+
+def _demo(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
+    parser.add_argument("--list", action="store_true", help="list the examples")
+    parser.add_argument(
         "-o", "--output", metavar="DIR", default="", help="folder; else corota-demo/NAME"
     )
 
-    check = command("check", "Check a deck or mesh without solving it.")
-    check.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
-    _reading(check)
 
-    plot = command("plot", "Draw results (.vtkhdf), or a model with --model.")
-    plot.add_argument("file", help="result file, or deck or mesh with --model")
-    plot.add_argument(
+def _check(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
+    _reading(parser)
+
+
+def _plot(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", help="result file, or deck or mesh with --model")
+    parser.add_argument(
         "-o", "--output", metavar="FILE", help="picture: .png .svg .pdf; .gif .mp4 .html"
     )
-    plot.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
-    plot.add_argument(
+    parser.add_argument("--field", default="", help="variable: MISES S11 SP1 E12 U U2 ... ")
+    parser.add_argument(
         "--frame", type=int, default=-1, help="index of the frame, from 0 (default: -1, the last)"
     )
-    plot.add_argument("--scale", type=float, default=1.0, help="scale factor of the displacements")
-    plot.add_argument("--element", dest="per_cell", action="store_true", help="element averages")
-    plot.add_argument(
+    parser.add_argument(
+        "--scale", type=float, default=1.0, help="scale factor of the displacements"
+    )
+    parser.add_argument("--element", dest="per_cell", action="store_true", help="element averages")
+    parser.add_argument(
         "--plastic", action="store_true", help="the elastic-plastic boundary as a line"
     )
-    plot.add_argument("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
-    plot.add_argument("--model", action="store_true", help="mesh, sets, supports and loads")
-    plot.add_argument(
+    parser.add_argument("--edges", action=argparse.BooleanOptionalAction, help="draw element edges")
+    parser.add_argument("--model", action="store_true", help="mesh, sets, supports and loads")
+    parser.add_argument(
         "--curve",
         metavar="X,Y",
         help="a curve, such as 'U2@TIP,load factor'",
     )
-    plot.add_argument(
+    parser.add_argument(
         "--contact",
         nargs="?",
         const="",
         metavar="PAIR",
         help="pressure along the slave surface of a contact pair, the first by default",
     )
-    plot.add_argument(
+    parser.add_argument(
         "--forces",
         choices=("N", "V", "M"),
         type=str.upper,
         help="diagram of a section force on trusses and beams",
     )
-    plot.add_argument(
+    parser.add_argument(
         "--section",
         nargs=4,
         type=float,
         metavar=("X1", "Y1", "X2", "Y2"),
         help="N, V and M of a cut through planar elements, over the time",
     )
-    plot.add_argument(
+    parser.add_argument(
         "--diagram",
         nargs=5,
         type=float,
         metavar=("X1", "Y1", "X2", "Y2", "WIDTH"),
         help="N, V and M along an axis, of cuts of this width across it",
     )
-    plot.add_argument("--principal", action="store_true", help="principal stresses as crosses")
-    plot.add_argument(
+    parser.add_argument("--principal", action="store_true", help="principal stresses as crosses")
+    parser.add_argument(
         "--flow",
         nargs="?",
         const="principal",
         choices=("principal", "x", "y"),
         help="trajectories of principal stress, or the flow of force along x or y",
     )
-    plot.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
-    plot.add_argument("--response", action="store_true", help="steady-state response")
-    plot.add_argument("--energies", action="store_true", help="energies of a motion over time")
-    plot.add_argument(
+    parser.add_argument("--modes", action="store_true", help="mode shapes with their frequencies")
+    parser.add_argument("--response", action="store_true", help="steady-state response")
+    parser.add_argument("--energies", action="store_true", help="energies of a motion over time")
+    parser.add_argument(
         "--animate", action="store_true", help="all frames as a GIF, MP4 or HTML page"
     )
-    plot.add_argument(
+    parser.add_argument(
         "--last-iterate",
         action="store_true",
         help="the last attempt of a run that stopped; RF shows the residual",
     )
-    plot.add_argument("--dpi", type=_count, default=150, help="dots per inch")
-    plot.add_argument(
+    parser.add_argument("--dpi", type=_count, default=150, help="dots per inch")
+    parser.add_argument(
         "--width", type=float, default=0.0, metavar="MM", help="of the picture, such as 85"
     )
 
-    report = command("report", "Write an HTML report from the files of a job.")
-    report.add_argument("job", help="name of the job, or any of its files")
-    report.add_argument("-o", "--output", metavar="FILE", help="report (.html; default: JOB.html)")
-    report.add_argument("--title", default="", help="heading (default: the name of the job)")
-    report.add_argument(
+
+def _report(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("job", help="name of the job, or any of its files")
+    parser.add_argument("-o", "--output", metavar="FILE", help="report (.html; default: JOB.html)")
+    parser.add_argument("--title", default="", help="heading (default: the name of the job)")
+    parser.add_argument(
         "--limit",
         type=float,
         default=9.5,
@@ -257,54 +250,60 @@ def make_parser() -> Parser:
         help="largest size of the page (default: 9.5); longer results are thinned, with a note",
     )
 
-    watch = command("watch", "Watch a run in progress, in a browser or in the terminal.")
-    watch.add_argument("job", help="name of the job, its deck, or any of its files")
-    watch.add_argument(
+
+def _watch(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("job", help="name of the job, its deck, or any of its files")
+    parser.add_argument(
         "-o", "--output", metavar="DIR", help="folder of the files (default: that of the job)"
     )
-    watch.add_argument(
+    parser.add_argument(
         "--terminal", action="store_true", help="print lines instead of serving a page"
     )
-    watch.add_argument("--open", action="store_true", help="open the page in a browser")
-    watch.add_argument("--port", type=_port, default=0, metavar="PORT", help="else any free one")
+    parser.add_argument("--open", action="store_true", help="open the page in a browser")
+    parser.add_argument("--port", type=_port, default=0, metavar="PORT", help="else any free one")
 
-    view = command("view", "Show results in an interactive window (extra `view`).")
-    view.add_argument("file", help="result file")
-    view.add_argument("-o", "--output", metavar="FILE", help="write a .png and open no window")
-    view.add_argument("--field", default="", help="variable: MISES S11 U2 ...")
-    view.add_argument("--scale", type=float, default=1.0, help="scale factor of the displacements")
 
-    info = command("info", "Describe a deck, a mesh or a result file.")
-    info.add_argument("file")
-    _reading(info)
+def _view(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", help="result file")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write a .png and open no window")
+    parser.add_argument("--field", default="", help="variable: MISES S11 U2 ...")
+    parser.add_argument(
+        "--scale", type=float, default=1.0, help="scale factor of the displacements"
+    )
 
-    convert = command("convert", "Convert a mesh to a deck (.inp), or results to another format.")
-    convert.add_argument("source")
-    convert.add_argument("target", nargs="?", help="the file extension selects the format")
-    convert.add_argument(
+
+def _info(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file")
+    _reading(parser)
+
+
+def _convert(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("source")
+    parser.add_argument("target", nargs="?", help="the file extension selects the format")
+    parser.add_argument(
         "--paraview",
         action="store_true",
         help="write a script beside the results that shows them in ParaView",
     )
-    convert.add_argument("--field", default="", help="variable of the colors in ParaView")
-    convert.add_argument(
+    parser.add_argument("--field", default="", help="variable of the colors in ParaView")
+    parser.add_argument(
         "--scale", type=float, default=1.0, help="scale factor of the displacements in ParaView"
     )
-    _reading(convert)
+    _reading(parser)
 
-    verify = command("verify", "Solve the problems of the verification catalogue.")
-    verify.add_argument("names", nargs="*", metavar="NAME", help="names or patterns (default: all)")
-    verify.add_argument("--list", action="store_true", help="list the problems")
-    verify.add_argument(
+
+def _verify(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("names", nargs="*", metavar="NAME", help="names or patterns (default: all)")
+    parser.add_argument("--list", action="store_true", help="list the problems")
+    parser.add_argument(
         "--full", action="store_true", help="also run the convergence studies (minutes)"
     )
-    verify.add_argument(
+    parser.add_argument(
         "--pages", metavar="DIR", help="write a page for each problem (extra `plot`)"
     )
-    verify.add_argument(
+    parser.add_argument(
         "--jobs", type=_count, metavar="N", help="number of processes (default: all cores)"
     )
-    return parser
 
 
 def _solver(parser: argparse.ArgumentParser) -> None:
@@ -411,3 +410,49 @@ def _count(text: str) -> int:
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1")
     return number
+
+
+#: Help text of each command, and the function that adds its arguments.
+COMMANDS = {
+    "run": ("Solve the steps of a deck and write the results.", _run),
+    "resume": ("Resume a stopped run from its newest checkpoint.", _resume),
+    "sweep": ("Run a deck for many values of its *PARAMETER names.", _sweep),
+    "demo": ("Run a built-in example; needs no file and no network.", _demo),
+    "check": ("Check a deck or mesh without solving it.", _check),
+    "plot": ("Draw results (.vtkhdf), or a model with --model.", _plot),
+    "report": ("Write an HTML report from the files of a job.", _report),
+    "watch": ("Watch a run in progress, in a browser or in the terminal.", _watch),
+    "view": ("Show results in an interactive window (extra `view`).", _view),
+    "info": ("Describe a deck, a mesh or a result file.", _info),
+    "convert": ("Convert a mesh to a deck (.inp), or results to another format.", _convert),
+    "verify": ("Solve the problems of the verification catalogue.", _verify),
+}
+
+
+def make_parser(words: Sequence[str]) -> Parser:
+    """Build the parser of a command line: of all commands, with the arguments of the one in it.
+
+    Where the command comes first the others are left out: the arguments of all commands take as
+    long to build as Python to start.
+    """
+    command = next((word for word in words if not word.startswith("-")), "")
+    alone = command in COMMANDS and words[0] == command
+    parser = Parser(
+        prog="corota",
+        description="Co-rotational planar finite elements: solve decks, draw and convert results.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action=Version, nargs=0, help="print the version")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name in [command] if alone else COMMANDS:
+        text, add_arguments = COMMANDS[name]
+        made = commands.add_parser(name, help=text, description=text)
+        if name == command:
+            made.add_argument("--json", action="store_true", help="JSON lines on standard output")
+            made.add_argument("-q", "--quiet", action="store_true", help="errors only")
+            made.add_argument(
+                "-v", "--verbose", action="count", default=0, help="more lines; -vv more"
+            )
+            add_arguments(made)
+    return parser
