@@ -152,6 +152,16 @@ def _halved(frame: Frame, arrays: dict[str, Floats]) -> dict[str, Any]:
     return found
 
 
+def _is_vtk(place: str) -> bool:
+    """Whether VTK reads the arrays of a group, by their offsets."""
+    return place.startswith("VTKHDF")
+
+
+def _offsets(place: str) -> str:
+    """Group of the offsets of such arrays."""
+    return f"VTKHDF/Steps/{place.removeprefix('VTKHDF/')}Offsets"
+
+
 def _missing(place: str, name: str) -> float:
     """Fill value of an array that a frame does not have."""
     return np.nan if place == "corota/frames" and name in vf.UNKNOWN else 0.0
@@ -350,16 +360,19 @@ class VtkhdfWriter:
         self._still = list(grid.still)
         for name, labels in grid.still.items():
             self._once(root["CellData"], name, labels)
-            self._offsets("CellData", name)
+            self._growing(root["Steps/CellDataOffsets"], name, "i8")
 
     def _once(self, group: Any, name: str, values: NDArray[Any]) -> None:
         """Write an array that does not change, packed if it is large."""
         store(group, name, values, self._options.compression if values.nbytes >= SMALL else 0)
 
-    def _growing(self, group: Any, name: str, number: str, rest: tuple[int, ...] = ()) -> None:
-        """Create a data set with one row per frame."""
+    def _growing(
+        self, group: Any, name: str, number: str, rest: tuple[int, ...] = (), data: Any = None
+    ) -> None:
+        """Create a data set with one row per frame: those of `data`, or none yet."""
         shape = {"maxshape": (None, *rest), "chunks": (64, *rest)}
-        group.create_dataset(name, (0, *rest), number, fletcher32=True, **shape)
+        size = (0, *rest) if data is None else data.shape
+        group.create_dataset(name, size, number, data=data, fletcher32=True, **shape)
 
     def add(self, frame: Frame) -> None:
         """Take a frame; :meth:`commit` writes all taken frames to the disk.
@@ -453,38 +466,40 @@ class VtkhdfWriter:
                 store(group, "reference volume", block.volume)
         return name
 
-    def _offsets(self, kind: str, name: str) -> Any:
-        group = self._root["Steps"][f"{kind}Offsets"]
-        if name not in group:
-            self._growing(group, name, "i8")
-        return group[name]
-
     def _store(self) -> None:
         """Write the taken frames, each array of all of them at once."""
         first, end = self._count, self._count + len(self._taken)
+        steps = self._root["Steps"]
         names: dict[tuple[str, str], Floats] = {}
         for _, data in self._taken:
             for place, arrays in data.items():
                 names |= {(place, name): values for name, values in arrays.items()}
+        # Opened once: a look-up in the file takes as long as writing a small array.
+        groups = {place: self._file[place] for place, _ in [*names, *self._known]}
+        groups |= {
+            _offsets(place): self._file[_offsets(place)] for place in groups if _is_vtk(place)
+        }
         for (place, name), like in names.items():
             rows = [data.get(place, {}).get(name) for _, data in self._taken]
             full = [np.full_like(like, _missing(place, name)) if r is None else r for r in rows]
-            self._fill(self._series(place, name, like, end), first, full)
+            self._append(groups, place, name.replace("/", "|"), like, first, full)
         for (place, name), like in self._known.items():
             if (place, name) not in names:
                 # An array of an earlier step, such as velocities: zero from here on.
-                self._series(place, name, like, end)
+                own = name.replace("/", "|")
+                series = groups[place][own]
+                series.resize(end * len(like), axis=0)
+                self._point_at(groups, place, own, len(like), end)
                 if np.isnan(_missing(place, name)):
-                    self._file[place][name][first:] = np.nan
+                    series[first:] = np.nan
         # Shapes only: the numbers are on disk.
         self._known |= {
             key: np.broadcast_to(np.zeros(1, like.dtype), like.shape) for key, like in names.items()
         }
-        steps = self._root["Steps"]
         for name in ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"):
             steps[name].resize(end, axis=0)  # new rows of a data set are 0
         for name in self._still:
-            self._offsets("CellData", name).resize(end, axis=0)
+            steps["CellDataOffsets"][name].resize(end, axis=0)
         for name, values in (
             ("NumberOfParts", np.full(end - first, len(self._grid.sizes))),
             ("Values", np.array([time for time, _ in self._taken])),
@@ -494,41 +509,70 @@ class VtkhdfWriter:
         steps.attrs["NSteps"] = end
         self._count, self._taken = end, []
 
-    def _series(self, place: str, name: str, like: Floats, end: int) -> Any:
-        """Data set of a name, long enough for ``end`` frames; frames it missed are zero."""
+    def _append(
+        self,
+        groups: dict[str, Any],
+        place: str,
+        name: str,
+        like: Floats,
+        first: int,
+        frames: list[Floats],
+    ) -> None:
+        """Add frames from number `first` on to an array; frames that it missed are zero."""
+        rows, group, end = len(like), groups[place], first + len(frames)
+        if name in group:
+            series = group[name]
+            series.resize(end * rows, axis=0)
+            self._fill(series, first, frames)
+        else:
+            self._create(group, name, _missing(place, name), like, first, frames)
+        self._point_at(groups, place, name, rows, end)
+
+    def _create(
+        self, group: Any, name: str, missing: float, like: Floats, first: int, frames: list[Floats]
+    ) -> None:
+        """Create the data set of an array with its frames from number `first` on."""
         rows, rest = len(like), like.shape[1:]
-        group = self._file[place]
-        name = name.replace("/", "|")
+        row = like.dtype.itemsize * int(np.prod(rest, dtype=int))
+        level = self._options.compression if rows * row >= SMALL else 0
+        if rows * row < SMALL:  # several frames a chunk
+            size = rows * max(1, SMALL // (rows * row or 1))
+        else:
+            size = min(rows, max(1, LARGEST // row))
+        packed = {"compression": "gzip", "compression_opts": level, "shuffle": True}
+        # Writing while creating is fastest, where HDF5 need not pack.
+        at_once = not first and not level
+        made = group.create_dataset(
+            name,
+            ((first + len(frames)) * rows, *rest),
+            like.dtype,
+            np.concatenate(frames) if at_once else None,
+            maxshape=(None, *rest),
+            # Where a chunk is a whole frame, one for each component: those that are zero take
+            # no space and no time, and the digits of others pack better among their own.
+            chunks=(max(1, size), *((1,) if len(rest) == 1 and size == rows else rest)),
+            fillvalue=missing,
+            fletcher32=True,
+            **(packed if level else {}),
+        )
+        if not at_once:
+            self._fill(made, first, frames)
+        unit = self.model.unit_system.label(vf.dimension_of_array(name))
+        if unit:
+            made.attrs["units"] = unit
+
+    def _point_at(self, groups: dict[str, Any], place: str, name: str, rows: int, end: int) -> None:
+        """Extend the rows at which the frames of an array begin, where the format has them."""
+        if not _is_vtk(place):
+            return
+        group = groups[_offsets(place)]
         if name not in group:
-            row = like.dtype.itemsize * int(np.prod(rest, dtype=int))
-            if rows * row < SMALL:  # several frames a chunk
-                size = rows * max(1, SMALL // (rows * row or 1))
-            else:
-                size = min(rows, max(1, LARGEST // row))
-            level = self._options.compression
-            packed = {"compression": "gzip", "compression_opts": level, "shuffle": True}
-            made = group.create_dataset(
-                name,
-                (0, *rest),
-                like.dtype,
-                maxshape=(None, *rest),
-                # Where a chunk is a whole frame, one for each component: those that are zero take
-                # no space and no time, and the digits of others pack better among their own.
-                chunks=(max(1, size), *((1,) if len(rest) == 1 and size == rows else rest)),
-                fillvalue=_missing(place, name),
-                fletcher32=True,
-                **(packed if level and rows * row >= SMALL else {}),
-            )
-            unit = self.model.unit_system.label(vf.dimension_of_array(name))
-            if unit:
-                made.attrs["units"] = unit
-        group[name].resize(end * rows, axis=0)
-        if place.startswith("VTKHDF"):
-            offsets = self._offsets(place.removeprefix("VTKHDF/"), name)
-            known = len(offsets)
-            offsets.resize(end, axis=0)
-            offsets[known:] = np.arange(known, end) * rows
-        return group[name]
+            self._growing(group, name, "i8", data=np.arange(end) * rows)
+            return
+        offsets = group[name]
+        known = len(offsets)
+        offsets.resize(end, axis=0)
+        offsets[known:] = np.arange(known, end) * rows
 
     def _fill(self, series: Any, first: int, frames: list[Floats]) -> None:
         """Put frames into a series from frame number ``first`` on."""
