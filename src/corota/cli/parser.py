@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
@@ -17,6 +19,31 @@ exit codes:
   0 done   2 input   3 model   4 not converged   5 resource   6 file
   7 interrupted   64 command line   70 internal
 """
+
+
+def terminal_columns() -> int:
+    """Width of the terminal as ``shutil`` finds it, which would load modules for archives."""
+    try:
+        columns = int(os.environ["COLUMNS"])
+    except (KeyError, ValueError):
+        columns = 0
+    if columns <= 0:
+        try:
+            columns = os.get_terminal_size(sys.__stdout__.fileno()).columns  # type: ignore[union-attr]
+        except (AttributeError, ValueError, OSError):
+            columns = 0
+    return columns or 80
+
+
+class Help(argparse.HelpFormatter):
+    """Help of that width."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=terminal_columns() - 2)
+
+
+class Overview(Help, argparse.RawDescriptionHelpFormatter):
+    """The same, with line breaks as they are."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -441,13 +468,13 @@ def make_parser(words: Sequence[str]) -> Parser:
         prog="corota",
         description="Co-rotational planar finite elements: solve decks, draw and convert results.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=Overview,
     )
     parser.add_argument("--version", action=Version, nargs=0, help="print the version")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name in [command] if alone else COMMANDS:
         text, add_arguments = COMMANDS[name]
-        made = commands.add_parser(name, help=text, description=text)
+        made = commands.add_parser(name, help=text, description=text, formatter_class=Help)
         if name == command:
             made.add_argument("--json", action="store_true", help="JSON lines on standard output")
             made.add_argument("-q", "--quiet", action="store_true", help="errors only")

@@ -3,10 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import shutil
 import time
 from typing import TYPE_CHECKING
 
+from corota.cli.parser import terminal_columns
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ class Progress(BaseObserver):
         if share > 0.0:
             left = "  left " + duration((now - self._step_begin) * (1.0 - share) / share)
         text = f" step {self._number}/{self._total} {bar} {share:4.0%}  {self._text}{left}"
-        width = shutil.get_terminal_size().columns - 1
+        width = terminal_columns() - 1
         self.terminal.status(text[:width])
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import threading
 import time
 import warnings
@@ -79,19 +78,20 @@ class Stop(BaseObserver):
 @contextlib.contextmanager
 def _second(numbers: set[int]) -> Iterator[None]:
     """End the process soon after a second signal: Python's handlers wait for the core."""
-    ears, mouth = socket.socketpair()
-    mouth.setblocking(False)
+    ear, mouth = os.pipe()
+    if os.name == "posix":
+        os.set_blocking(mouth, False)
     try:
-        before = signal.set_wakeup_fd(mouth.fileno(), warn_on_full_buffer=False)
+        before = signal.set_wakeup_fd(mouth, warn_on_full_buffer=False)
     except ValueError:  # not in the main thread
-        ears.close()
-        mouth.close()
+        os.close(ear)
+        os.close(mouth)
         yield
         return
 
     def listen() -> None:
         heard = 0
-        while got := ears.recv(1):
+        while got := os.read(ear, 1):
             heard += got[0] in numbers
             if heard > 1:
                 time.sleep(1.0)
@@ -103,9 +103,9 @@ def _second(numbers: set[int]) -> Iterator[None]:
         yield
     finally:
         signal.set_wakeup_fd(before)
-        mouth.close()
+        os.close(mouth)
         listener.join(5.0)
-        ears.close()
+        os.close(ear)
 
 
 def run(args: Any, terminal: Terminal) -> int:

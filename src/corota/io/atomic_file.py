@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import time
 from pathlib import Path
 from typing import IO
 
 from corota.errors import FileError
+from corota.lazy import lazy
+
+copyfile = lazy("shutil:copyfile")
 
 #: Age of a file from which each commit is flushed before it is renamed [s]; a run that is
 #: younger is cheap to repeat.
@@ -69,7 +71,7 @@ class AtomicFile:
         try:
             self.hidden.unlink(missing_ok=True)
             if keep:
-                shutil.copyfile(path, self.hidden)
+                copyfile(path, self.hidden)
                 self._size = path.stat().st_size
                 self._shown = True
             else:
@@ -152,7 +154,7 @@ class AtomicFile:
     def _swap(self) -> None:
         if not self._shown:
             os.replace(self.hidden, self.path)
-            shutil.copyfile(self.path, self.hidden)
+            copyfile(self.path, self.hidden)
             self._behind = []
             self._shown = True
             return
@@ -161,7 +163,7 @@ class AtomicFile:
             os.link(self.path, self._spare)
         except OSError:  # a file system without hard links: the copy costs more, not safety
             os.replace(self.hidden, self.path)
-            shutil.copyfile(self.path, self.hidden)
+            copyfile(self.path, self.hidden)
             self._behind = []
             return
         os.replace(self.hidden, self.path)
