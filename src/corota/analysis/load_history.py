@@ -41,7 +41,7 @@ class LoadHistory:
         share = np.where(self.removed, removal, ramp) if some else ramp
         out: Floats = self.begin + share * (self.end - self.begin)
         if len(factors) > 1:
-            named = self.amplitude > 0
+            named = self.amplitude.nonzero()[0]
             out[named] = self.end[named] * factors[self.amplitude[named]]
         return out
 

@@ -135,10 +135,11 @@ class NewmarkMotion(Motion):
         self._before = [f * before for f in (0.5 / s.beta - 1.0, 1.0 - s.gamma, s.alpha_m)]
         self._balance = s.alpha_f * start.a
         self._constrained = driven.constrained.nonzero()[0]
+        self._prescribed = [x[self._constrained] for x in (driven.u, driven.v, driven.a)]
 
     def _rates(self, u: Floats) -> tuple[Floats, Floats, Floats]:
         """Velocity, acceleration and the filtered acceleration."""
-        s, dt, b, driven = self.scheme, self.dt, self.start, self.driven
+        s, dt, b = self.scheme, self.dt, self.start
         carried = (u - b.u - self._drift) / (s.beta * dt * dt) - self._before[0]
         v = b.v + dt * (self._before[1] + s.gamma * carried)
         a = carried
@@ -151,11 +152,13 @@ class NewmarkMotion(Motion):
         if len(constrained):
             # Newton's method moves prescribed dofs in its first correction: until then the rates
             # differ by what the tangent takes them for.
-            rest = u[constrained] - driven.u[constrained]
-            v[constrained] = driven.v[constrained] + self.c_v * rest
-            a[constrained] = driven.a[constrained] + self.c_a * rest
+            u_end, v_end, a_end = self._prescribed
+            rest = u[constrained] - u_end
+            v[constrained] = v_end + self.c_v * rest
+            a[constrained] = a_end + self.c_a * rest
         self.system.constraints.complete_rates(u, v, a)
-        carried[eliminated] = a[eliminated]
+        if len(eliminated):
+            carried[eliminated] = a[eliminated]
         carried[constrained] = a[constrained]
         return v, a, carried
 
