@@ -16,6 +16,7 @@ import pytest
 
 import corota
 from corota import cli
+from corota.cli.parser import COMMANDS
 from corota.io.result_reader import read_results
 
 DECK = Path(__file__).parent / "deck.inp"
@@ -95,6 +96,32 @@ def test_wrong_command_line_is_64_with_a_pointer(arguments, words, capsys):
     error = capsys.readouterr().err
     assert words in error
     assert "--help" in error
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--help", "run"], ["-h", "plot", "x"]])
+def test_the_help_lists_every_command(arguments, capsys):
+    assert cli.main(arguments) == 0
+    shown = capsys.readouterr().out
+    for name, (text, _) in COMMANDS.items():
+        assert re.search(rf"^    {name} +{re.escape(text[:20])}", shown, re.MULTILINE), name
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_a_command_lists_its_arguments(name, capsys, monkeypatch):
+    """Also after an option of no command, which is refused only where a command runs."""
+    monkeypatch.setenv("COLUMNS", "200")
+    assert cli.main([name, "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith(f"usage: corota {name} [-h]")
+    assert COMMANDS[name][0] in shown
+    assert "--json" in shown
+    assert cli.main(["--nonsense", name, "--help"]) == 0
+    assert capsys.readouterr().out == shown
+
+
+def test_an_option_before_the_command_is_refused(capsys):
+    assert cli.main(["--json", "info", "a.inp"]) == 64
+    assert "unrecognized arguments: --json" in capsys.readouterr().err
 
 
 def test_bad_deck_is_2_with_file_line_and_word(tmp_path, here, deck):
