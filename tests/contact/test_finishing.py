@@ -107,20 +107,19 @@ def test_a_ring_that_yields_is_found_between_the_gap_and_the_first_collapse():
 
 
 def test_bodies_drift_where_no_relaxed_position_balances():
-    # A yielding ring between plates, held by friction alone: 255 iterations, 64 of them in drift.
+    # A yielding clip over a rigid fillet: 1965 iterations, 248 of them in drift.
     notes = []
 
     class Log(BaseObserver):
         def iteration(self, info):
             notes.append(info.note)
 
-    given = problem(892, size=0.5)
+    given = problem(616, size=0.5)
     results = ct.solve(given.model, given.steps, threads=1, observers=[Log()])
-    assert results.times[-1] == pytest.approx(1.0)
+    assert results.times[-1] == pytest.approx(sum(step.period for step in given.steps))
     assert max(frame.scalars.get("residual", 0.0) for frame in results.frames[1:]) < 1e-8
     assert any("relaxation, drift" in note for note in notes)
     assert "relaxation, no springs" in notes  # the state that is accepted has none
-    assert any("this is the first equilibrium" in note for note in results.notes)
 
 
 def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():
