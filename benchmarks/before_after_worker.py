@@ -292,6 +292,10 @@ def do(recorder: Recorder, part: str, name: str) -> Any:
         return list(CASES if name == "speed" else MODELS)
     if part == "speed":
         return timed(name)
+    if part == "torture":
+        from benchmarks.contact_torture import run
+
+        return run(*json.loads(name))
     recorder.runs = []
     found: list[tuple[str, float]] = []
     error = ""

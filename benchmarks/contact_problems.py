@@ -13,7 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota as ct
-from corota.model.loads import Fixed
+
+try:
+    from corota.model.loads import Fixed
+except ImportError:  # the first version, for benchmarks.contact_before_after
+    from corota.loads import Fixed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
