@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 import corota as ct
+from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import Grid
-from corota.io.vtk.vtkhdf import cell_data, point_data
 
 #: Elements along and across by number of degrees of freedom.
 SIZES = {256: (31, 3), 41000: (512, 39), 1000000: (2500, 199)}

@@ -12,8 +12,8 @@ import pytest
 
 import corota as ct
 from corota.examples.models import hinge
+from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import Grid
-from corota.io.vtk.vtkhdf import cell_data, point_data
 
 
 def tool_on_two_sections() -> ct.Model:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.io.result_reader import FileResults
-from corota.io.vtk.vtkhdf import point_data
+from corota.io.vtk.frame_arrays import point_data
 from corota.report.chunk import rounded
 from corota.results import variables as vf
 

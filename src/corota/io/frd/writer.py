@@ -27,7 +27,7 @@ from corota.io.frd.layout import (
 )
 from corota.io.requests import in_force
 from corota.io.tables.dat import internal_force
-from corota.io.vtk.vtkhdf import point_data
+from corota.io.vtk.frame_arrays import point_data
 from corota.results.averaging import Averaging
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 

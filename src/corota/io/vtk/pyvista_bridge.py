@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import topology
-from corota.io.vtk.vtkhdf import cell_data, point_data
 from corota.results.arrays import require
 
 if TYPE_CHECKING:

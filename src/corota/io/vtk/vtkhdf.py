@@ -12,24 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.parallel.partition import process_of_cells
-from corota.arrays import distinct
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
 from corota.io.checksum import fletcher32, store
 from corota.io.contacts import store_contacts
 from corota.io.description import store_description
 from corota.io.file_options import FileOptions, wanted
-from corota.io.finite import check, check_frame
+from corota.io.finite import check_frame
+from corota.io.vtk.frame_arrays import cell_data, cells_and_nodes, halved, point_data, scalars
 from corota.io.vtk.grid import Grid
 from corota.io.vtk.packing import packed
 from corota.results import variables as vf
-from corota.results.averaging import (
-    AVERAGING,
-    Averaging,
-    cell_mean,
-    cell_weights,
-    section_of_cells,
-)
+from corota.results.averaging import AVERAGING, Averaging
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,105 +45,12 @@ SMALL = 4096
 LARGEST = 1 << 30
 #: Versions of the file format: headers with checksums, and no mark in files that are being written.
 FORMAT = ("v108", "v108")
-_REACTION = ("reaction", "reaction moment")
-_EXTERNAL = ("external force", "external moment")
 #: The array that other programs need to turn components back into the frames of elements.
 TURN = "frame rotation"
 
 
-def six(tensor: Floats) -> Floats:
-    """Rows xx, yy, zz, xy as xx, yy, zz, xy, yz, xz, the order ParaView names itself."""
-    return np.concatenate([tensor, np.zeros((*tensor.shape[:-1], 2))], axis=-1)
-
-
-def point_data(frame: Frame, averaging: Averaging) -> dict[str, Floats]:
-    """Arrays at the nodes by the names they have in files."""
-    n = len(frame.U)
-    data = {
-        "displacement": np.column_stack([frame.U, np.zeros(n)]),
-        "rotation": frame.UR,
-        "reaction": np.column_stack([frame.RF[:, :2], np.zeros(n)]),
-        "reaction moment": frame.RF[:, 2],
-        "external force": np.column_stack([frame.F[:, :2], np.zeros(n)]),
-        "external moment": frame.F[:, 2],
-    }
-    for attribute, names in (("RF", _REACTION), ("F", _EXTERNAL)):
-        if attribute in frame.absent:
-            data = {name: values for name, values in data.items() if name not in names}
-    for title, moving in (("velocity", frame.V), ("acceleration", frame.A)):
-        if moving is not None:
-            data[title] = np.column_stack([moving[:, :2], np.zeros(n)])
-            data[f"angular {title}"] = moving[:, 2]
-    if frame.C is not None:
-        data |= dict(zip(vf.CONTACT, frame.C.T, strict=True))
-    for pair, values in frame.pairs.items():
-        data |= {f"{n}: {pair}": v for n, v in zip(vf.CONTACT, values.T, strict=True)}
-    if not frame.fields and frame.averages:
-        return data | dict(frame.averages)
-    stored = sorted({k for b in frame.fields for k in b.values} - {"MISES"})
-    mean = averaging.average(frame.fields, stored)
-    if "S" in mean:
-        data["stress"] = six(mean["S"])
-        data["principal stress"] = vf.principal(mean["S"])
-        data["Mises"] = vf.mises(mean["S"])
-    if "E" in mean:
-        data["strain"] = six(mean["E"])
-        data["principal strain"] = vf.principal(mean["E"], 0.5)
-    rest = {k: v for k, v in mean.items() if k not in ("S", "E")}
-    return data | {k: six(v) if k in vf.TENSORS else v for k, v in rest.items()}
-
-
-def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
-    """Volume averages over the cells, by the names they have in files; rows of all cells."""
-    if not frame.fields and frame.cell_averages:
-        return dict(frame.cell_averages)
-    data: dict[str, Floats] = {"frame rotation": np.zeros(n_cells)}
-    for block in frame.fields:
-        data["frame rotation"][block.cells] = block.frame_rotation
-        weights = cell_weights(block)
-        for name in block.values:
-            if name == "MISES":
-                continue
-            mean = cell_mean(block, name, weights)
-            label = {"S": "stress", "E": "strain"}.get(name, name)
-            if name in vf.TENSORS:
-                mean = six(mean)
-            data.setdefault(f"cell {label}", np.zeros((n_cells, *mean.shape[1:])))
-            data[f"cell {label}"][block.cells] = mean
-            if name == "S":
-                data.setdefault("cell Mises", np.zeros(n_cells))
-                data["cell Mises"][block.cells] = vf.mises(mean[:, :4])
-    return data
-
-
-def _scalars(frame: Frame) -> dict[str, Floats]:
-    basic = {
-        "step": frame.step,
-        "increment": frame.increment,
-        "time": frame.time,
-        "step time": frame.step_time,
-        "load factor": frame.factor,
-    }
-    return {k: np.array([float(v)]) for k, v in (basic | frame.scalars).items()}
-
-
 def _section(group: int) -> str:
     return f"corota/sections/{group}"
-
-
-def _halved(frame: Frame, arrays: dict[str, Floats]) -> dict[str, Any]:
-    """Arrays of 4 bytes a number.
-
-    Raises
-    ------
-    CorotaError
-        If a number is too large for them.
-    """
-    with np.errstate(over="ignore"):
-        found = {name: values.astype(np.float32) for name, values in arrays.items()}
-    for name, values in found.items():
-        check(frame, f"{name} in single precision", values)
-    return found
 
 
 def _is_vtk(place: str) -> bool:
@@ -165,23 +66,6 @@ def _offsets(place: str) -> str:
 def _missing(place: str, name: str) -> float:
     """Fill value of an array that a frame does not have."""
     return np.nan if place == "corota/frames" and name in vf.UNKNOWN else 0.0
-
-
-def _groups(model: Model) -> dict[int, tuple[NDArray[np.bool_], Ints]]:
-    """Cells and nodes of each section group of planar elements."""
-    mesh, of_cells = model.mesh, section_of_cells(model)
-    planar = np.zeros(mesh.n_cells, dtype=bool)
-    for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
-        planar[offset : offset + len(cells)] = cells.kind.startswith(("tri", "quad"))
-    found = {}
-    for group in distinct(of_cells[planar]).tolist():
-        chosen = (of_cells == group) & planar
-        nodes = [
-            cells.nodes[chosen[offset : offset + len(cells)]].ravel()
-            for offset, cells in zip(mesh.offsets, mesh.cells, strict=False)
-        ]
-        found[int(group)] = chosen, distinct(np.concatenate(nodes))
-    return found
 
 
 class VtkhdfWriter:
@@ -222,7 +106,7 @@ class VtkhdfWriter:
         self._chosen = self._options.chosen(self._steps)
         self._twin = AtomicFile(path, keep=resume is not None)
         self._averaging = Averaging(model.mesh)
-        self._groups = _groups(model)
+        self._groups = cells_and_nodes(model)
         count = self._options.parts
         self._grid = Grid(model, sections, process_of_cells(model, count) if count > 1 else None)
         try:
@@ -403,8 +287,8 @@ class VtkhdfWriter:
             if self._options.points:
                 data[place] = block.values | {"position": block.points}
         if self._options.single:
-            data = {place: _halved(frame, arrays) for place, arrays in data.items()}
-        data["corota/frames"] = _scalars(frame)
+            data = {place: halved(frame, arrays) for place, arrays in data.items()}
+        data["corota/frames"] = scalars(frame)
         self._taken.append((frame.time, data))
 
     def _of_sections(self, frame: Frame) -> dict[str, dict[str, Floats]]:

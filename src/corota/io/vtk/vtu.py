@@ -16,8 +16,8 @@ import numpy as np
 
 from corota.io.atomic_file import full, replace_text, sync
 from corota.io.finite import check_frame
+from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import Grid
-from corota.io.vtk.vtkhdf import cell_data, point_data
 from corota.results import variables as vf
 from corota.results.averaging import Averaging
 
