@@ -86,3 +86,21 @@ def test_a_strip_that_falls_in_fixed_increments_does_not_come_out_below(
     lowest = (mesh.points[:, 1] + results.frames[-1].U[:, 1]).min()
     assert lowest > -1e-6 or scheme == "energy_momentum"
     assert lowest > -HIGH
+
+
+@pytest.mark.parametrize("scheme", ["hht", "energy_momentum"])
+def test_a_block_that_leaves_a_thin_plate_in_large_increments_is_not_refused(scheme: str) -> None:
+    plate = ct.mesh.rectangle(LENGTH, HIGH, 8, 1)
+    block = ct.mesh.rectangle(1.0, 0.5, 2, 1, origin=(1.5, HIGH + 0.01))
+    mesh = ct.mesh.assembly(plate=plate, block=block)
+    mesh.edge_sets["around"] = np.concatenate(
+        [mesh.edge_sets[f"plate.{side}"] for side in ("bottom", "right", "top", "left")]
+    )
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=E, nu=0.3, rho=1.0))
+    model.fix("plate.left")
+    model.contact("block.bottom", "around", name="c")
+    model.velocity("block", y=1.0)
+    results = ct.solve(model, ct.Dynamic(scheme=scheme, increments=5, period=15.0), threads=1)  # type: ignore[arg-type]
+    last = results.frames[-1].U[mesh.node_sets["block"], 1]
+    assert last == pytest.approx(np.full(len(last), 15.0), rel=1e-6)

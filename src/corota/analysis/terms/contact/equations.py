@@ -10,6 +10,7 @@ of contact; the set is then constant.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -23,11 +24,11 @@ from corota.analysis.terms.contact.kink_correction import along_kink, keeps_kink
 from corota.analysis.terms.contact.kinks import Kink, Sides, again, both_sides
 from corota.analysis.terms.contact.linearization import linearized
 from corota.analysis.terms.contact.messages import explained
-from corota.analysis.terms.contact.pair import CLOSED, OPEN
+from corota.analysis.terms.contact.pair import CLOSED
 from corota.analysis.terms.contact.pivoting import pivoted
 from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
 from corota.analysis.terms.contact.state_choice import chosen
-from corota.analysis.terms.contact.tunneling import passed
+from corota.analysis.terms.contact.tunneling import outside, passed
 from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
@@ -355,16 +356,10 @@ class ContactEquations:
                 "the equilibrium found is far from the last one: the bodies would jump in this "
                 "increment"
             )
-        committed = None if self.contact_term.at is None else self.contact_term.at.states
         for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
-            outside = np.zeros(pair.n)
-            if since is None:
-                # An open node may touch, or be behind where a scheme closes gaps after an impact.
-                # A closed one may leave its surface around a corner.
-                was_open = committed[k] == OPEN if committed else np.ones(pair.n, bool)
-                behind = pair.depth if moves and np.isfinite(pair.depth) else pair.noise
-                outside[was_open] = -behind
-            found = passed(pair, old, new, pair.states(terms, p, q), terms, outside)
+            # In relaxation, nodes may be in contact that were open at the start.
+            starts = None if since is not None else partial(outside, self.contact_term, k, moves)
+            found = passed(pair, old, new, pair.states(terms, p, q), terms, starts)
             if len(found):
                 return (
                     f"node {self.contact_term.label(pair, int(found[0]))} passed through the "

@@ -13,12 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, SLIPPING
+from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
+    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair, Terms
 
     Floats = NDArray[np.float64]
@@ -38,7 +41,7 @@ def passed(
     new: Floats,
     state: NDArray[np.int8],
     terms: Terms,
-    outside: Floats,
+    starts: Callable[[], Floats] | None,
 ) -> Ints:
     """Constraints whose node crossed the other side from outside to inside and is open.
 
@@ -51,8 +54,8 @@ def passed(
         States at the end.
     terms : Terms
         Gaps at the end.
-    outside : ndarray, shape (n,)
-        Distance from the other side from which a node starts outside; not positive.
+    starts : callable or None
+        See :func:`outside`; None: on the other side itself.
     """
     if pair.tied:
         return np.zeros(0, np.int64)
@@ -71,18 +74,34 @@ def passed(
         return np.zeros(0, np.int64)
     closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
     chosen = np.flatnonzero(far & ~closed)
+    start = np.zeros(pair.n) if starts is None else starts()
     near = old[nodes[chosen]], new[nodes[chosen]]
-    chosen = chosen[_behind_any(first, last, *near, outside[chosen])]
+    chosen = chosen[_behind_any(first, last, *near, start[chosen])]
     hit = [
         k
         for k in chosen
-        if time_of_crossing(first, last, ends, old, new, int(nodes[k]), outside[k]) < math.inf
+        if time_of_crossing(first, last, ends, old, new, int(nodes[k]), start[k]) < math.inf
     ]
     return np.array(hit, np.int64)
 
 
+def outside(term: ContactTerm, k: int, moves: bool) -> Floats:
+    """Distance from the other side from which each node of pair `k` starts outside, shape (n,).
+
+    An open node may touch. In motion (`moves`) it may be behind, where a scheme closes gaps after
+    the impact. A closed one may leave its surface around a corner.
+    """
+    pair, committed = term.pairs[k], None if term.at is None else term.at.states
+    start = np.full(pair.n, -pair.noise)
+    if moves and math.isfinite(pair.depth):
+        start[pair.gaps_at(term, k, term.positions(term.u)).gap < 0.0] = -pair.depth
+    if committed:
+        start[committed[k] != OPEN] = 0.0
+    return start
+
+
 def _behind_any(
-    first: Floats, last: Floats, old: Floats, new: Floats, outside: Floats
+    first: Floats, last: Floats, old: Floats, new: Floats, start: Floats
 ) -> NDArray[np.bool_]:
     """Nodes that change from the outer to the inner side of the line through any piece.
 
@@ -95,7 +114,7 @@ def _behind_any(
         before, after = (
             _side(pieces[None], x[part, None, :2]) for pieces, x in ((first, old), (last, new))
         )
-        out[part] = ((before > outside[part, None]) & (after < 0.0)).any(axis=1)
+        out[part] = ((before > start[part, None]) & (after < 0.0)).any(axis=1)
     return out
 
 
@@ -155,16 +174,16 @@ def time_of_crossing(
     old: Floats,
     new: Floats,
     node: int,
-    outside: float = 0.0,
+    start: float = 0.0,
 ) -> float:
     """Share of the way after which a node goes through a piece from outside; inf if it does not.
 
-    All move evenly. The outer side begins at the distance `outside`.
+    All move evenly. The outer side begins at the distance `start`.
     """
     own = (ends == node).any(axis=1)
     before, after = first[~own], last[~own]
     a, b = _side(before, old[node, :2]), _side(after, new[node, :2])
-    through = (a > outside) & (b < 0.0)
+    through = (a > start) & (b < 0.0)
     if not through.any():
         return math.inf
     share = np.maximum(a[through], 0.0) / (np.maximum(a[through], 0.0) - b[through])
@@ -176,4 +195,4 @@ def time_of_crossing(
     return float(np.min(share[(along >= 0.0) & (along <= 1.0)], initial=math.inf))
 
 
-__all__ = ["UNSEEN", "other_side", "passed", "time_of_crossing"]
+__all__ = ["UNSEEN", "other_side", "outside", "passed", "time_of_crossing"]
