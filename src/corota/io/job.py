@@ -242,14 +242,19 @@ class JobFiles(BaseObserver):
         printed = any(o.kind.endswith("print") for s in steps for o in s.outputs)
         if printed or any(s.procedure in ("buckle", "frequency") for s in steps):
             endings.insert(0, "dat")
-        for ending in endings:
-            self._text[ending] = TextFile(self._path(name, ending), keep=resumed is not None)
-        self._csv = CsvWriter(self._path(name, "csv"), model.unit_system)
-        if resumed is None:
-            self._text["sta"].append(STA_HEAD)
-            self._text["cvg"].append(CVG_HEAD)
-        else:
-            self._take_up(resumed)
+        with contextlib.ExitStack() as opened:  # closed where one of them cannot be continued
+            for ending in endings:
+                text = TextFile(self._path(name, ending), keep=resumed is not None)
+                self._text[ending] = text
+                opened.callback(text.close)
+            self._csv = CsvWriter(self._path(name, "csv"), model.unit_system)
+            opened.callback(self._csv.close)
+            if resumed is None:
+                self._text["sta"].append(STA_HEAD)
+                self._text["cvg"].append(CVG_HEAD)
+            else:
+                self._take_up(resumed)
+            opened.pop_all()
         self._big: list[Stream] = []
         big = [(form, self._path(name, form.partition("-")[0])) for form in self._formats]
         self._closed = False
