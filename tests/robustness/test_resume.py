@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import gc
+import io
 import os
 import shutil
 import signal
@@ -183,7 +184,8 @@ def test_results_shorter_than_the_checkpoint_says_are_refused(done, tmp_path):
     (folder / "beam.sta").write_text("")
     with pytest.raises(FileError, match=r"beam\.sta: 0 bytes"):
         ct.resume(folder / "beam", threads=1)
-    gc.collect()  # files that were left open would warn here
+    files = [file for file in gc.get_objects() if isinstance(file, io.FileIO)]
+    assert not [f.name for f in files if not f.closed and str(tmp_path) in str(f.name)]
 
 
 def test_two_runs_in_one_folder(tmp_path):
