@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 
     from corota.model.model import Model
 
-#: Seconds that one run may take: of the processor, and by the clock of a busy machine.
-LIMIT, CLOCK = 10, 120.0
+#: Seconds that one run may take: of the processor, and by the clock of a busy machine. One deck of
+#: two elements tries its contact for 25 s before it is given up.
+LIMIT, CLOCK = 60, 240.0
 #: Exit codes that a run may end with.
 CODES = {0, 2, 3, 4, 5, 6}
 #: Largest output [byte].
