@@ -9,7 +9,7 @@ refused.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.pair import Pair, Terms
 
     Floats = NDArray[np.float64]
@@ -85,7 +84,7 @@ def passed(
     return np.array(hit, np.int64)
 
 
-def outside(term: ContactTerm, k: int, moves: bool) -> Floats:
+def outside(term: Any, k: int, moves: bool) -> Floats:
     """Distance from the other side from which each node of pair `k` starts outside, shape (n,).
 
     An open node may touch. In motion (`moves`) it may be behind, where a scheme closes gaps after
