@@ -15,6 +15,8 @@ const MAX_LOCAL: usize = 50;
 /// Local step, relative to the largest local dof, below which one linear correction is exact
 /// to round-off (its error is the square of this).
 const LOCAL_STEP: f64 = 1e-8;
+/// Local step, relative to the element, that is zero: the work along smaller ones may underflow.
+const ZERO_STEP: f64 = 1e-100;
 
 /// `K -= (L^-1 C)^T D^-1 (L^-1 C)`, blocks `a <= b`.
 #[inline(always)]
@@ -112,7 +114,7 @@ where
         let better = along.lt(start.scale(-OVERSHOT));
         let small = T::and(better, largest.lt(tolerance));
         let held = settled;
-        settled = T::or(settled, small);
+        settled = T::or(settled, T::or(small, largest.lt(extent.scale(ZERO_STEP))));
         let share = T::select(radius.lt(largest), radius / largest, T::one());
         let shorter = start / (start - along);
         let shorter = T::select(shorter.lt(T::real(0.7)), shorter, T::real(0.7));
