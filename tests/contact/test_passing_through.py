@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from corota.analysis.terms.contact.tunneling import times_of_crossing
 
 LENGTH, HIGH, E, DEEP = 4.0, 0.05, 1000.0, 0.2
 #: Left end of the plate, beside a node of the strip.
@@ -53,6 +54,29 @@ def test_a_plate_presses_a_thin_strip_in_any_increments(
     cantilever = 3.0 * E * HIGH**3 / 12.0 * (DEEP - gap)
     last = START if method == "node_to_segment" else START + 0.25
     assert 0.97 * cantilever / last**3 < -force < 1.03 * cantilever / START**3
+
+
+@pytest.mark.parametrize("second", [{"increments": 1}, {}, {"smallest_increment": 0.9}])
+@pytest.mark.parametrize("before", [None, {"increments": 1}, {}])
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("gap", [0.0, 0.01])
+def test_a_plate_that_touches_or_rests_presses_in_any_step(
+    gap: float, method: str, before: dict[str, float] | None, second: dict[str, float]
+) -> None:
+    strip = ct.mesh.rectangle(LENGTH, HIGH, 8, 1)
+    plate = ct.mesh.add_node(strip, 2.0, 0.5, "plate")
+    master = ct.RigidCurve.line((5.0, HIGH + gap), (START, HIGH + gap), plate)
+    model = ct.Model(strip)
+    model.section("all", element="Q4I", material=ct.Elastic(E=E, nu=0.0))
+    model.fix("left")
+    model.contact("top", master, method=method, name="c")  # type: ignore[arg-type]
+    model.fix("plate", x=0.0, y=0.0, rotation=True)
+    step = ct.Static(**second)  # type: ignore[arg-type]
+    step.fix("plate", y=-DEEP)
+    rest = [] if before is None else [ct.Static(**before)]  # type: ignore[arg-type]
+    force = ct.solve(model, [*rest, step], threads=1).history("c: force y").values[-1]
+    assert force == pytest.approx(press(gap, 25, method, "rigid").history("c: force y").values[-1])
+    assert force < 0.0
 
 
 @pytest.mark.parametrize("element", ["Q8R", "Q4D"])
@@ -104,3 +128,36 @@ def test_a_block_that_leaves_a_thin_plate_in_large_increments_is_not_refused(sch
     results = ct.solve(model, ct.Dynamic(scheme=scheme, increments=5, period=15.0), threads=1)  # type: ignore[arg-type]
     last = results.frames[-1].U[mesh.node_sets["block"], 1]
     assert last == pytest.approx(np.full(len(last), 15.0), rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_crossings_found_are_those_of_every_node_with_every_piece(seed: int) -> None:
+    """Random motions; the pieces do not turn, so that the time is exact."""
+    rng = np.random.default_rng(seed)
+    count, drift = 60, 10.0 ** rng.uniform(-1, 1)
+    start = rng.uniform(size=(40, 2))
+    first = np.stack([start, start + 0.1 * rng.standard_normal(start.shape)], axis=1)
+    move = drift * rng.standard_normal(2)
+    last = first + move + 0.01 * rng.standard_normal((40, 1, 2))  # without rotation: exact
+    old, new = np.zeros((count, 3)), np.zeros((count, 3))
+    old[:, :2] = rng.uniform(size=(count, 2))
+    new[:, :2] = old[:, :2] + move + 0.2 * rng.standard_normal((count, 2))
+    ends = np.full((40, 2), -1)
+    found = times_of_crossing(first, last, ends, old, new, np.arange(count), np.zeros(count))
+    for k in range(count):
+        least = np.inf
+        for p in range(40):
+            a, b = first[p]
+            edge = b - a
+            x = old[k, :2] - a
+            way = new[k, :2] - old[k, :2] - (last[p, 0] - a)
+            normal = np.array([edge[1], -edge[0]])  # the outer side is on the right
+            if x @ normal <= 0.0 or (x + way) @ normal >= 0.0:
+                continue
+            share = (x @ normal) / -(way @ normal)
+            if 0.0 <= (x + share * way) @ edge <= edge @ edge:
+                least = min(least, share)
+        assert found[k] == pytest.approx(least), k
+    assert np.isfinite(found).any()
+    none = np.zeros(0, np.int64)
+    assert not len(times_of_crossing(first, last, ends, old, new, none, np.zeros(0)))

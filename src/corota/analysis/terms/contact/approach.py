@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.terms.contact.pair import COVERED
-from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, time_of_crossing
+from corota.analysis.terms.contact.tunneling import UNSEEN, other_side, times_of_crossing
 from corota.mesh.parts import part_of_nodes
 
 if TYPE_CHECKING:
@@ -177,14 +177,11 @@ def _time_in_reach(
     nodes = nodes[np.hypot(*(move[nodes] - mean).T) + spread > UNSEEN * pair.reach]
     if not len(nodes):
         return np.inf
-    both = np.concatenate([first.reshape(-1, 2), last.reshape(-1, 2)])
-    paths = np.stack([x[nodes, :2], new[nodes, :2]])
-    low, high = paths.min(axis=0), paths.max(axis=0)
-    nodes = nodes[((low <= both.max(axis=0)) & (high >= both.min(axis=0))).all(axis=1)]
-    times = [time_of_crossing(first, last, ends, x, new, int(k)) for k in nodes]
-    when = min(times, default=np.inf)
+    times = times_of_crossing(first, last, ends, x, new, nodes, np.zeros(len(nodes)))
+    when = float(times.min())
     if not np.isfinite(when):
         return np.inf
+    nodes = nodes[np.isfinite(times)]
     # Half of the distance, or all up to the reach, within which gaps and closing velocities are
     # known.
     way = float(np.hypot(*(move[nodes] - mean).T).max())

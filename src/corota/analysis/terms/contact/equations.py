@@ -357,8 +357,7 @@ class ContactEquations:
                 "increment"
             )
         for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
-            # In relaxation, nodes may be in contact that were open at the start.
-            starts = None if since is not None else partial(outside, self.contact_term, k, moves)
+            starts = partial(outside, self.contact_term, k, moves)
             found = passed(pair, old, new, pair.states(terms, p, q), terms, starts)
             if len(found):
                 return (

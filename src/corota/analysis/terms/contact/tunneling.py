@@ -17,7 +17,7 @@ from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -40,7 +40,7 @@ def passed(
     new: Floats,
     state: NDArray[np.int8],
     terms: Terms,
-    starts: Callable[[], Floats] | None,
+    starts: Callable[[], Floats],
 ) -> Ints:
     """Constraints whose node crossed the other side from outside to inside and is open.
 
@@ -53,8 +53,8 @@ def passed(
         States at the end.
     terms : Terms
         Gaps at the end.
-    starts : callable or None
-        See :func:`outside`; None: on the other side itself.
+    starts : callable
+        See :func:`outside`.
     """
     if pair.tied:
         return np.zeros(0, np.int64)
@@ -73,48 +73,24 @@ def passed(
         return np.zeros(0, np.int64)
     closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
     chosen = np.flatnonzero(far & ~closed)
-    start = np.zeros(pair.n) if starts is None else starts()
-    near = old[nodes[chosen]], new[nodes[chosen]]
-    chosen = chosen[_behind_any(first, last, *near, start[chosen])]
-    hit = [
-        k
-        for k in chosen
-        if time_of_crossing(first, last, ends, old, new, int(nodes[k]), start[k]) < math.inf
-    ]
-    return np.array(hit, np.int64)
+    share = times_of_crossing(first, last, ends, old, new, nodes[chosen], starts()[chosen])
+    return chosen[share < math.inf]
 
 
 def outside(term: Any, k: int, moves: bool) -> Floats:
     """Distance from the other side from which each node of pair `k` starts outside, shape (n,).
 
-    An open node may touch. In motion (`moves`) it may be behind, where a scheme closes gaps after
-    the impact. A closed one may leave its surface around a corner.
+    A node may touch. In motion (`moves`) an open one may be behind, where a scheme closes gaps
+    after the impact.
     """
     pair, committed = term.pairs[k], None if term.at is None else term.at.states
     start = np.full(pair.n, -pair.noise)
     if moves and math.isfinite(pair.depth):
-        start[pair.gaps_at(term, k, term.positions(term.u)).gap < 0.0] = -pair.depth
-    if committed:
-        start[committed[k] != OPEN] = 0.0
+        behind = pair.gaps_at(term, k, term.positions(term.u)).gap < 0.0
+        if committed:
+            behind &= committed[k] == OPEN
+        start[behind] = -pair.depth
     return start
-
-
-def _behind_any(
-    first: Floats, last: Floats, old: Floats, new: Floats, start: Floats
-) -> NDArray[np.bool_]:
-    """Nodes that change from the outer to the inner side of the line through any piece.
-
-    The outer side begins at a distance for each.
-    """
-    out = np.zeros(len(old), bool)
-    step = max(1, AT_ONCE // len(first))
-    for at in range(0, len(old), step):
-        part = slice(at, at + step)
-        before, after = (
-            _side(pieces[None], x[part, None, :2]) for pieces, x in ((first, old), (last, new))
-        )
-        out[part] = ((before > start[part, None]) & (after < 0.0)).any(axis=1)
-    return out
 
 
 def _side(pieces: Floats, x: Floats) -> Floats:
@@ -166,32 +142,76 @@ def _carried(pieces: Floats, reference: Floats, at: Floats) -> Floats:
     return np.asarray(turned + at[:2])
 
 
-def time_of_crossing(
+def times_of_crossing(
     first: Floats,
     last: Floats,
     ends: Ints,
     old: Floats,
     new: Floats,
-    node: int,
-    start: float = 0.0,
-) -> float:
-    """Share of the way after which a node goes through a piece from outside; inf if it does not.
+    nodes: Ints,
+    start: Floats,
+) -> Floats:
+    """Shares of the way after which nodes go through a piece from outside; inf if they do not.
 
-    All move evenly. The outer side begins at the distance `start`.
+    All move evenly.
+
+    Parameters
+    ----------
+    first, last, ends : ndarray
+        See :func:`other_side`.
+    old, new : ndarray, shape (n_nodes, 3)
+        Positions at both ends of the increment.
+    nodes : ndarray of int, shape (k,)
+    start : ndarray, shape (k,)
+        Distance at which the outer side begins for each.
     """
-    own = (ends == node).any(axis=1)
-    before, after = first[~own], last[~own]
-    a, b = _side(before, old[node, :2]), _side(after, new[node, :2])
-    through = (a > start) & (b < 0.0)
-    if not through.any():
-        return math.inf
-    share = np.maximum(a[through], 0.0) / (np.maximum(a[through], 0.0) - b[through])
-    t = share[:, None]
-    p = before[through] + t[:, :, None] * (after[through] - before[through])
-    x = old[node, :2] + t * (new[node, :2] - old[node, :2])
-    d = p[:, 1] - p[:, 0]
-    along = ((x - p[:, 0]) * d).sum(axis=1) / (d * d).sum(axis=1)
-    return float(np.min(share[(along >= 0.0) & (along <= 1.0)], initial=math.inf))
+    out = np.full(len(nodes), math.inf)
+    x, y = old[nodes, :2], new[nodes, :2]
+    for k, piece in _near(first, last, x, y, np.maximum(-start, 0.0)):
+        a, b = _side(first[piece], x[k]), _side(last[piece], y[k])
+        through = (a > start[k]) & (b < 0.0) & (ends[piece] != nodes[k, None]).all(axis=1)
+        k, piece, a, b = k[through], piece[through], np.maximum(a[through], 0.0), b[through]
+        share = a / (a - b)
+        t = share[:, None]
+        met = first[piece] + t[:, :, None] * (last[piece] - first[piece])
+        hit = _beside(met, x[k] + t * (y[k] - x[k]))
+        # A node that starts on a piece may leave it around a corner.
+        hit &= (share > 0.0) | _beside(last[piece], y[k])
+        np.minimum.at(out, k[hit], share[hit])
+    return out
 
 
-__all__ = ["UNSEEN", "other_side", "outside", "passed", "time_of_crossing"]
+def _near(
+    first: Floats, last: Floats, x: Floats, y: Floats, margin: Floats
+) -> Iterator[tuple[Ints, Ints]]:
+    """Nodes and pieces whose ways may meet, by boxes that move with the mean of the pieces."""
+    if not len(x):
+        return
+    mean = (last - first).mean(axis=(0, 1))
+    last, y = last - mean, y - mean
+    low = np.minimum(first.min(axis=1), last.min(axis=1))
+    high = np.maximum(first.max(axis=1), last.max(axis=1))
+    below, above = np.minimum(x, y) - margin[:, None], np.maximum(x, y) + margin[:, None]
+    axis = int(np.argmax(np.ptp(low, axis=0)))
+    order = np.argsort(low[:, axis])
+    sorted_low, widest = low[order, axis], (high - low)[:, axis].max()
+    begin = np.searchsorted(sorted_low, below[:, axis] - widest)
+    count = np.searchsorted(sorted_low, above[:, axis], side="right") - begin
+    part = np.cumsum(count) // AT_ONCE
+    for number in range(int(part[-1]) + 1):
+        own = np.flatnonzero(part == number)
+        k = np.repeat(own, count[own])
+        before = np.cumsum(count[own]) - count[own]
+        piece = order[np.arange(len(k)) + np.repeat(begin[own] - before, count[own])]
+        meet = (low[piece] <= above[k]).all(axis=1) & (high[piece] >= below[k]).all(axis=1)
+        yield k[meet], piece[meet]
+
+
+def _beside(pieces: Floats, x: Floats) -> NDArray[np.bool_]:
+    """Whether the feet of points on the lines through pieces lie on these."""
+    d = pieces[:, 1] - pieces[:, 0]
+    along = ((x - pieces[:, 0]) * d).sum(axis=1) / (d * d).sum(axis=1)
+    return np.asarray((along >= 0.0) & (along <= 1.0))
+
+
+__all__ = ["UNSEEN", "other_side", "outside", "passed", "times_of_crossing"]
