@@ -11,7 +11,14 @@ import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
-from corota.analysis.procedures.stopping import at_limit, collapse, driven, explained
+from corota.analysis.procedures.stopping import (
+    at_limit,
+    collapse,
+    driven,
+    explained,
+    unstable,
+    ways,
+)
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
@@ -90,6 +97,8 @@ class StaticStepper(NewtonStepper):
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
         self.path_took_over = False
+        #: Where and why load control stalled.
+        self.stalled = ""
         blocks = loop.system.blocks
         #: Whether the stress of any material depends on the strain path.
         self.remembers = any(block.section.material.remembers for block in blocks)
@@ -208,6 +217,8 @@ class StaticStepper(NewtonStepper):
         softer = softer and not (self.step.at_limit == "stop" and self.may_relax())
         fixed = self.step.fixed_increments and self.step.at_limit == "stop"
         if not fixed and (end or (softer and control.attempt > STALLED)):
+            where = control.time / self.step.period
+            self.stalled = f". Load control stalled at load factor {where:.6g}: {outcome.reason}"
             self.path_took_over = self.go_along_path()
         return None
 
@@ -324,21 +335,24 @@ class StaticStepper(NewtonStepper):
                 increment=before,
                 takes_over=True,
                 rates=self.rates,
+                stalled=self.stalled,
             )
         except (ConvergenceError, SingularError, ModelError) as error:
             if state.u is not here:
                 # The states that the path found are kept: there the step stops.
                 factor = kept[-1]
                 said = str(error).removesuffix(". All converged increments are kept")
-                fails, rates = "", self.rates
+                fails, rates, stalled = "", self.rates, self.stalled
                 if resumed is not None and state.loop is not None:
-                    rates = state.loop["rates"]
-                if not driven(system, step, state):
+                    rates, stalled = state.loop["rates"], state.loop["stalled"]
+                moves = driven(system, step, state)
+                if not moves:
                     fails = collapse(system, number, factor, rates, said)
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
-                    f"{said}. All converged increments are kept"
+                    f"{said}{stalled}{unstable(state)}. All converged increments are kept; to "
+                    f"continue, {ways(moves)}"
                 ) from None
             return False
         state.counters["arc length took over"] = 1

@@ -32,23 +32,36 @@ def driven(system: System, step: Step, state: State) -> bool:
 
 def at_limit(system: System, step: Static, number: int, factor: float, state: State) -> str:
     """Message of a limit point."""
-    ways = []
-    if step.at_limit == "stop":
-        ways.append(
-            "follow the path (Static(path=ArcLength(...)) or at_limit='follow', *STATIC, RIKS)"
-        )
-    if not driven(system, step, state):
-        ways.append("prescribe a displacement instead of the load")
-    ways.append("compute the jump as dynamics")
-    forces = not driven(system, step, state)
+    moves = driven(system, step, state)
     yielding = ", with yielding (plastic collapse, unless its shape snaps)" * (
-        forces and _yields(system)
+        not moves and _yields(system)
     )
     return (
         f"limit point at load factor {factor:.6g} of step {number}{yielding}: the structure "
         "cannot carry more load in this equilibrium. The states up to it are kept; to continue, "
-        + (", ".join(ways[:-1]) + f", or {ways[-1]}" if len(ways) > 1 else ways[0])
+        f"{ways(moves, follow=step.at_limit == 'stop')}"
     )
+
+
+def ways(moves: bool, follow: bool = False) -> str:
+    """How to continue beyond a limit point or a jump.
+
+    Parameters
+    ----------
+    moves : bool
+        Whether supports drive the step.
+    follow : bool
+        Whether the step may follow its path.
+    """
+    found = []
+    if follow:
+        found.append(
+            "follow the path (Static(path=ArcLength(...)) or at_limit='follow', *STATIC, RIKS)"
+        )
+    if not moves:
+        found.append("prescribe a displacement instead of the load")
+    found.append("compute the jump as dynamics")
+    return ", ".join(found[:-1]) + f", or {found[-1]}" if len(found) > 1 else found[0]
 
 
 def collapse(
@@ -72,6 +85,16 @@ def collapse(
     return (
         f"plastic collapse: the limit load of step {number} is reached at load factor "
         f"{factor:.6g}{how}; yielding makes the structure a mechanism that cannot carry more"
+    )
+
+
+def unstable(state: State) -> str:
+    """Message on an unstable last equilibrium; empty if it is stable."""
+    if state.negative <= 0:
+        return ""
+    return (
+        f". The last equilibrium is unstable (negative pivots of the tangent: {state.negative}): "
+        "a real structure snaps or tips over before it"
     )
 
 
@@ -111,7 +134,9 @@ def explained(
     if outcome.at is not None:
         norms = system.residual_norms(outcome.at, outcome.u)
         where += f"; largest residual at {system.describe(norms.worst)}"
-    if outcome.negative > 0:
+    if state.negative > 0:
+        where += unstable(state) + instead
+    elif outcome.negative > 0:
         where += (
             f". The tangent has {outcome.negative} negative "
             f"pivot{'s' if outcome.negative > 1 else ''}: a limit or bifurcation point is just "
@@ -125,4 +150,4 @@ def explained(
     )
 
 
-__all__ = ["at_limit", "collapse", "driven", "explained"]
+__all__ = ["at_limit", "collapse", "driven", "explained", "unstable", "ways"]

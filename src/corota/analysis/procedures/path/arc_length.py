@@ -45,6 +45,7 @@ def path_step(
     increment: int = 0,
     takes_over: bool = False,
     rates: tuple[float, float] = (0.0, 0.0),
+    stalled: str = "",
 ) -> CriticalPoint | None:
     """Run a step, or the rest of one, along its path.
 
@@ -61,6 +62,8 @@ def path_step(
         Whether the step began by load control: its time then stays within the period.
     rates : tuple of float
         Displacement per time of load control before, for messages.
+    stalled : str
+        Where and why load control stalled, for messages.
 
     Returns
     -------
@@ -77,7 +80,7 @@ def path_step(
     loop.system.conditions.check_proportional()
     stepper = PathStepper(loop, factor, increment)
     stepper.takes_over = takes_over
-    stepper.rates = rates
+    stepper.rates, stepper.stalled = rates, stalled
     return stepper.run(path)
 
 
@@ -109,7 +112,7 @@ class PathStepper:
         self.along = path_system(system, state.notes)
         #: The critical point that was found last, as the path and as results know it.
         self.located: tuple[Critical, CriticalPoint] | None = None
-        self.rates = (0.0, 0.0)
+        self.rates, self.stalled = (0.0, 0.0), ""
         self.follower: BranchTracer
         self.limit: CriticalPoint | None = None
 
@@ -121,17 +124,15 @@ class PathStepper:
             self._resume()
         else:
             self.follower = self._tracer(self._start(), self._plan(path))
-        stopped = f"step {self.loop.number} stopped on its path"
         try:
             self.loop.run(self)
         except PathStalled as stalled:
             raise ConvergenceError(
-                f"{stopped} at {self.where} (increment {self.taken}): {stalled}. All converged "
-                "increments are kept"
+                f"{self.stopped}: {stalled}. All converged increments are kept"
             ) from None
         except SingularError as error:
             if self.taken:
-                raise ConvergenceError(f"{stopped} at {self.where}: {error}") from None
+                raise ConvergenceError(f"{self.stopped}: {error}") from None
             raise
         finally:
             self.loop.count("iterations", self.follower.iterations)
@@ -142,7 +143,7 @@ class PathStepper:
                 z = self.along.start(state.u)
                 state.at = self.along.plain(self.along.evaluate(z, self.factor * period))
             except ElementFailure as error:
-                raise ConvergenceError(f"{stopped} at {self.where}: {error}") from None
+                raise ConvergenceError(f"{self.stopped}: {error}") from None
         return self.limit
 
     def _start(self) -> Point:
@@ -172,7 +173,8 @@ class PathStepper:
         self.follower = self._tracer(Point(self.state.u, 0.0, None), Plan())
         loop = self.state.resume(self.kind, along=self.along, tracer=self.follower)
         self.factor, self.taken = loop["factor"], loop["increment"]
-        self.located, self.limit, self.rates = loop["located"], loop["limit"], loop["rates"]
+        self.located, self.limit = loop["located"], loop["limit"]
+        self.rates, self.stalled = loop["rates"], loop["stalled"]
         self.begin, self.arc = loop["begin"], loop["arc"]
         self.found = loop["found"]
 
@@ -186,6 +188,7 @@ class PathStepper:
             "located": self.located,
             "limit": self.limit,
             "rates": self.rates,
+            "stalled": self.stalled,
             "begin": self.begin,
             "arc": self.arc,
             "found": self.found,
@@ -202,6 +205,15 @@ class PathStepper:
     def where(self) -> str:
         """Progress of the path in words."""
         return f"load factor {self.factor:.6g}"
+
+    @property
+    def stopped(self) -> str:
+        """Where the path stopped; after load control the step says at which load."""
+        if self.takes_over:
+            return f"arc length stopped in increment {self.taken + 1}"
+        return (
+            f"step {self.loop.number} stopped on its path at {self.where} (increment {self.taken})"
+        )
 
     def advance(self) -> Accepted:
         """Take the next increment of the path.

@@ -1,6 +1,7 @@
 """Newton's method with the load factor among the unknowns, and directions along a path.
 
-The bordered system is solved by elimination: one factorization, two right-hand sides.
+Equilibrium and the constraint of the path are solved by elimination: one factorization, two
+right-hand sides.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
