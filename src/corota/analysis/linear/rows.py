@@ -84,7 +84,7 @@ class Rows:
             off = row != column
             row, column = np.concatenate([row, column[off]]), np.concatenate([column, row[off]])
             entry = np.concatenate([entry, entry[off]])
-        self._lay_out(row * n + column, entry, bounds)
+        self._lay_out(row, column, entry, bounds)
 
     def _owners(self, degree: Ints, node: Ints) -> Ints:
         """Process that owns each unknown."""
@@ -94,27 +94,48 @@ class Rows:
         owner: Ints = (size - 1 - code % size)[node]
         return owner
 
-    def _lay_out(self, keys: Ints, entry: Ints, bounds: Ints) -> None:
+    def _lay_out(self, row: Ints, column: Ints, entry: Ints, bounds: Ints) -> None:
+        from scipy.sparse import coo_array
+
         n, rank = self.n, self.communicator.rank
-        row = keys // n
-        parts = [
-            np.flatnonzero((row >= begin) & (row < end))
-            for begin, end in zip(bounds[:-1], bounds[1:], strict=True)
-        ]
+        parts: list[Ints | slice] = [slice(None)]
+        if self.communicator.size > 1:
+            parts = [
+                np.flatnonzero((row >= begin) & (row < end))
+                for begin, end in zip(bounds[:-1], bounds[1:], strict=True)
+            ]
         self._sent = [entry[part] for part in parts]
-        own = keys[parts[rank]]
-        parts = [keys[part] if p != rank else keys[:0] for p, part in enumerate(parts)]
-        received = self.communicator.exchange(parts)
+        keys = [
+            row[part] * n + column[part] if p != rank else np.zeros(0, np.int64)
+            for p, part in enumerate(parts)
+        ]
+        received = self.communicator.exchange(keys)
+        row, column = row[parts[rank]], column[parts[rank]]
+        # Own entries are distinct: sorting them by rows takes linear time.
+        count = self.last - self.first
+        where = row - self.first, column
+        matrix = coo_array((np.arange(len(row)), where), shape=(count, n)).tocsr()
+        matrix.sort_indices()
+        sorted_rows = np.repeat(np.arange(self.first, self.last), np.diff(matrix.indptr))
+        sorted_keys = sorted_rows * n + matrix.indices
         # Every own row has its diagonal.
-        every = np.arange(self.first, self.last, dtype=np.int64) * (n + 1)
-        unique = np.unique(np.concatenate([own, every, *received]))
-        self._own = np.searchsorted(unique, own)
+        missing = np.ones(count, bool)
+        missing[row[row == column] - self.first] = False
+        diagonal = (self.first + np.flatnonzero(missing)) * (n + 1)
+        unique = sorted_keys
+        if more := len(diagonal) + sum(map(len, received)):
+            unique = np.concatenate([sorted_keys, np.unique(np.concatenate([diagonal, *received]))])
+            unique.sort(kind="stable")  # which merges sorted parts
+            unique = unique[np.concatenate([[True], unique[1:] != unique[:-1]])]
+        self._own = np.empty(len(row), np.int64)
+        self._own[matrix.data] = (
+            np.searchsorted(unique, sorted_keys) if more else np.arange(len(row))
+        )
         self._received = [np.searchsorted(unique, keys) for keys in received]
-        rows = unique // n
-        self.indptr = np.searchsorted(rows, np.arange(self.first, self.last + 1))
-        self.indices = unique % n
         #: Row of each entry of the own rows.
-        self.rows = rows
+        self.rows = unique // n if more else sorted_rows
+        self.indptr = np.searchsorted(self.rows, np.arange(self.first, self.last + 1))
+        self.indices = unique % n if more else matrix.indices
 
     def values(self, data: Floats) -> Floats:
         """Entries of the own rows from the values of all processes for their patterns."""
