@@ -10,6 +10,7 @@ import pytest
 import corota as ct
 from benchmarks.contact_problems import problem
 from benchmarks.contact_torture import run
+from corota.analysis.linear import saddle_point
 from corota.results.observer import BaseObserver
 
 #: Numbers of the torture set that stopped before.
@@ -144,3 +145,40 @@ def test_an_impact_in_fixed_increments_is_relaxed():
     assert row["end"] == "done", row["why"]
     assert row["increments"] == 100
     assert row["residual"] < 1e-8
+
+
+@pytest.mark.parametrize("number", [1017, 1368])
+def test_a_stop_on_an_unstable_path_says_so_and_how_to_continue(number):
+    """Blocks with a round face, held by contact alone and pressed by a force: they tip over."""
+    given = problem(number, size=0.5)
+    with pytest.raises(ct.ConvergenceError, match="stopped at step time") as stop:
+        ct.solve(given.model, given.steps, threads=1)
+    assert stop.value.results.frames[-1].scalars["negative pivots"] > 0.0
+    assert "The last equilibrium is unstable (negative pivots of the tangent: 1)" in str(stop.value)
+    assert "prescribe a displacement instead of the load" in str(stop.value)
+    assert "Load control stalled at" in str(stop.value) or "last attempt:" in str(stop.value)
+
+
+@pytest.mark.parametrize("number", [82, 235])
+def test_slip_is_solved_alike_by_gmres_and_by_the_whole_matrix(number, monkeypatch):
+    """Pivoting with friction has many right-hand sides; how they are solved is a matter of cost."""
+    whole = saddle_point.SaddlePointSystem._by_lu
+    compared = []
+
+    def both(self, data, rest, b):
+        try:
+            x = self._gmres_all(rest, b)
+        except ct.InputError:  # the symmetric part is singular
+            x = None
+        y = whole(self, data, rest, b)
+        if x is not None and b.shape[1] > saddle_point.MOST_COLUMNS:
+            for part in (slice(0, self.nf), slice(self.nf, None)):
+                compared.append(abs(x[part] - y[part]).max() / abs(y[part]).max())
+        return y
+
+    monkeypatch.setattr(saddle_point.SaddlePointSystem, "_by_lu", both)
+    given = problem(number, size=0.5)
+    ct.solve(given.model, given.steps, threads=1)
+    assert compared
+    # GMRES ends at 1e-9 of its own residual; some of these matrices are nearly singular.
+    assert max(compared) < 1e-3

@@ -38,7 +38,7 @@ def gmres(
     Returns
     -------
     x : ndarray, shape (n,), or None
-        None if the iteration stalls.
+        None if the iteration stalls or numbers overflow.
     steps : int
     """
 
@@ -56,6 +56,8 @@ def gmres(
     beta = _length(r)
     if beta == 0.0:
         return r, 0
+    if not np.isfinite(beta):
+        return None, 0
     basis, h = [r / beta], np.zeros((MOST_STEPS + 1, MOST_STEPS))
     for k in range(MOST_STEPS):
         w = apply(basis[k] * scale) / scale
@@ -65,6 +67,8 @@ def gmres(
                 h[i, k] += part_of
                 w = w - part_of * v
         h[k + 1, k] = _length(w)
+        if not np.isfinite(h[k + 1, k]):
+            return None, k + 1
         small = np.zeros(k + 2)
         small[0] = beta
         y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 DEPENDENT, MOST_DENSE = 1e-9, 2000
 #: Relative size of a product that consists of rounding errors only.
 NULL = 1e-10
+#: Right-hand sides beyond which a factorization of the whole matrix costs less than GMRES.
+MOST_COLUMNS = 8
 
 
 class Reduced(Protocol):
@@ -338,8 +340,10 @@ class SaddlePointSystem:
             if not len(rest.values):
                 self._resolve = linear.solver.solve
                 return linear.solve(b), -1 if inertia is None else inertia[1]
-            with linear.timed("solve"):
-                x = self._gmres_all(rest, b)
+            x = None
+            if b.shape[1] <= MOST_COLUMNS or self.communicator.size > 1:
+                with linear.timed("solve"):
+                    x = self._gmres_all(rest, b)
             if x is not None:
                 self._resolve = lambda more: self._resolved(data, rest, more)
                 return x, -1
