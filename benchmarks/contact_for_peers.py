@@ -2,8 +2,8 @@
 
 Taken are problems that are static, elastic, without contact of a surface with itself and without
 stabilization, with unit length and a modulus of 1000. Round tools become polygons with chords of
-3 degrees. Elements that the peers lack are replaced in Corota, too: ``Q4I`` and ``Q4D`` by ``Q4``,
-``OPT`` by ``T3``.
+3 degrees. Elements that the peers do not have are replaced in Corota, too: ``Q4I`` and ``Q4D`` by
+``Q4``, ``OPT`` by ``T3``.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -9,13 +9,15 @@ displacements at the end and eigenvalues of modes, against those of the default 
 each: results are no more certain than what it changes.
 
 ``--problems P1:40k P2:40k`` runs increments of the benchmark problems; ``--gamg 143 250`` the
-multigrid on a clamped square with so many elements a side. ``--times`` adds wall time, processor
-time [s] and the efficiency, time of one process over all of several: a process that waits for a
-message uses its core, so they mean something only on a quiet machine.
+multigrid on a clamped square with so many elements a side, ``--solvers 1414`` each solver on one
+process there. ``--times`` adds wall time, processor time [s] and the efficiency, time of one
+process over all of several: a process that waits for a message uses its core, so they mean
+something only on a quiet machine.
 
 Each row is kept in a file when it is measured (``--rows``, results/several_processes.json), and
 ``--continue`` takes those of a run that was stopped. ``--limit`` ends a row after so many seconds.
-``--write`` puts the tables into docs/scale.md.
+``--write`` puts the tables into docs/scale.md. A row that fails, as without enough memory, is
+missing, and the exit code is 1.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -45,6 +47,8 @@ from benchmarks.solvers_agree import NAMES
 from corota.analysis.linear.solvers import Multifrontal
 from corota.errors import CorotaError
 
+#: Solvers of ``--solvers``; PARDISO and PETSc need their extras.
+SOLVERS = ("multifrontal", "pardiso", "superlu", "petsc", "petsc:gamg")
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "scale.md"
 #: Problems of the catalogue that are too small to be cut, or solve nothing.
@@ -237,7 +241,7 @@ class Starter:
     """
 
     def __init__(self, path: Path, again: bool, limit: float) -> None:
-        self.path, self.limit = path, limit
+        self.path, self.limit, self.failed = path, limit, 0
         self.kept: dict[str, list[Any]] = {}
         if path.exists():
             self.kept = json.loads(path.read_text(encoding="utf-8"))
@@ -276,7 +280,9 @@ class Starter:
                     sys.stderr.write(f"{job} on {count}: given up after {self.limit:g} s\n")
                     return []
             if code:
-                raise SystemExit(f"{job} on {count} processes: exit code {code}")
+                sys.stderr.write(f"{job} on {count} processes: exit code {code}\n")
+                self.failed += 1
+                return []
             found: list[Any] = json.loads(path.read_text(encoding="utf-8"))
             return found
 
@@ -325,6 +331,10 @@ TIMES = ["wall s", "CPU s", "efficiency"]
 VALUES = ["problem", "solver", "processes", "analyses", "frames", "U", "last U", "RF", "modes"]
 
 
+def _squares(sides: list[int]) -> list[str]:
+    return [f"square:{side}" for side in sides]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--worker", nargs=2, help=argparse.SUPPRESS)
@@ -332,6 +342,7 @@ def main() -> int:
     parser.add_argument("--catalogue", nargs="*", metavar="NAME")
     parser.add_argument("--problems", nargs="*", default=[], metavar="NAME:SIZE")
     parser.add_argument("--gamg", type=int, nargs="*", default=[], metavar="SIDE")
+    parser.add_argument("--solvers", type=int, nargs="*", default=[], metavar="SIDE")
     parser.add_argument("--times", action="store_true", help="wall and processor time too")
     parser.add_argument("--write", action="store_true", help="put the tables into docs/scale.md")
     parser.add_argument("--rows", type=Path, default=ROOT / "results" / "several_processes.json")
@@ -355,11 +366,13 @@ def main() -> int:
         sys.stdout.write(f"{text}\n\n")
         if args.write:
             write_between(PAGE, "catalogue", text)
-    for name, of, solver in (
-        ("distributed", args.problems, "petsc"),
-        ("multigrid", [f"square:{side}" for side in args.gamg], "petsc:gamg"),
+    both = [("multifrontal", [0])]
+    for name, of, runs in (
+        ("distributed", args.problems, [*both, ("petsc", args.processes)]),
+        ("multigrid", _squares(args.gamg), [*both, ("petsc:gamg", args.processes)]),
+        ("solvers", _squares(args.solvers), [(s, [0]) for s in SOLVERS]),
     ):
-        jobs = [(p, s, c) for p in of for s, c in (("multifrontal", [0]), (solver, args.processes))]
+        jobs = [(problem, solver, counts) for problem in of for solver, counts in runs]
         if not jobs:
             continue
         head = [*COST, *(TIMES if args.times else [])]
@@ -367,7 +380,7 @@ def main() -> int:
         sys.stdout.write(f"{text}\n\n")
         if args.write:
             write_between(PAGE, name, text)
-    return 0
+    return 1 if starter.failed else 0
 
 
 if __name__ == "__main__":

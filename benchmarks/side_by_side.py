@@ -56,7 +56,7 @@ class Program:
 
 
 PROGRAMS = (
-    Program("Corota", "Q4, modified", "P1 P4", driver="corota"),
+    Program("Corota", "Q4, green_lagrange", "P1 P4", driver="corota"),
     Program("Corota", "Q4, logarithmic", "P2", driver="corota", options=("strain=logarithmic",)),
     Program("Corota", "Q4I", "P1 P4", driver="corota", options=("element=Q4I", "strain=linear")),
     Program(
