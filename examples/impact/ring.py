@@ -21,7 +21,7 @@ def main() -> None:
     parser.add_argument("--around", type=int, default=64, help="elements around the ring")
     args = parser.parse_args()
     sys.stdout.write(
-        "material element  rebound  kinetic   strain  plastic     lack  shape  iterations\n"
+        "material element  rebound  kinetic   strain  plastic balance  shape  iterations\n"
     )
     for plastic in (False, True):
         for element in ("Q4I", "Q8", "OPT", "Q4D"):
