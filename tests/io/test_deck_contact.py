@@ -78,6 +78,11 @@ def test_behavior_and_friction(tmp_path: Path) -> None:
     assert any("stick slope" in note for note in model.notes)
 
 
+@pytest.mark.parametrize("value", ["1e7", "1e300", "-.1", "nan"])
+def test_friction_coefficients_without_sense_are_refused(tmp_path: Path, value: str) -> None:
+    assert "friction" in str(faults(tmp_path, deck(f"{INTERACTION}*FRICTION\n{value}\n{PAIR}")))
+
+
 @pytest.mark.parametrize(
     ("name", "rows", "pressure", "overclosure"),
     [("LINEAR", "1e6, 0.", 1e6, 0.0), ("EXPONENTIAL", ".01, 7.", 7.0, 0.01)],

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Reference = int | tuple[float, float] | None
 
+#: Largest friction coefficient: no pressure lets surfaces slip with it.
+MOST_FRICTION = 1e6
 #: Treatment of overlaps and gaps at the start.
 STARTS = ("keep", "adjust", "ramp")
 #: Facts of the discretizations of contact that the core knows, by their names.
@@ -259,7 +261,7 @@ class ContactPair(Brief):
     method : {"mortar", "node_to_segment"}
         Gaps weighted and integrated over slave edges, or measured at slave nodes.
     friction : float
-        Coulomb coefficient, >= 0.
+        Coulomb coefficient from 0 to 1e6; surfaces stick with the largest.
     law : PressureLaw, optional
         Pressure against overclosure; without it, contact is hard.
     clearance : float, optional
@@ -316,6 +318,12 @@ class ContactPair(Brief):
         ):
             if not (math.isfinite(value) and value >= 0.0):
                 raise InputError(f"the {what} of a contact pair must be >= 0", self.where)
+        if self.friction > MOST_FRICTION:
+            raise InputError(
+                f"a friction coefficient of {self.friction:g} is too large: for surfaces that do "
+                f"not slip give at most {MOST_FRICTION:g}",
+                self.where,
+            )
         if self.clearance is not None and not math.isfinite(self.clearance):
             raise InputError("the clearance of a contact pair must be finite", self.where)
         if self.smooth and (self.itself or isinstance(self.master, RigidCurve)):

@@ -206,7 +206,7 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("SPRING", "ORIENTATION"): "give the springs global directions",
     ("SPRING", "COMPLEXSTIFFNESS"): "only real stiffness is part of this version",
     ("SURFACEBEHAVIOR", "NOSEPARATION"): "surfaces in contact may separate; join them by *TIE",
-    ("FRICTION", "ROUGH"): "give a large friction coefficient",
+    ("FRICTION", "ROUGH"): "give a friction coefficient of 1e6",
     ("FRICTION", "ANISOTROPIC"): "friction has one coefficient",
     ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
     ("FRICTION", "TAUMAX"): "there is no separate limit of the shear traction",
