@@ -5,8 +5,8 @@
 family. ``--only N`` runs one and shows its message; ``--keep FILE`` keeps a line of JSON for each;
 ``--against FILE`` compares iterations and times with an earlier file. ``--write`` puts the score of
 all that FILE of ``--keep`` holds into docs/contact.md; with ``--count 0`` it does that alone. Where
-a run does not finish, :mod:`benchmarks.contact_reasons` looks in its states for the reason that its
-message names. The exit status is 1 where less than ``--share`` of the problems finish, or any
+a run does not finish, :mod:`benchmarks.contact_reasons` looks for the reason that its message
+names. The exit status is 1 where less than ``--share`` of the problems finish, or any
 other one ends without a right reason.
 """
 
@@ -71,7 +71,7 @@ def run(number: int, limit: int, unit: float = 1.0, size: float = 1.0) -> dict[s
         signal.setitimer(signal.ITIMER_PROF, 0)
     out["seconds"] = time.process_time() - begin
     if out["end"] != "done":
-        out["reason"], out["right"] = reason(results, out["why"])
+        out["reason"], out["right"] = reason(given, results, out["why"])
     if results is not None and len(results.frames) > 1:
         count = [f.scalars.get("iterations", 0.0) for f in results.frames[1:]]
         out["iterations"], out["increments"] = int(sum(count)), len(count)
