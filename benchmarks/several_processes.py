@@ -94,12 +94,11 @@ def analyses(name: str) -> list[tuple[Any, Any]]:
 def differences(ours: Any, theirs: Any) -> tuple[float, ...]:
     """Largest relative differences: displacements, those of the last frame, reactions, modes.
 
-    Infinite where the frames are not those of the same increments. Reactions that are rounding
-    errors, as in free expansion, are compared with the force of the displacements in the stiffness.
+    Displacements and reactions are infinite where the frames are not those of the same increments,
+    except in the last frame. Reactions that are rounding errors, as in free expansion, are compared
+    with the force of the displacements in the stiffness.
     """
-    if len(ours.frames) != len(theirs.frames):
-        return (np.inf,) * 4
-    pairs = list(zip(ours.frames, theirs.frames, strict=True))
+    pairs = list(zip(ours.frames, theirs.frames, strict=False))
     moved = max((_size(a.U) for a, _ in pairs), default=0.0)
     errors = [_size(a.U - b.U) for a, b in pairs] or [0.0]
     force = max((max(_size(a.RF), _size(a.F)) for a, _ in pairs), default=0.0)
@@ -112,7 +111,11 @@ def differences(ours: Any, theirs: Any) -> tuple[float, ...]:
         for a, b in zip(ours.modes, theirs.modes, strict=True)
     ]
     moved = moved or 1.0  # then all are zero
-    return max(errors) / moved, errors[-1] / moved, held / (force or 1.0), max(modes, default=0.0)
+    last = _size(ours.frames[-1].U - theirs.frames[-1].U) if pairs else 0.0
+    worst = max(errors) / moved, last / moved, held / (force or 1.0), max(modes, default=0.0)
+    if len(ours.frames) != len(theirs.frames):
+        return np.inf, worst[1], np.inf, worst[3]
+    return worst
 
 
 def _eigenvalues(modes: Any) -> Any:
