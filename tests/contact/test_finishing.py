@@ -5,6 +5,7 @@ They are a sample of ``python -m benchmarks.contact_torture``; each of these sto
 were chosen from the whole linearized problem. Reactions and contact forces must balance.
 """
 
+import numpy as np
 import pytest
 
 import corota as ct
@@ -121,6 +122,30 @@ def test_bodies_drift_where_no_relaxed_position_balances():
     assert max(frame.scalars.get("residual", 0.0) for frame in results.frames[1:]) < 1e-8
     assert any("relaxation, drift" in note for note in notes)
     assert "relaxation, no springs" in notes  # the state that is accepted has none
+
+
+@pytest.mark.parametrize("number", [1183, 1767])
+def test_a_damped_motion_starts_newtons_method_where_relaxation_finds_nothing(number):
+    """A clip whose gaps jump, without friction; a block on a wavy floor, with friction 1."""
+    notes = []
+
+    class Log(BaseObserver):
+        def iteration(self, info):
+            notes.append(info.note)
+
+    given = problem(number, size=0.5)
+    results = ct.solve(given.model, given.steps, threads=1, observers=[Log()])
+    assert results.times[-1] == pytest.approx(sum(step.period for step in given.steps))
+    assert max(frame.scalars.get("residual", 0.0) for frame in results.frames[1:]) < 1e-8
+    assert "relaxation after a damped motion, no springs" in notes
+    # Forces and conditions of contact are those of the model: no mass or damping is left.
+    for frame in results.frames[1:]:
+        forces = [frame.RF[:, :2].sum(axis=0)]
+        if isinstance(given.model.contacts[0].master, ct.RigidCurve):
+            name = given.model.contacts[0].name
+            forces.append([frame.scalars[f"{name}: force {axis}"] for axis in "xy"])
+        size = max(np.abs(frame.RF).max(), 1e-30)
+        np.testing.assert_allclose(np.sum(forces, axis=0), 0.0, atol=1e-7 * size)
 
 
 def test_a_body_that_contact_never_holds_is_said_to_rest_anywhere():

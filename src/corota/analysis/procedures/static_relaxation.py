@@ -16,11 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.analysis.procedures.static import StaticStepper
+    from corota.analysis.terms.contact.relaxation import Aid
 
 #: Increments tried by relaxation where no shorter one is found, relative to the period.
 RELAXED = (1e-3, 1e-2)
 #: The same with drift, where none of these is found.
 DRIFTED = (1e-3, 1e-2, 3e-2)
+#: The same from where a damped motion brings the bodies to rest.
+MOVED = (1e-3, 1e-2)
 #: The same for first increments, in which bodies held only by contact come into contact.
 FIRST_RELAXED = (1e-2, 3e-2, 0.1, 0.2, 0.3)
 #: Halvings of the interval in which a first contact closes.
@@ -40,16 +43,17 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
     if loaded and (early or not first or not system.joined):
         return ""
     fractions: tuple[float, ...]
-    drifted: tuple[float, ...]
+    aided: dict[Aid, tuple[float, ...]]
     if early or control.step.fixed_increments:
-        fractions = drifted = (control.size / control.step.period,)
+        fractions = (control.size / control.step.period,)
+        aided = {"drift": fractions, "motion": fractions}
     else:
         fractions = FIRST_RELAXED if first else RELAXED
-        drifted = FIRST_RELAXED if first else DRIFTED
+        aided = {"drift": FIRST_RELAXED if first else DRIFTED, "motion": MOVED}
     if early or loaded:
-        drifted = ()
-    tries = _Sizes(fractions, drifted, HALVINGS if first else 0)
-    for fraction, drifts in tries:
+        aided = {}
+    tries = _Sizes(fractions, aided, HALVINGS if first else 0)
+    for fraction, aid in tries:
         size = fraction * control.step.period
         target = min([control.time + size, *(s for s in control.stops if s > control.time)])
         prescribed = system.conditions.supports.at(target, state.u)
@@ -62,7 +66,7 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
                 stepper.settings,
                 stepper.report,
                 nearby=loaded,
-                drifts=drifts,
+                aid=aid,
             )
         except SingularError:
             continue
@@ -98,15 +102,17 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
 
 
 class _Sizes:
-    """Increments to try in turn, and whether the bodies drift.
+    """Increments to try in turn, and what helps relaxation.
 
     Between the largest one that closes no contact and one without an equilibrium the first contact
     is found by bisection.
 
     Parameters
     ----------
-    fractions, drifted : tuple of float
-        Of the period, without drift and then with it.
+    fractions : tuple of float
+        Of the period, by relaxation alone.
+    aided : dict of str to tuple of float
+        The same with what helps it, in turn.
     halvings : int
 
     Attributes
@@ -116,27 +122,28 @@ class _Sizes:
     """
 
     def __init__(
-        self, fractions: tuple[float, ...], drifted: tuple[float, ...], halvings: int
+        self, fractions: tuple[float, ...], aided: dict[Aid, tuple[float, ...]], halvings: int
     ) -> None:
-        self.fractions, self.drifted, self.halvings = fractions, drifted, halvings
+        self.fractions, self.aided, self.halvings = fractions, aided, halvings
         self.nothing_closed = False
 
-    def __iter__(self) -> Iterator[tuple[float, bool]]:
+    def __iter__(self) -> Iterator[tuple[float, Aid]]:
         low = 0.0
         for high in self.fractions:
             self.nothing_closed = False
-            yield high, False
+            yield high, ""
             if self.nothing_closed:
                 low = high
                 continue
             for _ in range(self.halvings if low else 0):
                 middle = 0.5 * (low + high)
                 self.nothing_closed = False
-                yield middle, False
+                yield middle, ""
                 low, high = (middle, high) if self.nothing_closed else (low, middle)
             low = 0.0
-        for fraction in self.drifted:
-            yield fraction, True
+        for aid, fractions in self.aided.items():
+            for fraction in fractions:
+                yield fraction, aid
 
 
 __all__ = ["by_relaxation"]

@@ -114,6 +114,9 @@ class ContactTerm(Term):
             self.n += pair.width
         self.committed = np.zeros(self.n)
         self.u = np.zeros(system.n_dofs)
+        #: Displacement that slips are measured from within an increment, if not the committed one:
+        #: where a damped motion has brought the bodies to rest.
+        self.slip_start: Floats | None = None
         self.at: ContactState | None = None
         self.period, self.number = 1.0, 0
         #: Time of a static step over which initial overlaps are removed at once.
@@ -340,7 +343,8 @@ class ContactTerm(Term):
         system = self.system
         if not self._stiff:
             self._measure(values)
-        x, old = self.positions(u), self.positions(self.u)
+        x = self.positions(u)
+        old = self.positions(self.u if self.slip_start is None else self.slip_start)
         force, size = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
         found = []
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
@@ -452,6 +456,7 @@ class ContactTerm(Term):
             self._damping_force = contact_state.damping * (u - self.u)
             mean = self._damping_force + (before if len(before) else 0.0)
             self.damping_work += 0.5 * float(mean @ (u - self.u))
+        self.slip_start = None
         contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
         contact_state.states = [
@@ -479,6 +484,7 @@ class ContactTerm(Term):
         for pair in self.pairs:
             pair.core.restore()
             pair.frozen = False
+        self.slip_start = None
 
     def work_sums(self, work: float) -> dict[str, float]:
         """The work of contact for a dynamic frame; empty without pairs."""

@@ -11,7 +11,8 @@ Where surfaces change what they meet, gaps may jump, and a position that balance
 either side. Then no springs are stiff enough, and the bodies `drift`: single corrections are taken,
 each linearized where the last one ended, without a search for balance between them (time steps
 that are implicit in their linearization only). They pass the jump, or come to where positions are
-found again.
+found again. If that fails as well, an explicit damped `motion` brings them to rest, and Newton's
+method starts from there (:mod:`corota.analysis.terms.contact.damped_motion`).
 
 Source: R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control
 Optim. 14 (1976).
@@ -21,11 +22,12 @@ Optim. 14 (1976).
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from corota.analysis.newton import ElementFailure, GiveUp, Outcome, newton
+from corota.analysis.terms.contact.damped_motion import REMAINS, come_to_rest
 from corota.analysis.terms.contact.equations import (
     MAX_EXTRA_CONTACT_ITERATIONS,
     PATIENCE,
@@ -45,6 +47,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: What helps where creep alone does not: nothing, drift, a damped motion.
+Aid = Literal["", "drift", "motion"]
 #: Largest number of corrections, of those per position, and residual at which a position is
 #: reached.
 MOST, EACH, REACHED = 400, 14, 1e-6
@@ -72,7 +76,7 @@ def relax(
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     inner: Any = None,
     nearby: bool = False,
-    drifts: bool = False,
+    aid: Aid = "",
 ) -> tuple[Outcome[Evaluation], ContactEquations]:
     """Find an equilibrium by creep; in dynamics (`inner`) with the inertia of an increment.
 
@@ -83,11 +87,12 @@ def relax(
     ----------
     nearby : bool
         Whether no node may move farther than half of the shortest edge of the slave surfaces.
-    drifts : bool
-        Whether the bodies drift where no positions are found.
+    aid : {"", "drift", "motion"}
+        Whether the bodies drift where no positions are found, or start where a damped motion brings
+        them to rest.
     """
     creep = _Creep(inner or system, system, u, prescribed, step_time, settings, report)
-    creep.drifts = drifts
+    creep.aid = aid
     if nearby:
         creep.within = u.copy()
     return creep.problem.settle(creep.run()), creep.problem
@@ -117,13 +122,19 @@ class _Creep:
         self.corrections = 0
         #: Displacements that the bodies have to stay near.
         self.within: Floats | None = None
-        self.drifts = False
+        self.aid: Aid = ""
+        #: Whether a damped motion has brought the bodies to where they are.
+        self.moved = False
         edges = [float(p.slave.length.min()) for p in self.problem.contact_term.pairs]
         self.edge = min(edges)
         self.farthest = FARTHEST * self.edge
         self.stiffness = self.problem.contact_term.nodal
 
     def run(self) -> Outcome[ContactEvaluation]:
+        if self.aid == "motion":
+            out = self._from_rest()
+            if out.converged or not self.moved:
+                return out
         share, tries = FIRST, 0
         missed, length = 0.0, FEWEST
         while self.corrections < MOST and share <= LARGEST:
@@ -133,7 +144,7 @@ class _Creep:
                 out.reason = self.problem.refuse(out.at, out.u)
             if not out.converged or out.reason or moved > self.farthest:
                 share, missed = share * TIGHTENED, missed + 1.0
-                if self.drifts and missed >= MISSED:
+                if self.aid == "drift" and missed >= MISSED:
                     share, missed = self._drift(length), 0.0
                     length = min(2 * length, LONGEST)
                 continue
@@ -148,18 +159,48 @@ class _Creep:
             if out.converged and self._leaves(out.u):
                 break
             if out.converged:
-                out.iterations = self.corrections
-                out.note = f"found by relaxation in {self.corrections} iterations"
-                return out
+                return self._found(out)
             share, tries = LEAST * TIGHTENED**2, tries + 1
             if tries > 2:
                 break
+        return self._missed(out)
+
+    def _found(self, out: Outcome[ContactEvaluation]) -> Outcome[ContactEvaluation]:
+        out.iterations = self.corrections
+        by = "a damped motion and relaxation" if self.moved else "relaxation"
+        out.note = f"found by {by} in {self.corrections} iterations"
+        return out
+
+    def _missed(self, out: Outcome[ContactEvaluation]) -> Outcome[ContactEvaluation]:
         out.converged = False
         out.iterations = self.corrections
         out.reason = (
             f"relaxation found no equilibrium in {self.corrections} iterations ({out.reason})"
         )
         return out
+
+    def _from_rest(self) -> Outcome[ContactEvaluation]:
+        """An equilibrium without springs, from where a damped motion brings the bodies to rest."""
+        n, term = self.problem.n, self.system.contact_term
+        begin, left = self.z, self.left
+        reason = "a damped motion did not bring the bodies to rest"
+        out: Outcome[ContactEvaluation] = Outcome(False, begin, None, reason=reason)
+        for remains in REMAINS:
+            rest = come_to_rest(self.system, begin[:n], left, self.step_time, self.edge, remains)
+            if rest is None:
+                term.restore()
+                continue
+            self.moved = True
+            self.z, self.left = np.concatenate([rest.u, rest.multipliers]), np.zeros_like(left)
+            self.problem.last = [states.copy() for states in rest.states]
+            term.slip_start = rest.u  # friction of the motion is over
+            out = self._place(0.0)
+            if out.converged and out.at is not None:
+                out.reason = self.problem.refuse(out.at, out.u)
+                out.converged = not out.reason
+            if out.converged:
+                return self._found(out)
+        return out if self.moved else self._missed(out)
 
     def _largest(self, change: Floats) -> float:
         """Largest displacement of a change of the unknowns [length]."""
@@ -230,7 +271,8 @@ class _Creep:
         def report(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
             self.corrections = before + iteration
             if self.report is not None:
-                said = f"relaxation, springs {share:.1g}" if share else "relaxation, no springs"
+                said = "relaxation after a damped motion" if self.moved else "relaxation"
+                said += f", springs {share:.1g}" if share else ", no springs"
                 self.report(self.corrections, norms, correction, f"{said}; {note}".strip("; "))
 
         try:
