@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 #: Controls of MUMPS: memory above the estimate [percent], detection of null pivots, vector of the
 #: null space to solve for, parallel factorization of the root, which hides the inertia (1: none).
 _MEMORY, _NULL_PIVOTS, _NULL_SPACE, _ROOT = 14, 24, 25, 13
+#: Ordering (2: approximate minimum fill; one process makes it while the others wait, and MUMPS's
+#: own choice takes several times longer), scaling (0: none, as symmetric matrices come scaled).
+_ORDERING, _SCALING = (7, 2), (8, 0)
 #: Option for right-hand sides (0: on one process), which the search for null vectors needs.
 _RIGHT_SIDES = "mat_mumps_icntl_20"
 #: Share of memory to begin with, and what it is raised to where pivoting needs more [percent].
@@ -123,6 +126,7 @@ class Petsc:
         kind = self._petsc.IntType
         self._starts = self._rows.indptr.astype(kind)
         self._columns = self._rows.indices.astype(kind)
+        self._diagonal = np.flatnonzero(self._rows.rows == self._rows.indices)
 
     def factorize(self, data: Floats) -> Inertia | None:
         """Factorize values of shape (nnz,); returns the inertia if symmetric.
@@ -216,6 +220,9 @@ class Petsc:
         factor.setMumpsIcntl(_MEMORY, share)
         factor.setMumpsIcntl(_NULL_PIVOTS, 1)
         factor.setMumpsIcntl(_ROOT, 1)
+        factor.setMumpsIcntl(*_ORDERING)
+        if self._symmetric:
+            factor.setMumpsIcntl(*_SCALING)
         return solver
 
     def solve(self, rhs: Floats) -> Floats:
@@ -239,15 +246,11 @@ class Petsc:
         So singular and soft are told apart in any system of units.
         """
         rows, communicator = self._rows, self.communicator
-        size = np.abs(values)
-        own = np.zeros(self._n)
-        on = rows.rows == rows.indices
-        own[rows.rows[on]] = size[on]
-        diagonal = communicator.sum(own)
+        diagonal = rows.whole(np.abs(values[self._diagonal]))
         scale = np.where(diagonal > 0.0, _inverse_power(np.sqrt(diagonal)), 0.0)
         bare = scale == 0.0
         if bare.any():
-            coupling = np.zeros(self._n)
+            size, coupling = np.abs(values), np.zeros(self._n)
             np.maximum.at(coupling, rows.rows, size * scale[rows.indices])
             np.maximum.at(coupling, rows.indices, size * scale[rows.rows])
             scale[bare] = _inverse_power(communicator.largest(coupling)[bare])
