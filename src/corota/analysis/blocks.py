@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
 
+#: Elements that are checked at once: what is computed of them stays in the cache.
+_AT_ONCE = 1 << 13
+
 
 @dataclass
 class BlockOfCells:
@@ -153,12 +156,7 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
             _check_line(model, block, facts.turns)
             continue
         n = 3 if "tri" in facts.cell else 4
-        corners = points.T[:, block.nodes[:, :n].T]  # (2, n, cells): long rows are fast
-        around = np.arange(n)
-        one, two = corners[:, around + 1 - n] - corners, corners[:, around - 1] - corners
-        turn = one[0] * two[1] - one[1] * two[0]
-        size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=0) ** 2
-        bad = (turn <= 1e-12 * size).any(axis=0).nonzero()[0]
+        bad = _folded(points.T, block.nodes[:, :n])
         if len(bad):
             raise ModelError(
                 f"element {labels[block.cells[bad[0]]]} is folded, has no area or is clockwise "
@@ -167,6 +165,19 @@ def check_shapes(model: Model, blocks: list[BlockOfCells]) -> None:
                 block.section.where,
             )
         _check_middles(model, block)
+
+
+def _folded(rows: Floats, nodes: Ints) -> Ints:
+    """Elements of zero, negative or folded area, from coordinates of shape (2, n_nodes)."""
+    around = np.arange(nodes.shape[1])
+    found = [np.zeros(0, np.int64)]
+    for first in range(0, len(nodes), _AT_ONCE):
+        corners = rows[:, nodes[first : first + _AT_ONCE].T]  # (2, n, cells): long rows are fast
+        one, two = corners[:, around + 1 - len(around)] - corners, corners[:, around - 1] - corners
+        turn = one[0] * two[1] - one[1] * two[0]
+        size = (corners.max(axis=1) - corners.min(axis=1)).max(axis=0) ** 2
+        found.append(first + (turn <= 1e-12 * size).any(axis=0).nonzero()[0])
+    return np.concatenate(found)
 
 
 def _check_thickness(model: Model, block: BlockOfCells) -> None:
