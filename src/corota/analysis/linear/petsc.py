@@ -24,9 +24,12 @@ if TYPE_CHECKING:
 #: Controls of MUMPS: memory above the estimate [percent], detection of null pivots, vector of the
 #: null space to solve for, parallel factorization of the root, which hides the inertia (1: none).
 _MEMORY, _NULL_PIVOTS, _NULL_SPACE, _ROOT = 14, 24, 25, 13
-#: Ordering (2: approximate minimum fill; one process makes it while the others wait, and MUMPS's
-#: own choice takes several times longer), scaling (0: none, as symmetric matrices come scaled).
+#: Ordering (2: approximate minimum fill), scaling (0: none, as symmetric matrices come scaled).
 _ORDERING, _SCALING = (7, 2), (8, 0)
+#: Unknowns up to which fill is minimized. One process orders while the others wait; without METIS
+#: MUMPS's own choice takes four times as long, for about as many operations up to this size. With
+#: four million unknowns minimum fill takes twice as many.
+_MOST_ORDERED = 1_500_000
 #: Option for right-hand sides (0: on one process), which the search for null vectors needs.
 _RIGHT_SIDES = "mat_mumps_icntl_20"
 #: Share of memory to begin with, and what it is raised to where pivoting needs more [percent].
@@ -161,8 +164,15 @@ class Petsc:
             raise SingularError("the matrix has entries that are not finite")
         rows = self._rows
         values = rows.values(data)
-        self._scale = self._scale_of(values) if self._symmetric else np.ones(self._n)
-        values = self._values = values * self._scale[rows.rows] * self._scale[rows.indices]
+        self._scale = np.ones(self._n)
+        if self._symmetric:
+            self._scale = self._scale_of(values)
+            values *= self._scale[rows.rows]
+            values *= self._scale[rows.indices]
+        self._values = values
+        largest = max(values.max(initial=0.0), -values.min(initial=0.0))
+        #: Largest entry of the matrix.
+        self._norm = self.communicator.greatest(float(largest))
         csr = self._starts, self._columns, values
         if self._matrix is None:
             self._matrix = self._new_matrix((rows.last - rows.first, self._n), csr)
@@ -220,7 +230,8 @@ class Petsc:
         factor.setMumpsIcntl(_MEMORY, share)
         factor.setMumpsIcntl(_NULL_PIVOTS, 1)
         factor.setMumpsIcntl(_ROOT, 1)
-        factor.setMumpsIcntl(*_ORDERING)
+        if self._n <= _MOST_ORDERED:
+            factor.setMumpsIcntl(*_ORDERING)
         if self._symmetric:
             factor.setMumpsIcntl(*_SCALING)
         return solver
@@ -259,7 +270,7 @@ class Petsc:
     def _refuse_singular(self) -> None:
         """Refuse a matrix that lets a motion go at no cost beyond rounding."""
         motion = np.random.default_rng(1).uniform(-1.0, 1.0, self._n)
-        norm = self._norm()
+        norm = self._norm
         for step in range(_STEPS):
             before = float(np.abs(motion).max(initial=0.0))
             motion = self._solve_scaled(motion)
@@ -325,13 +336,9 @@ class Petsc:
             product[own] -= (matrix.diagonal(rows.first) * x[own].T).T
         return self.communicator.sum(product)
 
-    def _norm(self) -> float:
-        """Largest entry."""
-        return self.communicator.greatest(float(np.abs(self._values).max(initial=0.0)))
-
     def _refined(self, x: Floats, b: Floats) -> Floats:
         """A solution judged by its residual, after one step of refinement if it needs that."""
-        largest = self._norm()
+        largest = self._norm
         for step in range(2):
             rest = b - self._product(x)
             size = largest * np.max(np.abs(x), initial=0.0) + np.max(np.abs(b), initial=0.0)
