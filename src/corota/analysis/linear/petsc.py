@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MEMORY, _NULL_PIVOTS, _NULL_SPACE, _ROOT = 14, 24, 25, 13
 #: Ordering (2: approximate minimum fill), scaling (0: none, as symmetric matrices come scaled).
 _ORDERING, _SCALING = (7, 2), (8, 0)
-#: Unknowns up to which fill is minimized. One process orders while the others wait; without METIS
+#: Unknowns up to which several processes minimize fill. One orders while the others wait, and
 #: MUMPS's own choice takes four times as long, for about as many operations up to this size. With
 #: four million unknowns minimum fill takes twice as many.
 _MOST_ORDERED = 1_500_000
@@ -230,7 +230,7 @@ class Petsc:
         factor.setMumpsIcntl(_MEMORY, share)
         factor.setMumpsIcntl(_NULL_PIVOTS, 1)
         factor.setMumpsIcntl(_ROOT, 1)
-        if self._n <= _MOST_ORDERED:
+        if self.communicator.size > 1 and self._n <= _MOST_ORDERED:
             factor.setMumpsIcntl(*_ORDERING)
         if self._symmetric:
             factor.setMumpsIcntl(*_SCALING)
