@@ -42,6 +42,9 @@ CELLS = {
     "Q4D": "quad4",
     "Q4": "quad4",
 }
+#: Whether the rigid body lies to the left of a curve, as in the first version; now it is the
+#: deformable one.
+RIGID_ON_LEFT = bool(ct.RigidCurve.circle((0.0, 0.0), 1.0).segments[0, 6] > 0.0)
 
 
 @dataclass
@@ -132,6 +135,8 @@ class Draw:
 
     def touch(self, model: ct.Model, slave: Any, master: Any, name: str, **options: Any) -> None:
         """A pair with the friction and the method drawn."""
+        if RIGID_ON_LEFT and isinstance(master, ct.RigidCurve) and not _full_circle(master):
+            master = ct.RigidCurve(reversed_segments(master.segments), master.reference)
         model.contact(
             slave, master, friction=self.friction, method=self.method, name=name, **options
         )
@@ -141,6 +146,19 @@ class Draw:
         n = round(self.size * int(self.rng.integers(coarse, fine + 1)))
         n = max(n, coarse)  # what is coarser is another problem
         return max(2, n // 2) if self.cell in ("quad8", "tri6") else n
+
+
+def reversed_segments(segments: Floats) -> Floats:
+    """Segments of a rigid curve in the other direction of travel, shape (n, 7)."""
+    out: Floats = segments[::-1].copy()
+    out[:, :2], out[:, 2:4] = segments[::-1, 2:4], segments[::-1, :2]
+    out[:, 6] *= -1.0
+    return out
+
+
+def _full_circle(curve: RigidCurve) -> bool:
+    """Whether a curve is one full circle, whose side no version leaves to the caller."""
+    return len(curve.segments) == 1 and abs(float(curve.segments[0, 6])) > 6.28
 
 
 _ELEMENTS = [0.35, 0.15, 0.15, 0.1, 0.15, 0.1]
@@ -433,4 +451,4 @@ def problem(number: int, unit: float = 1.0, size: float = 1.0) -> Problem:
     return Problem(f"{family}-{number}", draw.what, model, steps, static)
 
 
-__all__ = ["FAMILIES", "Problem", "problem"]
+__all__ = ["FAMILIES", "RIGID_ON_LEFT", "Problem", "problem", "reversed_segments"]

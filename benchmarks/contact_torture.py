@@ -28,6 +28,7 @@ import numpy as np
 
 import corota as ct
 from benchmarks.common import machine, table, write_between
+from benchmarks.contact_answers import answer
 from benchmarks.contact_problems import problem
 from benchmarks.contact_reasons import reason
 
@@ -48,8 +49,10 @@ def _stop(*_: object) -> None:
     raise _OverTime
 
 
-def run(number: int, limit: int, unit: float = 1.0, size: float = 1.0) -> dict[str, Any]:
-    """Outcome of a problem."""
+def run(
+    number: int, limit: int, unit: float = 1.0, size: float = 1.0, answers: bool = False
+) -> dict[str, Any]:
+    """Outcome of a problem; with what it found where `answers` are wanted."""
     given = problem(number, unit, size)
     out: dict[str, Any] = {"number": number, "name": given.name, "what": given.what}
     begin, results = time.process_time(), None
@@ -87,6 +90,8 @@ def run(number: int, limit: int, unit: float = 1.0, size: float = 1.0) -> dict[s
         # Over all frames, for parts that return at the end have moved by rounding there.
         moved = max(float(np.abs(frame.U).max()) for frame in results.frames)
         out["moved"] = moved / float(np.ptp(given.model.mesh.points, axis=0).max())
+        if answers:
+            out["answer"] = answer(given, results)
         out["balance"] = (
             _balance(given, last)
             if given.static
