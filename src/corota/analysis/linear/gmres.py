@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,27 +60,39 @@ def gmres(
     if not np.isfinite(beta):
         return None, 0
     basis, h = [r / beta], np.zeros((MOST_STEPS + 1, MOST_STEPS))
+    turns: list[tuple[float, float]] = []  # that make h triangular: cosines and sines
+    left = beta
     for k in range(MOST_STEPS):
         w = apply(basis[k] * scale) / scale
         for _ in range(2):
             for i, v in enumerate(basis):
                 part_of = _product(v, w)
                 h[i, k] += part_of
-                w = w - part_of * v
-        h[k + 1, k] = _length(w)
-        if not np.isfinite(h[k + 1, k]):
+                w -= part_of * v
+        h[k + 1, k] = length = _length(w)
+        if not math.isfinite(length):
             return None, k + 1
-        small = np.zeros(k + 2)
-        small[0] = beta
-        y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
-        left = _length(small - (h[: k + 2, : k + 1] * y).sum(axis=1))
-        if left <= TOLERANCE * beta or h[k + 1, k] <= 1e-15 * beta:
+        turns.append(_turn(h[: k + 2, k].tolist(), turns))
+        left *= abs(turns[-1][1])
+        if left <= TOLERANCE * beta or length <= 1e-15 * beta:
+            small = np.zeros(k + 2)
+            small[0] = beta
+            y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], small, rcond=None)
             x = scale * np.sum([c * v for c, v in zip(y, basis, strict=False)], axis=0)
             return np.asarray(x), k + 1
         if k > 20 and left > 0.5 * beta:
             return None, k + 1
-        basis.append(w / h[k + 1, k])
+        basis.append(w / length)
     return None, MOST_STEPS
+
+
+def _turn(column: list[float], turns: list[tuple[float, float]]) -> tuple[float, float]:
+    """Cosine and sine that turn the last entry of a column away, after the turns before."""
+    last = column[0]
+    for below, (cosine, sine) in zip(column[1:], turns, strict=False):
+        last = cosine * below - sine * last
+    size = math.hypot(last, column[-1])
+    return (last / size, column[-1] / size) if size > 0.0 else (1.0, 0.0)
 
 
 def _product(a: Floats, b: Floats) -> float:
@@ -88,7 +101,7 @@ def _product(a: Floats, b: Floats) -> float:
 
 
 def _length(a: Floats) -> float:
-    return float(np.sqrt(_product(a, a)))
+    return math.sqrt(_product(a, a))
 
 
 __all__ = ["gmres"]

@@ -117,6 +117,8 @@ class ContactTerm(Term):
         #: Displacement that slips are measured from within an increment, if not the committed one:
         #: where a damped motion has brought the bodies to rest.
         self.slip_start: Floats | None = None
+        #: The displacement that slips are measured from, and the positions there.
+        self._begun: tuple[Floats, Floats] | None = None
         self.at: ContactState | None = None
         self.period, self.number = 1.0, 0
         #: Time of a static step over which initial overlaps are removed at once.
@@ -302,6 +304,13 @@ class ContactTerm(Term):
         x[:, :2] += self.system.model.mesh.points
         return x
 
+    def _before(self) -> Floats:
+        """Positions that slips are measured from; kept, not to be changed."""
+        u = self.u if self.slip_start is None else self.slip_start
+        if self._begun is None or self._begun[0] is not u:
+            self._begun = u, self.positions(u)
+        return self._begun[1]
+
     def dofs(self, variables: Ints) -> Ints:
         """Dofs of variables of the core, -1 for none."""
         return self._dof[variables]
@@ -343,14 +352,13 @@ class ContactTerm(Term):
         system = self.system
         if not self._stiff:
             self._measure(values)
-        x = self.positions(u)
-        old = self.positions(self.u if self.slip_start is None else self.slip_start)
+        x, old = self.positions(u), self._before()
         force, size = np.zeros(system.n_dofs), np.zeros(system.n_dofs)
         found = []
         for pair, (p, q) in zip(self.pairs, self.parts(multipliers), strict=True):
             with system.timed("contact"):
                 pair.core.offset = self.offset_at(pair, step_time)
-                terms = pair.evaluate(x, old, system.nlgeom)
+                terms = pair.evaluate(x, old, system.nlgeom, bool(p.any() or q.any()))
             found.append(terms)
             acting = terms.acting
             where = self.dofs(acting.variables)

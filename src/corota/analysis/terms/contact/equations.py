@@ -358,7 +358,8 @@ class ContactEquations:
             )
         for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
             starts = partial(outside, self.contact_term, k, moves)
-            found = passed(pair, old, new, pair.states(terms, p, q), terms, starts)
+            states = partial(pair.states, terms, p, q)
+            found = passed(pair, old, new, states, terms, starts)
             if len(found):
                 return (
                     f"node {self.contact_term.label(pair, int(found[0]))} passed through the "

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,7 +102,8 @@ class Pair:
         self.slid = np.zeros(self.n)  # slip so far [length]
         self.friction_work = 0.0
         self.seen = False  # whether the surfaces have been near each other
-        self.surface = _surfaces(self.slave.nodes, self.nodes)  # whose node it is
+        #: A rigid curve as straight pieces in the reference configuration, made when needed.
+        self.chords: Floats | None = None
         self.stiffness = np.ones(self.n)  # pressure per gap for the choice of the set
         self.size = system.length
         far = float(np.abs(system.model.mesh.points).max())
@@ -119,13 +121,21 @@ class Pair:
 
     # -- evaluation --------------------------------------------------------------------
 
-    def evaluate(self, x: Floats, old: Floats, nlgeom: bool) -> Terms:
-        """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3)."""
+    @cached_property
+    def surface(self) -> Ints:
+        """Number of the connected piece of slave surface of each constraint, shape (n,)."""
+        return _surfaces(self.slave.nodes, self.nodes)
+
+    def evaluate(self, x: Floats, old: Floats, nlgeom: bool, acts: bool = True) -> Terms:
+        """Gaps at positions `x`, slips since the committed positions `old`; shapes (n_nodes, 3).
+
+        The gradients of an increment are not made if no traction `acts` and none can.
+        """
         if not nlgeom:
             return self._since(self._linear(x, old))
         before = old if self.friction else None
         middle = None
-        if self.start is not None and x is not old:
+        if self.start is not None and x is not old and (acts or self._may_act()):
             x_middle = 0.5 * (x + old)
             self.core.search(x_middle)
             middle = self.core.evaluate(x_middle, before)
@@ -174,6 +184,17 @@ class Pair:
         start, far = self.begun()
         gap = terms.gap - np.where(far, 0.0, np.minimum(start, 0.0))
         return replace(terms, gap=gap, area=np.where(far, 0.0, terms.area), bare=terms)
+
+    def _may_act(self) -> bool:
+        """Whether any gap may have been closed at the start of the increment.
+
+        A gap that is the sum of several parts is open if they all are.
+        """
+        assert self.start is not None
+        gap, area = self.start
+        apart = gap > 2.0 * self.noise * float(self.full.max())
+        apart |= (gap == 0.0) & (area <= COVERED * self.full)
+        return self.law is not None or not bool(apart.all())
 
     def begun(self) -> tuple[Floats, NDArray[np.bool_]]:
         """Gaps that the increment began with, and where they were open."""

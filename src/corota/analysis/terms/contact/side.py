@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.tunneling import other_side
+from corota.analysis.terms.contact.tunneling import AT_ONCE, other_side
 from corota.errors import ModelError
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from corota.analysis.numbered_model import NumberedModel
@@ -75,24 +77,39 @@ def _signed(
     start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
     square = (along**2).sum(axis=1)
     normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.sqrt(square)[:, None]
-    joints = np.concatenate([pieces[:, 0], pieces[:, 1]])
-    free = [(np.hypot(*(joints - end).T) <= same).sum() == 1 for end in joints]
-    first, last = np.array(free[: len(pieces)]), np.array(free[len(pieces) :])
-    distance, normal = np.empty(len(points)), np.empty((len(points), 2))
-    inside = np.zeros(len(points), bool)
-    for i, p in enumerate(points):
-        away = p - start
-        t = (away * along).sum(axis=1) / square
-        foot = np.clip(t, 0.0, 1.0)
-        apart = away - foot[:, None] * along
-        size = np.hypot(*apart.T)
-        height = (away * normals).sum(axis=1)
-        near = np.flatnonzero(size <= size.min() + same)
+    first, last = _free_ends(pieces, same)
+    distance, best = np.empty(len(points)), np.empty(len(points), np.int64)
+    share = np.empty(len(points))
+    for own in _parts(len(points), len(pieces)):
+        away = points[own, None] - start
+        t = (away * along).sum(axis=2) / square
+        apart = away - np.clip(t, 0.0, 1.0)[:, :, None] * along
+        size = np.hypot(apart[:, :, 0], apart[:, :, 1])
+        height = (away * normals).sum(axis=2)
+        near = size <= size.min(axis=1, keepdims=True) + same
         # At a corner the piece with the larger distance decides, as for a wedge.
-        k = int(near[np.argmax(np.abs(height[near]))])
-        distance[i], normal[i] = np.copysign(size[k], height[k]), normals[k]
-        inside[i] = not ((t[k] < 0.0 and first[k]) or (t[k] > 1.0 and last[k]))
-    return distance, normal, inside
+        k = np.where(near, np.abs(height), -1.0).argmax(axis=1)
+        rows = np.arange(len(k))
+        best[own], share[own] = k, t[rows, k]
+        distance[own] = np.copysign(size[rows, k], height[rows, k])
+    beyond = ((share < 0.0) & first[best]) | ((share > 1.0) & last[best])
+    return distance, normals[best], ~beyond
+
+
+def _free_ends(pieces: Floats, same: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether the first and last ends of pieces are free: no other end is there."""
+    joints = np.concatenate([pieces[:, 0], pieces[:, 1]])
+    free = np.empty(len(joints), bool)
+    for own in _parts(len(joints), len(joints)):
+        apart = joints[own, None] - joints
+        free[own] = (np.hypot(apart[:, :, 0], apart[:, :, 1]) <= same).sum(axis=1) == 1
+    return free[: len(pieces)], free[len(pieces) :]
+
+
+def _parts(rows: int, width: int) -> Iterator[slice]:
+    """Slices of rows of some width that are compared at once."""
+    count = max(1, AT_ONCE // max(width, 1))
+    return (slice(begin, begin + count) for begin in range(0, rows, count))
 
 
 __all__ = ["check_side"]

@@ -38,7 +38,7 @@ def passed(
     pair: Pair,
     old: Floats,
     new: Floats,
-    state: NDArray[np.int8],
+    states: Callable[[], NDArray[np.int8]],
     terms: Terms,
     starts: Callable[[], Floats],
 ) -> Ints:
@@ -49,8 +49,8 @@ def passed(
     pair : Pair
     old, new : ndarray, shape (n_nodes, 3)
         Positions at both ends of the increment.
-    state : ndarray of int, shape (n,)
-        States at the end.
+    states : callable
+        Finds the states at the end, shape (n,).
     terms : Terms
         Gaps at the end.
     starts : callable
@@ -62,15 +62,18 @@ def passed(
     first, last, ends = other_side(pair, old, new)
     if not len(first):
         return np.zeros(0, np.int64)
-    drift = (last - first).reshape(-1, 2)
-    mean = drift.mean(axis=0)
-    spread = np.hypot(*(drift - mean).T).max()
+    mean, spread = np.zeros(2), 0.0
+    if first is not last:
+        drift = (last - first).reshape(-1, 2)
+        mean = drift.mean(axis=0)
+        spread = np.hypot(*(drift - mean).T).max()
     nodes = pair.nodes
     moved = np.hypot(*(move[nodes] - mean).T) + spread
     unseen = terms.area <= COVERED * pair.full
     far = (moved > UNSEEN * pair.reach) | (unseen & (moved > pair.depth))
     if not far.any():
         return np.zeros(0, np.int64)
+    state = states()
     closed = np.isin(nodes, nodes[(state == CLOSED) | (state == SLIPPING)])
     chosen = np.flatnonzero(far & ~closed)
     share = times_of_crossing(first, last, ends, old, new, nodes[chosen], starts()[chosen])
@@ -105,7 +108,9 @@ def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, In
     item = pair.item
     master = getattr(item, "master", None)
     if isinstance(master, RigidCurve):
-        pieces = _chords(master)
+        if pair.chords is None:
+            pair.chords = _chords(master)
+        pieces = pair.chords
         nodes = np.full((len(pieces), 2), -1, np.int64)
         reference = master.reference
         if reference is None or isinstance(reference, tuple):
