@@ -32,6 +32,8 @@ from benchmarks.contact_torture import PAGE
 Row = dict[str, Any]
 
 SIDES = ("old", "new")
+#: Iterations, those of attempts that failed too.
+EVERY = "all iterations"
 #: Ratio of processor times from which a run is called slower.
 SLOWER = 1.1
 
@@ -82,12 +84,12 @@ def compared(rows: list[Row]) -> str:
         for side in SIDES:
             each = [r[side]["iterations"] / max(r[side]["increments"], 1) for r in alike]
             line += [f"{np.percentile(each, share):.1f}" if each else "" for share in (50, 95)]
-        ratios = [r["new"]["iterations"] / max(r["old"]["iterations"], 1) for r in alike]
+        ratios = [r["new"][EVERY] / max(r["old"][EVERY], 1) for r in alike]
         line.append(f"{statistics.median(ratios):.2f}" if ratios else "")
         times = [_time_ratio(r) for r in alike]
         line.append(f"{statistics.median(times):.2f}" if times else "")
         line.append(str(sum(t > SLOWER for t in times)))
-        equal = [_time_ratio(r) for r in alike if r["new"]["iterations"] == r["old"]["iterations"]]
+        equal = [_time_ratio(r) for r in alike if r["new"][EVERY] == r["old"][EVERY]]
         line.append(f"{statistics.median(equal):.2f} ({len(equal)})" if equal else "")
         every = [_time_ratio(r) for r in both]
         line.append(f"{statistics.median(every):.2f}" if every else "")

@@ -80,6 +80,7 @@ def run(
         out["iterations"], out["increments"] = int(sum(count)), len(count)
         out["reached"] = results.times[-1] / sum(step.period for step in given.steps)
         out["cut-backs"] = int(results.info.get("cut-backs", 0))
+        out["all iterations"] = int(results.info.get("iterations", out["iterations"]))
         out["stages"] = results.info.get("contact stages", {})
         last = results.frames[-1]
         out["residual"] = max(f.scalars.get("residual", 0.0) for f in results.frames[1:])

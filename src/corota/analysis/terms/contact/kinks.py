@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 HALVINGS = 44
 #: Share of a difference of contact forces that must be a jump.
 JUMP = 0.25
+#: Part of the way on which less than this share of what a jump has to be is left where forces
+#: change gradually.
+SMALL, GRADUAL = 2.0**-8, 0.5
 #: Width in which the kink is searched again, in distances between its sides.
 WIDTH = 4.0
 #: And before, nearby, in distances that the last correction was to go.
@@ -138,6 +141,8 @@ class Sides:
                 high, last = middle, force
             else:
                 low, first = middle, force
+            if high - low <= SMALL and float(np.abs(last - first).max()) <= GRADUAL * JUMP * whole:
+                return None
         jump = last - first
         return (low, high, jump) if float(np.abs(jump).max()) > JUMP * whole else None
 
