@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 HALVINGS = 44
 #: Share of a difference of contact forces that must be a jump.
 JUMP = 0.25
-#: Part of the way on which less than this share of what a jump has to be is left where forces
-#: change gradually.
+#: Part of the way, and share of the least jump: forces that differ by less on so short a way change
+#: gradually.
 SMALL, GRADUAL = 2.0**-8, 0.5
 #: Width in which the kink is searched again, in distances between its sides.
 WIDTH = 4.0
