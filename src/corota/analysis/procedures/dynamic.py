@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -140,6 +141,16 @@ class DynamicStepper(NewtonStepper):
         self.book.add_to(scalars)
         loop.show_start(scalars)
 
+    @cached_property
+    def _judged(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Dofs without a local error, nodes with one, and nodes whose motion it is relative to."""
+        system, massless = self.system, self.inertia.massless
+        known = massless | system.conditions.constrained
+        there = system.per_node > 0
+        moves = system.by_node((~known & ~system.is_rotation).astype(float))[:, :2].any(axis=1)
+        counts = ~system.by_node(massless.astype(float))[:, :2].any(axis=1)
+        return known, there & moves, there & counts
+
     def memory(self) -> dict[str, Any]:
         """What a checkpoint holds beside the committed state."""
         return {
@@ -182,7 +193,7 @@ class DynamicStepper(NewtonStepper):
         reason = "" if outcome.converged else outcome.reason or "no convergence"
         self.error = 0.0
         if outcome.converged and not step.fixed_increments:
-            self.error = _local_error(system, self.motion, step, self.inertia.massless)
+            self.error = _local_error(system, self.motion, step, *self._judged)
             # An impact that no increment is short enough for is taken as it is.
             shorter = CUT * dt >= step.smallest_increment
             if shorter:
@@ -369,7 +380,9 @@ def _local_error(
     system: System,
     motion: NewmarkMotion | ConservingMotion,
     step: Dynamic,
-    massless: NDArray[np.bool_],
+    known: NDArray[np.bool_],
+    moves: NDArray[np.bool_],
+    counts: NDArray[np.bool_],
 ) -> float:
     """Local error of displacement over the allowed one (Zienkiewicz & Xie 1991).
 
@@ -380,11 +393,7 @@ def _local_error(
     begin, end, dt = motion.start, motion.end, motion.dt
     beta = motion.scheme.beta if isinstance(motion, NewmarkMotion) else 0.25
     before, after = (m.a if m.carried is None else m.carried for m in (begin, end))
-    known = massless | system.conditions.constrained
     change = system.by_node(np.where(known, 0.0, after - before))[:, :2]
-    there = system.per_node > 0
-    moves = there & system.by_node((~known & ~system.is_rotation).astype(float))[:, :2].any(axis=1)
-    counts = there & ~system.by_node(massless.astype(float))[:, :2].any(axis=1)
     if not moves.any():
         return 0.0
     reference = system.model.mesh.points

@@ -52,6 +52,7 @@ class FreeFlight:
         self.nodes = np.flatnonzero(~bound_parts[part])
         bodies = part[self.nodes]
         self.body = np.searchsorted(distinct(bodies), bodies)
+        self.count = np.bincount(self.body).astype(float)
 
     def guess(self, u: Floats, v: Floats, dt: float) -> Floats:
         """Displacement after a time, with rigid motion of free bodies, shape (n_dofs,)."""
@@ -63,17 +64,18 @@ class FreeFlight:
         if system.nlgeom:
             x += moved[self.nodes, :2]
         rate = rates[self.nodes, :2]
-        count = np.bincount(body).astype(float)
 
         def mean(values: Floats) -> Floats:
-            sums = [np.bincount(body, values[:, i]) for i in (0, 1)]
-            out: Floats = np.stack(sums, axis=1) / count[:, None]
+            out = np.empty((len(self.count), 2))
+            for i in (0, 1):
+                out[:, i] = np.bincount(body, values[:, i]) / self.count
             return out
 
         travel = mean(rate)
         arm = x - mean(x)[body]
         inertia = np.bincount(body, (arm**2).sum(axis=1))
-        lever = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        lever = np.empty(arm.shape)
+        lever[:, 0], lever[:, 1] = -arm[:, 1], arm[:, 0]
         spin = np.bincount(body, (lever * rate).sum(axis=1)) / np.where(inertia > 0, inertia, 1.0)
         turn = spin * dt
         goes = np.abs(turn) <= LARGEST_TURN

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 def _skew(v: Floats) -> Floats:
-    return np.stack([-v[:, 1], v[:, 0]], axis=1)
+    out = np.empty(v.shape)
+    out[:, 0], out[:, 1] = -v[:, 1], v[:, 0]
+    return out
 
 
 def rigid_rates(x: Floats, rates: Floats) -> Floats:

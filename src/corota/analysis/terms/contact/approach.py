@@ -67,6 +67,9 @@ class Approach:
         heavy[system.node_of_dof[~massless & ~system.is_rotation]] = True
         #: Body of each node, -1 for none, and the nodes whose mean acceleration is the body's.
         self.part, self.heavy = part, heavy & (part >= 0)
+        #: Nodes of bodies, bodies of heavy nodes, and how many each body has of these.
+        self.known, self.owner = part >= 0, part[self.heavy]
+        self.count = np.bincount(self.owner, minlength=part.max(initial=-1) + 1)
 
     def within(self, now: MotionState, dt: float, least: float) -> float:
         """The increment, or the shorter one that ends at first contact [time]."""
@@ -108,13 +111,12 @@ class Approach:
     def _accelerations(self, now: MotionState) -> Floats:
         """Mean acceleration of the body of each node, shape (n_nodes, 3)."""
         out = self.system.by_node(now.a)
-        part, heavy = self.part, self.heavy
-        if not heavy.any():
+        if not len(self.owner):
             return out
-        count = np.bincount(part[heavy], minlength=part.max() + 1)
-        sums = [np.bincount(part[heavy], out[heavy, i], len(count)) for i in (0, 1)]
-        mean = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
-        out[part >= 0, :2] = mean[part[part >= 0]]
+        inner, size = self.part[self.known], np.maximum(self.count, 1)
+        for i in (0, 1):
+            sums = np.bincount(self.owner, out[self.heavy, i], len(self.count))
+            out[self.known, i] = (sums / size)[inner]
         out[:, 2] = 0.0
         return out
 
@@ -122,9 +124,8 @@ class Approach:
         """Velocity of each node, shape (n_nodes, 3)."""
         out = self.system.by_node(now.v)
         if self.dt:
-            known = self.part >= 0
             mean = self.moved[:, :2] / self.dt + 0.5 * self.dt * acceleration[:, :2]
-            out[known, :2] = mean[known]
+            out[self.known, :2] = mean[self.known]
         return out
 
 
