@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Largest number of increments.
-MOST = 6000
+#: Largest number of increments, and of those in which the unbalanced force has not halved.
+MOST, PATIENCE = 6000, 1500
 #: Unbalanced force at rest over the largest force.
 AT_REST = 1e-4
 #: Increments between two updates of the mass.
@@ -113,7 +113,7 @@ def come_to_rest(
     contact.remains = remains
     parts = max(1, int(np.ceil(float(np.abs(left).max()) / (STEP * edge))))
     mass = np.ones_like(u)
-    kinetic = 0.0
+    kinetic, least, since = 0.0, np.inf, parts
     for i in range(MOST):
         driven = left / parts if i < parts else np.zeros_like(u)
         try:
@@ -128,8 +128,13 @@ def come_to_rest(
             return None
         unbalanced = np.where(held, 0.0, at.residual - force)
         largest = max(float(np.abs(at.internal).max()), float(np.abs(force).max()))
-        if i >= parts and float(np.abs(unbalanced).max()) <= AT_REST * largest:
+        rest = float(np.abs(unbalanced).max())
+        if i >= parts and rest <= AT_REST * largest:
             return Rest(u, contact.multipliers, contact.state)
+        if i >= parts and rest < 0.5 * least:
+            least, since = rest, i
+        if i > since + PATIENCE:
+            return None
         v = np.where(held, driven, v - inverse * unbalanced)
         last, kinetic = kinetic, float((mass * v * v)[~held].sum())
         if i >= parts and kinetic < last:
