@@ -53,7 +53,7 @@ def test_surroundings_do_not_matter(tmp_path):
     surroundings = [
         {"LC_ALL": "C", "TZ": "UTC", "PYTHONHASHSEED": "0"},
         {"LC_ALL": "de_DE.UTF-8", "LANG": "tr_TR.UTF-8", "TZ": "Asia/Kathmandu"},
-        {"PYTHONHASHSEED": "4711", "PYTHONOPTIMIZE": "1", "OMP_NUM_THREADS": "3"},
+        {"PYTHONHASHSEED": "4711", "PYTHONOPTIMIZE": "1", "OPENBLAS_NUM_THREADS": "3"},
         {"PYTHONHASHSEED": "1", "PYTHONUTF8": "0", "LC_ALL": "POSIX"},
     ]
     runs = []
