@@ -120,14 +120,11 @@ def test_signal_ends_the_run_with_7_and_all_increments_on_disk(tmp_path, number,
 
 
 def test_terminal_shows_a_live_line(tmp_path, deck):
-    path = deck(
-        tmp_path / "a.inp", ("INC=50", "INC=500"), ("0.25,1.,1e-5,0.25", "0.005,1.,1e-5,0.005")
-    )
     # Long enough to be refreshed some times on any machine.
     long = deck(
-        tmp_path / "b.inp", ("INC=50", "INC=5000"), ("0.25,1.,1e-5,0.25", "5e-4,1.,1e-5,5e-4")
+        tmp_path / "b.inp", ("INC=50", "INC=5000"), ("0.25,1.,1e-5,0.25", "1e-3,1.,1e-5,1e-3")
     )
-    arguments = ["run", str(path), "-o", str(tmp_path)]
+    arguments = ["run", str(DECK), "-o", str(tmp_path)]
     env = {**os.environ, "TERM": "xterm", "PYTHONIOENCODING": "utf-8"}
     env.pop("NO_COLOR", None)
     code, text = on_terminal(["run", str(long), "-o", str(tmp_path)], env)

@@ -40,6 +40,8 @@ def j2(strain: np.ndarray, state: np.ndarray, plane: str) -> Any:
         value = 0.5 * xi - sy**2 / 3
         slope = 0.5 * dxi - 2 / 3 * sy * H * (q + g * dq)
         g = np.where(plastic, g - value / np.where(plastic, slope, 1.0), 0.0)
+        if np.all(np.abs(value) <= 1e-15 * sy**2, where=plastic):  # rounding is all that is left
+            break
     xi_matrix = np.linalg.inv(np.linalg.inv(c) + g[..., None, None] * p)
     stress = np.einsum("...ij,...j->...i", xi_matrix, strain - ep)
     flow = g[..., None] * (stress @ p)

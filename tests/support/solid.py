@@ -54,10 +54,10 @@ class Solid:
         if excess(0.0) <= 0.0:
             return s + bulk * mean * np.eye(3)
         low, high = 0.0, (norm(s) + sum(norm(b) for b in self.beta)) / (3 * g)
-        for _ in range(200):
-            middle = 0.5 * (low + high)
+        # Until no number lies between.
+        while low < (middle := 0.5 * (low + high)) < high:
             low, high = (middle, high) if excess(middle) > 0 else (low, middle)
-        dp = 0.5 * (low + high)
+        dp = middle
         flow = 1.5 * dp * eta(dp) / norm(eta(dp))
         if commit:
             self.ep = self.ep + flow
@@ -73,11 +73,12 @@ class Solid:
         full = np.array([[e[0], e[2] / 2, 0], [e[2] / 2, e[1], 0], [0, 0, 0.0]])
         size = 3 * float(np.abs(e).max()) + 3 * float(np.abs(self.ep).max()) + 1e-12
         low, high = -size, size
-        for _ in range(200):
-            full[2, 2] = 0.5 * (low + high)
+        while low < (middle := 0.5 * (low + high)) < high:
+            full[2, 2] = middle
             if self.stress(full)[2, 2] > 0:
-                high = full[2, 2]
+                high = middle
             else:
-                low = full[2, 2]
+                low = middle
+        full[2, 2] = middle
         s = self.stress(full, commit=True)
         return np.array([s[0, 0], s[1, 1], s[0, 1]])
