@@ -22,8 +22,8 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python test-view test-petsc lint clippy format bench docs wheel try-wheel \
-	meshes lock clean
+.PHONY: help setup demo test test-rust test-python test-slow test-view test-petsc lint clippy format bench docs wheel \
+	try-wheel meshes lock clean
 
 help: ## Say what the targets do
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -46,13 +46,16 @@ setup: $(CORE) ## Make the environment and build the compute core
 demo: $(CORE) ## Run the compliant gripper: progress, files and a picture
 	@$(BIN)/python examples/gripper/gripper.py --output $(RESULTS)/gripper
 
-test: test-rust test-python ## Set up everything and run all tests
+test: test-rust test-python ## Set up everything and run the tests but for slow ones
 
 test-rust: $(CORE)
 	RUST_MIN_STACK=67108864 cargo test --quiet $(CARGO) $(UNOPTIMIZED) --jobs $(JOBS)
 
 test-python: $(CORE) test-rust
 	$(BIN)/python -m pytest -n $(JOBS)
+
+test-slow: $(CORE) ## Run the slow tests: full products of cases, long examples
+	$(BIN)/python -m pytest -n $(JOBS) -m slow
 
 VIEW := $(VENV)/.stamp-view
 

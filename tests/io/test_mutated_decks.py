@@ -16,9 +16,10 @@ def test_the_unmutated_decks_are_sound(tmp_path: Path, number: int) -> None:
     assert read(tmp_path, SEEDS[number]).mesh.n_cells >= 2
 
 
-def test_mutated_decks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("count", [270, pytest.param(600, marks=pytest.mark.slow)])
+def test_mutated_decks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int) -> None:
     monkeypatch.chdir(tmp_path)
-    outcomes = run(600, seed=3)
+    outcomes = run(count, seed=3)
     # Both outcomes occur: the mutations are neither all harmless nor all fatal.
-    assert outcomes["refused"] > 300
-    assert outcomes["accepted"] > 20
+    assert outcomes["refused"] > count / 2
+    assert outcomes["accepted"] > count / 30
