@@ -408,8 +408,14 @@ def test_harmonic_force_on_a_block_over_a_soft_layer(direct):
 # --- other frames --------------------------------------------------------------------------------
 
 
+#: Every element with every scheme, one mass for each; quick: every other one of them.
 FRAMES = [
-    (scheme, element, ["consistent", "constant", "lumped"][(i + j) % 3])
+    pytest.param(
+        scheme,
+        element,
+        ["consistent", "constant", "lumped"][(i + j) % 3],
+        marks=[pytest.mark.slow] if (i + j) % 2 else [],
+    )
     for i, scheme in enumerate(IMPLICIT)
     for j, element in enumerate(
         ["T3", "T6", "Q4", "Q4I", "Q4S", "Q4R", "Q8R", "Q9", "Q4DI", "Q4D", "OPT", "Q8"]
