@@ -22,8 +22,8 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python test-slow test-view test-petsc lint clippy format bench docs wheel \
-	try-wheel meshes lock clean
+.PHONY: help setup demo test test-rust test-python test-slow test-view test-petsc lint lint-python clippy format bench docs \
+	wheel try-wheel meshes lock clean
 
 help: ## Say what the targets do
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -70,7 +70,9 @@ test-petsc: $(CORE) ## Install PETSc (Debian 12, as root) and test runs on two p
 	scripts/install_petsc.sh $(abspath $(BIN)/python)
 	$(BIN)/python -m pytest tests/scale tests/contracts/test_petsc.py tests/contracts/test_linear_solvers.py
 
-lint: $(DEPS) clippy ## Check style, types and lints of both languages
+lint: clippy lint-python ## Check style, types and lints of both languages
+
+lint-python: $(DEPS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
