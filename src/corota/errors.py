@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Location:
     """A place in the input: file, line and column (both from 1)."""
 
@@ -84,7 +85,7 @@ def number(value: object, what: str, where: Location | None = None) -> float:
     return found
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Diagnostic:
     """One finding about an input: severity, place, card, text and remedy."""
 

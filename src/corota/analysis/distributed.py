@@ -12,7 +12,7 @@ Source: CalculiX 2.20, ``loadadd.f`` and ``bodyadd.f``; tests/steps compares wit
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +21,7 @@ from corota import _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
 from corota.analysis.following_forces import FollowingTraction, TurningForce
 from corota.arrays import distinct
+from corota.data_classes import dataclass
 from corota.errors import InputError, ModelError
 from corota.mesh import EDGES
 from corota.model import elements

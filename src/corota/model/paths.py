@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError
 from corota.model.dofs import dof_index

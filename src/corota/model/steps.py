@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal
 
 from corota.arrays import distinct
+from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.loading import Loading

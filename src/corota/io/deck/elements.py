@@ -3,12 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from corota.data_classes import dataclass
 from corota.model import elements
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class DeckElement:
     """Cell kind, element name, and the plane state if the deck's name says it."""
 
@@ -126,7 +125,7 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class LineElement:
     """Kind of the cells, number of nodes in the deck, and the section it takes."""
 

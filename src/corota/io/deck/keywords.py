@@ -3,10 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from corota.data_classes import dataclass
 from corota.io.deck.cards import amplitudes as amplitudes
 from corota.io.deck.cards import assembly as assembly
 from corota.io.deck.cards import attachments as attachments
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Keyword:
     """Function of a keyword, and its parameters.
 

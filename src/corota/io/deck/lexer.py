@@ -6,11 +6,12 @@ from __future__ import annotations
 import os
 import re
 import stat
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from corota import _core
+from corota.data_classes import dataclass
 from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
 from corota.io.deck.parameters import Parameters
@@ -36,7 +37,7 @@ UNITS_WITHIN = 65536
 _BLANK = re.compile(r'[\s"]+')
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Source:
     """Bytes of one file and the name shown in messages."""
 
@@ -51,7 +52,7 @@ class Source:
         return text, len(self.data) if end < 0 else end + 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Chunk:
     """Consecutive data lines of one file: bytes ``start:stop``, first line number."""
 

@@ -8,7 +8,7 @@ core as functions of the nodal positions alone, with exact first and second deri
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from corota.analysis.terms.contact.advice import corner_note, fillet_note
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
 from corota.analysis.terms.contact.side import check_side
 from corota.analysis.terms.term import Term
+from corota.data_classes import dataclass
 from corota.errors import ModelError, UnsupportedError
 from corota.model.contact import ContactPair, Tie
 from corota.model.schemes import SCHEMES
