@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import atexit
 import errno
+import gc
 import os
 import sys
 from typing import TYPE_CHECKING, NoReturn
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Set this variable to see the Python traceback of an error.
 TRACEBACK = "COROTA_TRACEBACK"
+#: Commands that call :func:`collect_garbage` themselves, once their job is read.
+READING = ("resume", "run")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -55,8 +58,10 @@ def program() -> NoReturn:
 
     Python takes longer to free a program's objects than to solve a small model, so it is left to
     the system. Functions registered with ``atexit`` run first. Where threads are left, or MPI has
-    to be closed, the process ends in the ordinary way.
+    to be closed, the process ends in the ordinary way. Garbage is not looked for among the objects
+    that modules are made of.
     """
+    gc.disable()
     code = main()
     threads = sys.modules.get("threading")
     if {"mpi4py", "petsc4py"} & set(sys.modules) or (
@@ -73,6 +78,13 @@ def program() -> NoReturn:
     os._exit(code)
 
 
+def collect_garbage() -> None:
+    """Let Python look for cycles again, but not among the objects so far."""
+    if not gc.isenabled():
+        gc.freeze()
+        gc.enable()
+
+
 def _run(command: str, args: object, terminal: Terminal) -> int:
     """Run a command; every error becomes a message and an exit code."""
     from importlib import import_module
@@ -84,6 +96,8 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
 
         _core.require_memory(0.0, f"corota {command}")
         run = import_module(f"corota.cli.{command}").run
+        if command not in READING:
+            collect_garbage()
         return int(run(args, terminal))
     except CorotaError as error:
         _trace()

@@ -12,6 +12,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from corota.cli import collect_garbage
 from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
 from corota.cli.together import together
@@ -179,6 +180,7 @@ def carry_out(
     if not communicator.first:
         observers = [stop]
     whole = any(f in ("npz", "vtu") for f in formats)
+    collect_garbage()
     with (
         _served(
             files,
