@@ -120,8 +120,13 @@ class AtomicFile:
     def flush(self) -> None:
         """Do nothing: only a commit is flushed to the disk."""
 
-    def commit(self) -> None:
+    def commit(self, last: bool = False) -> None:
         """Make the current state the visible one.
+
+        Parameters
+        ----------
+        last : bool
+            Whether nothing will be written any more: then no hidden copy is made.
 
         Raises
         ------
@@ -142,7 +147,7 @@ class AtomicFile:
             raise full(error, self.path) from None
         self._behind, self._pending = self._pending, []
         try:
-            self._swap()
+            self._swap(last)
         except OSError as error:
             raise full(error, self.path) from None
 
@@ -151,7 +156,10 @@ class AtomicFile:
             file.seek(offset)
             file.write(data)
 
-    def _swap(self) -> None:
+    def _swap(self, last: bool) -> None:
+        if last:
+            os.replace(self.hidden, self.path)
+            return
         if not self._shown:
             os.replace(self.hidden, self.path)
             copyfile(self.path, self.hidden)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.io.checksum import store
+from corota.io.datasets import store
 from corota.model.contact import ContactPair, RigidCurve
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.io.checksum import store
+from corota.io.datasets import store
 from corota.model.description import describe
 
 if TYPE_CHECKING:

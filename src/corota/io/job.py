@@ -218,12 +218,9 @@ class JobFiles(BaseObserver):
                 "the folder is given by -o (JobFiles(folder, name))"
             )
         inputs = {os.path.realpath(file) for file in model.sources}
-        for ending in ENDINGS:
-            path = self.folder / f"{name}.{ending}"
-            if os.path.realpath(path) in inputs or any(
-                os.path.realpath(p) in inputs
-                for p in self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")
-            ):
+        kept = self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")
+        for path in (*(self.folder / f"{name}.{ending}" for ending in ENDINGS), *kept):
+            if os.path.realpath(path) in inputs:
                 raise InputError(
                     f"{path} is an input of this job and would be replaced by its results: use "
                     "another folder (-o) or name (--name)"
@@ -469,6 +466,7 @@ class JobFiles(BaseObserver):
         if results.modes and "vtkhdf" in self._formats:
             from corota.io.modes import write_modes
 
+            self._queue.attempt(self._commit)  # modes take longer than they may wait
             path = self._path(self.name or self.model.name, "modes.vtkhdf")
             self._queue.attempt(lambda: write_modes(results, path))
         for big in self._big:

@@ -23,7 +23,7 @@ class TaskQueue:
     Parameters
     ----------
     flush : callable
-        Called after large tasks, before the thread sleeps.
+        Called after large tasks, before the thread sleeps; not at its end, where files are closed.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class TaskQueue:
             # Frequent increments must not delay the files.
             if done > MOST_WAITING // 4 or time.perf_counter() > late:
                 break
-        if large and self.error is None:
+        if large and self.error is None and not self._stop:
             self.attempt(self._flush)
         with self._free:
             self._waiting -= done

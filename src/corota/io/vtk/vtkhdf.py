@@ -14,8 +14,9 @@ import numpy as np
 from corota.analysis.parallel.partition import process_of_cells
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
-from corota.io.checksum import fletcher32, store
+from corota.io.checksum import fletcher32
 from corota.io.contacts import store_contacts
+from corota.io.datasets import Series, make_group, store
 from corota.io.description import store_description
 from corota.io.file_options import FileOptions, wanted
 from corota.io.finite import check_frame
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
 SMALL = 4096
 #: Bytes of a chunk, at most; up to here a chunk is one array of one frame.
 LARGEST = 1 << 30
+#: Chunks of a data set that are found in the cache: the one that is being filled.
+SLOTS = 7
 #: Versions of the file format: headers with checksums, and no mark in files that are being written.
 FORMAT = ("v108", "v108")
 #: The array that other programs need to turn components back into the frames of elements.
@@ -106,16 +109,21 @@ class VtkhdfWriter:
         self._chosen = self._options.chosen(self._steps)
         self._twin = AtomicFile(path, keep=resume is not None)
         self._averaging = Averaging(model.mesh)
-        self._groups = cells_and_nodes(model)
+        self._sections = cells_and_nodes(model)
         count = self._options.parts
         self._grid = Grid(model, sections, process_of_cells(model, count) if count > 1 else None)
         try:
             # A small chunk cache: every chunk is written once and never read back.
             mode = "w" if resume is None else "r+"
-            self._file = h5py.File(self._twin, mode, rdcc_nbytes=1 << 20, libver=FORMAT)
+            cache = {"rdcc_nbytes": 1 << 20, "rdcc_nslots": SLOTS}
+            self._file = h5py.File(self._twin, mode, libver=FORMAT, **cache)
         except OSError as error:
             raise FileError(f"{path}: cannot write: {error}") from None
         self._taken: list[tuple[float, dict[str, dict[str, Floats]]]] = []
+        # Groups and data sets that are open, by place, and place and name: looking one up in the
+        # file takes as long as writing a small array.
+        self._groups: dict[str, Any] = {}
+        self._series: dict[tuple[str, str], Series] = {}
         if resume is not None:
             self._resume(resume)
             return
@@ -208,18 +216,16 @@ class VtkhdfWriter:
         }
         for name, values in static.items():
             self._once(root, name, values)
-        for name in ("PointData", "CellData", "FieldData"):
-            root.create_group(name)
-        steps = root.create_group("Steps")
-        steps.attrs["NSteps"] = 0
+        for name in ("PointData", "CellData", "FieldData", "Steps"):
+            self._make_group(f"VTKHDF/{name}")
+        self._groups["VTKHDF/Steps"].attrs["NSteps"] = 0
         for name in ("Values", "PartOffsets", "NumberOfParts", "PointOffsets"):
-            number = "f8" if name == "Values" else "i8"
-            self._growing(steps, name, number)
+            self._growing("VTKHDF/Steps", name, np.zeros(0, "f8" if name == "Values" else "i8"))
         for name in ("CellOffsets", "ConnectivityIdOffsets"):
-            self._growing(steps, name, "i8", (1,))
+            self._growing("VTKHDF/Steps", name, np.zeros((0, 1), "i8"))
         for name in ("PointDataOffsets", "CellDataOffsets"):
-            steps.create_group(name)
-        own = self._file.create_group("corota")
+            self._make_group(f"VTKHDF/Steps/{name}")
+        own = self._make_group("corota")
         own.attrs["version"] = __version__
         own.attrs["job"] = self.model.name
         own.attrs["run"] = self.run
@@ -229,34 +235,49 @@ class VtkhdfWriter:
         store(own, "node labels", mesh.node_labels)
         store(own, "cell labels", mesh.cell_labels)
         for kind in ("node", "cell", "edge"):
-            group = own.create_group(f"{kind} sets")
+            group = self._make_group(f"corota/{kind} sets")
             for name, members in getattr(mesh, f"{kind}_sets").items():
                 store(group, name.replace("/", "|"), members)
-        store_contacts(own.create_group("contacts"), self.model)
+        store_contacts(self._make_group("corota/contacts"), self.model)
         store_description(own, self.model, self._steps)
-        own.create_group("frames")
-        own.create_group("points")
+        self._make_group("corota/frames")
+        self._make_group("corota/points")
         if grid.rows:
-            parts = own.create_group("parts")
+            parts = self._make_group("corota/parts")
             for name, values in grid.rows.items():
                 self._once(parts, name, values)
-        own.create_group("sections")
+        self._make_group("corota/sections")
         self._still = list(grid.still)
         for name, labels in grid.still.items():
-            self._once(root["CellData"], name, labels)
-            self._growing(root["Steps/CellDataOffsets"], name, "i8")
+            self._once(self._groups["VTKHDF/CellData"], name, labels)
+            self._growing("VTKHDF/Steps/CellDataOffsets", name, np.zeros(0, "i8"))
 
     def _once(self, group: Any, name: str, values: NDArray[Any]) -> None:
         """Write an array that does not change, packed if it is large."""
         store(group, name, values, self._options.compression if values.nbytes >= SMALL else 0)
 
-    def _growing(
-        self, group: Any, name: str, number: str, rest: tuple[int, ...] = (), data: Any = None
-    ) -> None:
-        """Create a data set with one row per frame: those of `data`, or none yet."""
-        shape = {"maxshape": (None, *rest), "chunks": (64, *rest)}
-        size = (0, *rest) if data is None else data.shape
-        group.create_dataset(name, size, number, data=data, fletcher32=True, **shape)
+    def _make_group(self, place: str) -> Any:
+        """Create a group; those around it exist."""
+        self._groups[place] = made = make_group(self._file, place)
+        return made
+
+    def _group(self, place: str) -> Any:
+        """An existing group."""
+        if place not in self._groups:
+            self._groups[place] = self._file[place]
+        return self._groups[place]
+
+    def _series_at(self, place: str, name: str) -> Series:
+        """An existing series."""
+        if (place, name) not in self._series:
+            self._series[place, name] = Series.open(self._group(place), name)
+        return self._series[place, name]
+
+    def _growing(self, place: str, name: str, rows: NDArray[Any]) -> None:
+        """Create a data set with one row per frame."""
+        self._series[place, name] = Series.create(
+            self._group(place), name, rows.shape, rows.dtype, (64, *rows.shape[1:]), data=rows
+        )
 
     def add(self, frame: Frame) -> None:
         """Take a frame; :meth:`commit` writes all taken frames to the disk.
@@ -303,11 +324,11 @@ class VtkhdfWriter:
                 _section(group): {k: arrays[k] for k in arrays if k != "nodes"}
                 for group, arrays in frame.section_averages.items()
             }
-        if self._options.points or len(self._groups) < 2:
+        if self._options.points or len(self._sections) < 2:
             return {}
         names = sorted({k for b in frame.fields for k in b.values} - {"MISES"})
         found = {}
-        for group, (cells, nodes) in self._groups.items():
+        for group, (cells, nodes) in self._sections.items():
             mean = self._averaging.average(frame.fields, names, cells)
             self._nodes_of_section(group, nodes)
             found[_section(group)] = {
@@ -318,8 +339,9 @@ class VtkhdfWriter:
         return found
 
     def _nodes_of_section(self, group: int, nodes: Ints) -> None:
-        if _section(group) not in self._file:
-            store(self._file.create_group(_section(group)), "nodes", nodes)
+        place = _section(group)
+        if place not in self._groups and place not in self._file:
+            store(self._make_group(place), "nodes", nodes)
 
     def _blocks_of_file(self, frame: Frame) -> None:
         """Cells with each variable, for a frame that was read from a file."""
@@ -329,7 +351,7 @@ class VtkhdfWriter:
         masks = np.stack([frame.cells_with[name] for name in names], axis=1)
         kinds, which = np.unique(masks, axis=0, return_inverse=True)
         for number, kind in enumerate(kinds):
-            group = self._file.create_group(f"corota/points/{number}")
+            group = self._make_group(f"corota/points/{number}")
             group.attrs["element"] = ""
             group.attrs["variables"] = " ".join(
                 n for n, has in zip(names, kind, strict=True) if has
@@ -340,8 +362,8 @@ class VtkhdfWriter:
     def _block(self, number: int, block: PointFields) -> str:
         """Group of a block of points, made at its first frame."""
         name = f"corota/points/{number}"
-        if name not in self._file:
-            group = self._file.create_group(name)
+        if name not in self._groups and name not in self._file:
+            group = self._make_group(name)
             group.attrs["element"] = block.element
             group.attrs["variables"] = " ".join(sorted(block.values))
             store(group, "cells", block.cells)
@@ -353,67 +375,58 @@ class VtkhdfWriter:
     def _store(self) -> None:
         """Write the taken frames, each array of all of them at once."""
         first, end = self._count, self._count + len(self._taken)
-        steps = self._root["Steps"]
         names: dict[tuple[str, str], Floats] = {}
         for _, data in self._taken:
             for place, arrays in data.items():
                 names |= {(place, name): values for name, values in arrays.items()}
-        # Opened once: a look-up in the file takes as long as writing a small array.
-        groups = {place: self._file[place] for place, _ in [*names, *self._known]}
-        groups |= {
-            _offsets(place): self._file[_offsets(place)] for place in groups if _is_vtk(place)
-        }
         for (place, name), like in names.items():
             rows = [data.get(place, {}).get(name) for _, data in self._taken]
             full = [np.full_like(like, _missing(place, name)) if r is None else r for r in rows]
-            self._append(groups, place, name.replace("/", "|"), like, first, full)
+            self._append(place, name, like, first, full)
         for (place, name), like in self._known.items():
             if (place, name) not in names:
                 # An array of an earlier step, such as velocities: zero from here on.
-                own = name.replace("/", "|")
-                series = groups[place][own]
-                series.resize(end * len(like), axis=0)
-                self._point_at(groups, place, own, len(like), end)
+                count, own = len(like), name.replace("/", "|")
+                series = self._series_at(place, own)
+                series.resize(end * count)
+                self._point_at(place, own, count, end, known=True)
                 if np.isnan(_missing(place, name)):
-                    series[first:] = np.nan
+                    none = np.full(((end - first) * count, *like.shape[1:]), np.nan)
+                    series.write(first * count, none)
         # Shapes only: the numbers are on disk.
         self._known |= {
             key: np.broadcast_to(np.zeros(1, like.dtype), like.shape) for key, like in names.items()
         }
         for name in ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"):
-            steps[name].resize(end, axis=0)  # new rows of a data set are 0
+            self._series_at("VTKHDF/Steps", name).resize(end)  # new rows of a data set are 0
         for name in self._still:
-            steps["CellDataOffsets"][name].resize(end, axis=0)
+            self._series_at("VTKHDF/Steps/CellDataOffsets", name).resize(end)
         for name, values in (
             ("NumberOfParts", np.full(end - first, len(self._grid.sizes))),
             ("Values", np.array([time for time, _ in self._taken])),
         ):
-            steps[name].resize(end, axis=0)
-            steps[name][first:] = values
-        steps.attrs["NSteps"] = end
+            series = self._series_at("VTKHDF/Steps", name)
+            series.resize(end)
+            series.write(first, values)
+        self._group("VTKHDF/Steps").attrs["NSteps"] = end
         self._count, self._taken = end, []
 
     def _append(
-        self,
-        groups: dict[str, Any],
-        place: str,
-        name: str,
-        like: Floats,
-        first: int,
-        frames: list[Floats],
+        self, place: str, name: str, like: Floats, first: int, frames: list[Floats]
     ) -> None:
         """Add frames from number `first` on to an array; frames that it missed are zero."""
-        rows, group, end = len(like), groups[place], first + len(frames)
-        if name in group:
-            series = group[name]
-            series.resize(end * rows, axis=0)
+        rows, end, own = len(like), first + len(frames), name.replace("/", "|")
+        known = (place, name) in self._known
+        if known:
+            series = self._series_at(place, own)
+            series.resize(end * rows)
             self._fill(series, first, frames)
         else:
-            self._create(group, name, _missing(place, name), like, first, frames)
-        self._point_at(groups, place, name, rows, end)
+            self._create(place, own, like, first, frames)
+        self._point_at(place, own, rows, end, known)
 
     def _create(
-        self, group: Any, name: str, missing: float, like: Floats, first: int, frames: list[Floats]
+        self, place: str, name: str, like: Floats, first: int, frames: list[Floats]
     ) -> None:
         """Create the data set of an array with its frames from number `first` on."""
         rows, rest = len(like), like.shape[1:]
@@ -423,60 +436,57 @@ class VtkhdfWriter:
             size = rows * max(1, SMALL // (rows * row or 1))
         else:
             size = min(rows, max(1, LARGEST // row))
-        packed = {"compression": "gzip", "compression_opts": level, "shuffle": True}
         # Writing while creating is fastest, where HDF5 need not pack.
         at_once = not first and not level
-        made = group.create_dataset(
+        self._series[place, name] = made = Series.create(
+            self._group(place),
             name,
             ((first + len(frames)) * rows, *rest),
             like.dtype,
-            np.concatenate(frames) if at_once else None,
-            maxshape=(None, *rest),
             # Where a chunk is a whole frame, one for each component: those that are zero take
             # no space and no time, and the digits of others pack better among their own.
-            chunks=(max(1, size), *((1,) if len(rest) == 1 and size == rows else rest)),
-            fillvalue=missing,
-            fletcher32=True,
-            **(packed if level else {}),
+            (max(1, size), *((1,) if len(rest) == 1 and size == rows else rest)),
+            level=level,
+            fill=_missing(place, name),
+            data=np.concatenate(frames) if at_once else None,
         )
         if not at_once:
             self._fill(made, first, frames)
         unit = self.model.unit_system.label(vf.dimension_of_array(name))
         if unit:
-            made.attrs["units"] = unit
+            self._group(place)[name].attrs["units"] = unit
 
-    def _point_at(self, groups: dict[str, Any], place: str, name: str, rows: int, end: int) -> None:
+    def _point_at(self, place: str, name: str, rows: int, end: int, known: bool) -> None:
         """Extend the rows at which the frames of an array begin, where the format has them."""
         if not _is_vtk(place):
             return
-        group = groups[_offsets(place)]
-        if name not in group:
-            self._growing(group, name, "i8", data=np.arange(end) * rows)
+        if not known:
+            self._growing(_offsets(place), name, np.arange(end) * rows)
             return
-        offsets = group[name]
-        known = len(offsets)
-        offsets.resize(end, axis=0)
-        offsets[known:] = np.arange(known, end) * rows
+        offsets = self._series_at(_offsets(place), name)
+        first = offsets.rows
+        offsets.resize(end)
+        offsets.write(first, np.arange(first, end) * rows)
 
-    def _fill(self, series: Any, first: int, frames: list[Floats]) -> None:
+    def _fill(self, series: Series, first: int, frames: list[Floats]) -> None:
         """Put frames into a series from frame number ``first`` on."""
         rows = len(frames[0])
-        if series.compression is None or series.chunks[0] != rows:
-            series[first * rows :] = np.concatenate(frames)
+        if not series.level or series.chunks[0] != rows:
+            series.write(first * rows, np.concatenate(frames))
             return
         # Chunks are whole frames, compressed here because HDF5 would block the interpreter.
         flat = series.chunks[1:] == (1,)
         for number, values in enumerate(frames, first):
             parts = list(values.T) if flat else [values]
             for column, part in enumerate(parts):
-                if not part.any() and not np.isnan(series.fillvalue):
+                if not part.any() and not np.isnan(series.fill):
                     continue  # rows that are not written are 0
                 data = np.ascontiguousarray(part, series.dtype)
                 planes = data.view(np.uint8).reshape(-1, data.itemsize).T
                 chunk = packed([plane.tobytes() for plane in planes], self._options.compression)
                 chunk += fletcher32(chunk).to_bytes(4, "little")
                 place = (column,) if flat else (0,) * (data.ndim - 1)
-                series.id.write_direct_chunk((number * rows, *place), chunk)
+                series.write_chunk((number * rows, *place), chunk)
 
     def commit(self) -> None:
         """Make all frames so far visible on disk, at once or not at all.
@@ -498,7 +508,7 @@ class VtkhdfWriter:
                 self._store()
             self._file["corota"].attrs["info"] = json.dumps(info or {}, default=float)
             self._file.close()
-            self._twin.commit()
+            self._twin.commit(last=True)
         except (OSError, ValueError) as error:
             raise CorotaError(f"internal error: {self.path}: {error}") from error
         finally:
