@@ -11,14 +11,19 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Time between two checks of the queue [s].
+#: Time between two looks at the queue [s].
 BEAT = 0.25
+#: Time before the first look [s]: a smaller job is over sooner.
+FIRST_REST = 0.05
 #: Largest number of pending bytes.
 MOST_WAITING = 64 << 20
 
 
 class TaskQueue:
     """Tasks in their order. Before the start each one is executed at once.
+
+    The thread takes them four times a second. Those of a small job, and the last ones of every
+    job, are left to the thread that waits for the end: two threads of Python do not run at once.
 
     Parameters
     ----------
@@ -30,7 +35,7 @@ class TaskQueue:
     error : Exception or None
         The first one; the tasks after it are dropped.
     seconds : float
-        Processor time of the thread.
+        Processor time of the tasks.
     """
 
     def __init__(self, flush: Callable[[], None]) -> None:
@@ -39,10 +44,10 @@ class TaskQueue:
         self._flush = flush
         self._tasks: deque[tuple[Callable[[], None], int]] = deque()
         self._waiting = 0
-        self._wake, self._free = threading.Event(), threading.Condition()
+        self._some, self._hurry = threading.Event(), threading.Event()
+        self._free = threading.Condition()
         self._stop = False
         self._thread: threading.Thread | None = None
-        self._busy_until = 0.0
 
     def start(self) -> None:
         """Start the thread."""
@@ -65,12 +70,11 @@ class TaskQueue:
             return
         with self._free:
             while self._waiting > MOST_WAITING and self.error is None:
-                self._wake.set()
+                self._hurry.set()
                 self._free.wait(1.0)
             self._waiting += size
         self._tasks.append((task, size))
-        if time.perf_counter() >= self._busy_until:
-            self._wake.set()
+        self._some.set()
 
     def attempt(self, task: Callable[[], None]) -> None:
         """Execute a task at once, and keep its error."""
@@ -80,23 +84,29 @@ class TaskQueue:
             self.error = self.error or error
 
     def drain(self) -> None:
-        """Execute all pending tasks, and end the thread."""
+        """End the thread, and execute all pending tasks."""
         if self._thread is None:
             return
         self._stop = True
-        self._wake.set()
+        self._some.set()
+        self._hurry.set()
         self._thread.join()
         self._thread = None
         while self._tasks:
             self._empty()
 
     def _work(self) -> None:
-        while not self._stop or self._tasks:
+        rest = FIRST_REST
+        while not self._stop:
+            self._hurry.wait(rest)
+            rest = BEAT
+            self._hurry.clear()
+            self._some.wait()
+            self._some.clear()
             if not self._stop:
-                self._wake.wait(BEAT if self._tasks else None)
-            self._wake.clear()
-            self._busy_until = time.perf_counter() + BEAT
-            self._empty()
+                self._empty()
+            if self._tasks:
+                self._some.set()
 
     def _empty(self) -> None:
         begin, done, large = time.thread_time(), 0, False
