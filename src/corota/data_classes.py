@@ -30,8 +30,16 @@ def _dataclass(
     """Make a data class; the options are those of :func:`dataclasses.dataclass`."""
 
     def decorate(kind: type) -> Any:
+        types, bare = kind.__annotations__, {}
+        for name, text in types.items():
+            if "ClassVar" not in text:
+                bare[name] = object  # the standard library searches in each text
+        kind.__annotations__ = bare
         layout: dict[str, bool] = {"slots": slots, "kw_only": kw_only}
         made: Any = dataclasses.dataclass(init=False, repr=False, eq=False, **layout)(kind)
+        made.__annotations__ = types
+        for name in bare:
+            made.__dataclass_fields__[name].type = types[name]
         own = vars(made)
         if "__init__" not in own:
             made.__init__ = _Init(made, frozen)

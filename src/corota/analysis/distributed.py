@@ -19,11 +19,10 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
-from corota.analysis.following_forces import FollowingTraction, TurningForce
 from corota.arrays import distinct
 from corota.data_classes import dataclass
 from corota.errors import InputError, ModelError
-from corota.mesh import EDGES
+from corota.mesh.data import EDGES
 from corota.model import elements
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, kind_of
 
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.distributed_forces import Distribution
+    from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
     from corota.errors import Location
     from corota.model.loads import LoadKind
@@ -218,6 +218,8 @@ class DistributedLoads:
                 "by a pressure or a traction that follows them",
                 load.item.where,
             )
+        from corota.analysis.following_forces import TurningForce
+
         load.force = TurningForce(system, nodes, load.item.dof, np.asarray(load.traction))
         return load
 
@@ -247,6 +249,8 @@ class DistributedLoads:
         for value in distinct(angle[alpha > 0.0]).tolist():
             mask = (angle == value) & (alpha > 0.0)
             bulges.append((mask, self._core(load.faces[mask])[0]))
+        from corota.analysis.following_forces import FollowingTraction
+
         return FollowingTraction(self.system, nodes, thickness, load.traction, bulges)
 
     def _faces(self, item: EdgeLoad) -> Ints:

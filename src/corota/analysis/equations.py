@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.evaluation import Evaluation
-from corota.analysis.free_motion import name_motion
 from corota.analysis.linear.unsymmetric import FullMatrix
 from corota.analysis.newton import ResidualNorms
 from corota.analysis.numbered_model import NumberedModel
@@ -24,6 +23,7 @@ from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.elements import Elements
 from corota.analysis.terms.term import TERMS, StatePoint
 from corota.errors import SingularError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
+
+name_motion = lazy("corota.analysis.free_motion:name_motion")
 
 #: Procedures that find the equilibrium of their own theory.
 EQUILIBRATING = ("static", "dynamic")
@@ -297,7 +299,8 @@ class System(NumberedModel):
 
     def singular(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
-        return name_motion(self, error, self.scales.ratio)
+        named: SingularError = name_motion(self, error, self.scales.ratio)
+        return named
 
     def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Any]:
         import scipy.sparse as sp

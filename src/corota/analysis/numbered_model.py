@@ -13,7 +13,6 @@ import numpy as np
 from corota import _core
 from corota.analysis.blocks import blocks_of, check_shapes, core_input
 from corota.analysis.constraints.none import constraints_of
-from corota.analysis.constraints.setup import carry_curves, extra_dofs
 from corota.analysis.linear.matrix import AssembledPattern
 from corota.analysis.linear.solvers import Multifrontal
 from corota.analysis.linear.system import LinearSystem
@@ -23,6 +22,7 @@ from corota.analysis.parallel.partition import own_blocks
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains, start_temperatures
 from corota.errors import ModelError
+from corota.lazy import lazy
 from corota.model import elements
 
 if TYPE_CHECKING:
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+carry_curves = lazy("corota.analysis.constraints.setup:carry_curves")
+extra_dofs = lazy("corota.analysis.constraints.setup:extra_dofs")
 
 #: Names of the dofs in messages.
 DOF_NAMES = ("x", "y", "rotation")
@@ -79,7 +82,7 @@ class NumberedModel:
         for b in self.blocks:
             own = elements.find(b.section.element).dofs_per_node
             np.maximum.at(carried, b.nodes.ravel(), own)
-        extra = extra_dofs(model, carried > 0)
+        extra = extra_dofs(model, carried > 0) if model.constraints else np.zeros(0, np.uint8)
         if model.contacts:
             extra = carry_curves(model, carried, extra)
         if self.communicator.size > 1:

@@ -24,9 +24,9 @@ from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.output import output as contact_output
-from corota.analysis.terms.inertia import add_kinetic
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, UnsupportedError
+from corota.lazy import lazy
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
 from corota.results.results import Frame, Results
 
@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
+
+add_kinetic = lazy("corota.analysis.terms.inertia:add_kinetic")
 
 #: Largest useful number of threads per core, and in total.
 THREADS_PER_CORE, LEAST_CAP = 4, 64

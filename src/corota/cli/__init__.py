@@ -58,8 +58,8 @@ def program() -> NoReturn:
 
     Python takes longer to free a program's objects than to solve a small model, so it is left to
     the system. Functions registered with ``atexit`` run first. Where threads are left, or MPI has
-    to be closed, the process ends in the ordinary way. Garbage is not looked for among the objects
-    that modules are made of.
+    to be closed, the process ends in the ordinary way. There is no garbage to search for while
+    modules are imported.
     """
     gc.disable()
     code = main()

@@ -12,8 +12,8 @@ from typing import Any, TextIO
 COLORS = {"red": "31", "green": "32", "yellow": "33", "blue": "34", "dim": "2", "bold": "1"}
 #: Control characters and marks of direction, except ends of lines, tabs and :data:`COLORS`.
 _REST = r"[\x00-\x08\x0b-\x1a\x1c-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]"
-_COMMANDS = re.compile(rf"\033(?!\[(?:0|{'|'.join(COLORS.values())})m)|{_REST}")
-_COMMANDS_AND_COLORS = re.compile(rf"\033|{_REST}")
+_COMMANDS = rf"\033(?!\[(?:0|{'|'.join(COLORS.values())})m)|{_REST}"
+_COMMANDS_AND_COLORS = rf"\033|{_REST}"
 
 
 class Terminal:
@@ -132,7 +132,7 @@ def _plain(text: str, colored: bool) -> str:
     Names and lines of a deck are repeated in messages; they may hold anything.
     """
     commands = _COMMANDS if colored else _COMMANDS_AND_COLORS
-    return commands.sub(lambda found: repr(found[0])[1:-1], text)
+    return re.sub(commands, lambda found: repr(found[0])[1:-1], text)
 
 
 def _printable(text: str, stream: TextIO) -> str:

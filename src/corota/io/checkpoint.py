@@ -23,6 +23,7 @@ from corota.analysis.state_tree import Reader
 from corota.data_classes import dataclass
 from corota.errors import FileError
 from corota.io.atomic_file import full
+from corota.io.file_options import CHECKPOINTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 MAGIC = "corota checkpoint 1\n"
 #: Bytes of the block before the HDF5 part.
 HEAD = 512
-#: Endings of the newest checkpoint and of the one before.
-ENDINGS = ("ckpt", "ckpt.1")
 
 
 @dataclass
@@ -265,13 +264,15 @@ def candidates(path: Path) -> list[Path]:
     path : Path
         A checkpoint, a deck, another file of the job, or its stem.
     """
-    if path.name.endswith(ENDINGS):
+    if path.name.endswith(CHECKPOINTS):
         stem = path.name.removesuffix(".1").removesuffix(".ckpt")
-        listed = [path, *(path.with_name(f"{stem}.{ending}") for ending in ENDINGS)]
+        listed = [path, *(path.with_name(f"{stem}.{ending}") for ending in CHECKPOINTS)]
     else:
         stem = path.name if not path.suffix else path.stem
         listed = [
-            path.with_name(f"{s}.{e}") for s in dict.fromkeys((stem, path.name)) for e in ENDINGS
+            path.with_name(f"{s}.{e}")
+            for s in dict.fromkeys((stem, path.name))
+            for e in CHECKPOINTS
         ]
     return [p for p in dict.fromkeys(listed) if p.exists()]
 
@@ -296,4 +297,4 @@ def newest(path: Path) -> tuple[Saved, list[str]]:
     raise FileError("no checkpoint can be used; " + "; ".join(refused))
 
 
-__all__ = ["ENDINGS", "Saved", "candidates", "load", "newest", "rebuilt", "store"]
+__all__ = ["Saved", "candidates", "load", "newest", "rebuilt", "store"]

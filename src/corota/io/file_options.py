@@ -34,6 +34,8 @@ ALIASES = {
 }  # fmt: skip
 #: Always written: it is needed to draw the shape.
 ALWAYS = frozenset(FIELDS["U"])
+#: Endings of checkpoints, the newest first.
+CHECKPOINTS = ("ckpt", "ckpt.1")
 #: A level of gzip that takes little time; higher ones gain little on floating-point numbers.
 LEVEL = 1
 

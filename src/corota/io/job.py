@@ -14,21 +14,18 @@ from corota.analysis.checkpoint import model_tree
 from corota.analysis.state_tree import Reader, Unstorable, Writer
 from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full
-from corota.io.checkpoint import ENDINGS as CHECKPOINTS
-from corota.io.checkpoint import store
 from corota.io.events import Events, json_line
-from corota.io.file_options import LEVEL, FileOptions
+from corota.io.file_options import CHECKPOINTS, LEVEL, FileOptions
 from corota.io.finite import check_frame
 from corota.io.folder_lock import FolderLock
 from corota.io.provenance import place_of
 from corota.io.requests import due_now, left_over, wants_file
 from corota.io.stop_request import StopRequest, stop_file
 from corota.io.tables.csv_history import CsvWriter, Histories
-from corota.io.tables.dat import check_requests, dat_blocks
-from corota.io.tables.dat_modes import buckling_table, eigenvalue_tables
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
 from corota.io.task_queue import TaskQueue
 from corota.io.writers import STREAMS, Job
+from corota.lazy import lazy
 from corota.names import choose
 from corota.results.observer import BaseObserver
 
@@ -44,6 +41,13 @@ if TYPE_CHECKING:
     from corota.model.steps import Output, Step
     from corota.results.observer import Iteration
     from corota.results.results import Frame, Results
+
+# Tables and checkpoints that small jobs do not write.
+check_requests = lazy("corota.io.tables.dat:check_requests")
+dat_blocks = lazy("corota.io.tables.dat:dat_blocks")
+buckling_table = lazy("corota.io.tables.dat_modes:buckling_table")
+eigenvalue_tables = lazy("corota.io.tables.dat_modes:eigenvalue_tables")
+store = lazy("corota.io.checkpoint:store")
 
 #: Endings of all files of a job.
 ENDINGS = (
@@ -179,7 +183,9 @@ class JobFiles(BaseObserver):
         InputError
             If a print request names an unknown variable.
         """
-        check_requests(steps)
+        self._printed = any(o.kind.endswith("print") for s in steps for o in s.outputs)
+        if self._printed:
+            check_requests(steps)
         self.model, self.steps = model, steps
         name = self._checked_name(model)
         self._place = self._source
@@ -236,8 +242,7 @@ class JobFiles(BaseObserver):
             self._set_aside(name)
         self._text: dict[str, TextFile] = {}
         endings = ["sta", "cvg", "jsonl"]
-        printed = any(o.kind.endswith("print") for s in steps for o in s.outputs)
-        if printed or any(s.procedure in ("buckle", "frequency") for s in steps):
+        if self._printed or any(s.procedure in ("buckle", "frequency") for s in steps):
             endings.insert(0, "dat")
         with contextlib.ExitStack() as opened:  # closed where one of them cannot be continued
             for ending in endings:
@@ -479,12 +484,12 @@ class JobFiles(BaseObserver):
 
     def _iterate(self, results: Results) -> None:
         """Write the last iterate; a converged run has no such file."""
-        from corota.io.modes import write_iterate
-
         name = f"{self.name or self.model.name}.last_iterate.vtkhdf"
         if results.last_iterate is None or "vtkhdf" not in self._formats:
             (self.folder / name).unlink(missing_ok=True)
             return
+        from corota.io.modes import write_iterate
+
         path = self.folder / name
         self.paths.append(path)
         self._queue.attempt(lambda: write_iterate(results, path))

@@ -1,11 +1,37 @@
-"""Planar meshes: data, generators, changes, quality, files."""
+"""Planar meshes: data, generators, changes, quality, files.
+
+Names are imported at first use: a mesh that is read from a deck needs no generators.
+"""
 
 # SPDX-License-Identifier: BSD-3-Clause
-from corota.mesh.assembly import add_node, assembly
-from corota.mesh.change import merge, move, renumber, to_quadratic, to_triangles
-from corota.mesh.data import EDGES, N_NODES, Cells, Mesh
-from corota.mesh.files import read
-from corota.mesh.generate import annulus, distort, mapped, rectangle
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from corota.mesh.assembly import add_node, assembly  # the module has the name of its function
+
+if TYPE_CHECKING:
+    from corota.mesh.change import merge, move, renumber, to_quadratic, to_triangles
+    from corota.mesh.data import EDGES, N_NODES, Cells, Mesh
+    from corota.mesh.files import read
+    from corota.mesh.generate import annulus, distort, mapped, rectangle
+
+#: Module of each name.
+_HOMES = {
+    "EDGES": "data",
+    "N_NODES": "data",
+    "Cells": "data",
+    "Mesh": "data",
+    "annulus": "generate",
+    "distort": "generate",
+    "mapped": "generate",
+    "merge": "change",
+    "move": "change",
+    "read": "files",
+    "rectangle": "generate",
+    "renumber": "change",
+    "to_quadratic": "change",
+    "to_triangles": "change",
+}
 
 __all__ = [
     "EDGES",
@@ -25,3 +51,15 @@ __all__ = [
     "to_quadratic",
     "to_triangles",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'corota.mesh' has no attribute {name!r}")
+    value = getattr(import_module(f"corota.mesh.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -46,6 +46,8 @@ def local_strain(name: str, where: Location | None = None) -> str:
     >>> local_strain("GREEN LAGRANGE"), local_strain("simplified")
     ('green_lagrange', 'linear')
     """
+    if isinstance(name, str) and name in LOCAL_STRAINS:
+        return name
     known = {**{n: n for n in LOCAL_STRAINS}, **ALIASES}
     plain = {_plain(n): value for n, value in known.items()}
     found = plain.get(_plain(str(name)))

@@ -50,7 +50,7 @@ NAMED = {
 }
 #: Units of moments and volumes are written out; energies have their own name.
 _ENERGY = {"energy": "force*length", "energy/length^3": "force*length/length^3"}
-_FACTOR = re.compile(r"([*/]?)([a-z]+)(?:\^(\d))?")
+_FACTOR = r"([*/]?)([a-z]+)(?:\^(\d))?"
 _RAISED = {"2": "²", "3": "³", "4": "⁴"}
 #: Relative tolerance of masses against force times time squared over length.
 SAME = 1e-3
@@ -140,6 +140,8 @@ class Units:
         """
         if dimension in ("", "rad"):
             return dimension
+        if not self:
+            return ""
         named = NAMED.get((dimension, self.force, self.length))
         if named:
             return named
@@ -151,7 +153,7 @@ class Units:
                 return f"{joule}/{below}" if below else ""
             dimension = _ENERGY.get(dimension, dimension)
         text = ""
-        for sign, name, power in _FACTOR.findall(dimension):
+        for sign, name, power in re.findall(_FACTOR, dimension):
             unit = str(getattr(self, name, ""))
             if not unit and name != "rad":
                 return ""

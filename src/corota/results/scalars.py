@@ -78,10 +78,11 @@ def general(name: str) -> str:
     """
     if name in SCALARS:
         return name
-    of_pair = re.fullmatch(r".*(: (?:friction )?(?:force [xy]|[xy]|moment|area))", name)
-    if of_pair:
-        return f"PAIR{of_pair.group(1)}"
-    return re.sub(r" \d+$", " k", name)
+    if ": " in name:
+        of_pair = re.fullmatch(r".*(: (?:friction )?(?:force [xy]|[xy]|moment|area))", name)
+        if of_pair:
+            return f"PAIR{of_pair.group(1)}"
+    return re.sub(r" \d+$", " k", name) if name[-1:].isdigit() else name
 
 
 def table() -> list[str]:

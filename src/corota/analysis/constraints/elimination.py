@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.constraints.setup import Builder, extra_dofs
-from corota.analysis.linear.reduction import Reduction, Rows
 from corota.analysis.linear.triplets import Triplets
 from corota.data_classes import dataclass
 from corota.errors import ModelError
@@ -26,6 +24,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.constraints.relations import Relation
     from corota.analysis.linear.matrix import SymmetricPattern
+    from corota.analysis.linear.reduction import Rows
     from corota.errors import Location
     from corota.model.model import Model
 
@@ -199,6 +198,9 @@ class Constraints:
         carried: Ints,
         matrix: SymmetricPattern,
     ) -> None:
+        from corota.analysis.constraints.setup import Builder
+        from corota.analysis.linear.reduction import Reduction, Rows
+
         self.n = int(start[-1])
         self._about_reference = False
         self.start = start
@@ -371,6 +373,8 @@ class Constraints:
         """Rows of ``Q G`` that are not those of the identity."""
         import scipy.sparse as sp
 
+        from corota.analysis.linear.reduction import Rows
+
         m = len(self.special)
         chosen = self.place[self.special]
         own = np.flatnonzero(chosen < 0)
@@ -410,4 +414,4 @@ class Constraints:
             )
 
 
-__all__ = ["Constraints", "LinearizedConstraints", "extra_dofs", "local_axes"]
+__all__ = ["Constraints", "LinearizedConstraints", "local_axes"]

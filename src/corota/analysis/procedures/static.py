@@ -11,18 +11,9 @@ import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
-from corota.analysis.procedures.stopping import (
-    at_limit,
-    collapse,
-    driven,
-    explained,
-    unstable,
-    ways,
-)
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
-from corota.model.paths import ArcLength
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,6 +27,13 @@ if TYPE_CHECKING:
     from corota.analysis.terms.contact.newton import ContactIncrement
     from corota.model.steps import Static
 
+# What a step without difficulties does not need.
+at_limit = lazy("corota.analysis.procedures.stopping:at_limit")
+collapse = lazy("corota.analysis.procedures.stopping:collapse")
+driven = lazy("corota.analysis.procedures.stopping:driven")
+explained = lazy("corota.analysis.procedures.stopping:explained")
+unstable = lazy("corota.analysis.procedures.stopping:unstable")
+ways = lazy("corota.analysis.procedures.stopping:ways")
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
 by_relaxation = lazy("corota.analysis.procedures.static_relaxation:by_relaxation")
 
@@ -224,7 +222,7 @@ class StaticStepper(NewtonStepper):
 
     def refusal(self, failed: Attempt, end: str) -> str:
         """Why the step stopped."""
-        return explained(
+        text: str = explained(
             self.system,
             self.loop.number,
             self.control,
@@ -233,6 +231,7 @@ class StaticStepper(NewtonStepper):
             end,
             self.rates,
         )
+        return text
 
     def accept(self, attempt: Attempt) -> Accepted:
         """Commit an increment and set the size of the next."""
@@ -299,6 +298,8 @@ class StaticStepper(NewtonStepper):
             system.conditions.check_proportional()
         except ModelError:
             return False
+        from corota.model.paths import ArcLength
+
         path = ArcLength(factor=1.0, stop_at_limit=step.at_limit == "stop")
         along = replace(
             step,

@@ -9,9 +9,9 @@ import numpy as np
 
 from corota.analysis.load_history import LoadHistory
 from corota.errors import ModelError
+from corota.lazy import lazy
 from corota.model.dofs import DOFS
 from corota.model.loads import check_supports
-from corota.model.rotations import without_rotation
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from corota.model.loads import Fixed
 
     Floats = NDArray[np.float64]
+
+without_rotation = lazy("corota.model.rotations:without_rotation")
 
 
 class Supports:

@@ -34,6 +34,8 @@ NO_NUMBER = "the material function returned a stress or tangent that is not a nu
 
 @dataclass
 class _Block:
+    """A block with a user-defined material."""
+
     index: int
     material: UserMaterial
     plane: str

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 Number = TypeVar("Number", int, float)
 
 #: What follows from elements that were refused.
-FOLLOWS = re.compile(
+FOLLOWS = (
     r"no (element set|surface|set|node set) named|element (set )?\S+ |elements? .* not defined|"
     r"the deck has no elements|surface \S+ (cannot|has no)|either NSET|.* elements of curves only"
 )
@@ -103,6 +103,12 @@ class Deck:
         self.scope = self.root
 
     @property
+    def has_contact(self) -> bool:
+        """Whether any card defines contact, or a part of it that may be unused."""
+        general = self.general is not None
+        return general or bool(self.pairs or self.interactions or self.carriers)
+
+    @property
     def n_errors(self) -> int:
         """Number of errors found."""
         return sum(d.severity == "error" for d in self.diagnostics)
@@ -147,7 +153,7 @@ class Deck:
             text = card.text if card and where and where.line == card.where.line else ""
         if len(text) > 160:
             text = text[:157] + "..." if not where or where.column <= 157 else ""
-        if self.refused_types and self.building and FOLLOWS.match(message):
+        if self.refused_types and self.building and re.match(FOLLOWS, message):
             return  # the elements were refused; references to them are not reported again
         name = numerals.clipped(card.spelled, 60) if card else ""
         message, hint = numerals.clipped(message), numerals.clipped(hint)

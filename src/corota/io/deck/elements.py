@@ -124,6 +124,9 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 #: Sides of a rigid body (R2D2) name its nodes and its boundary.
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
+#: Point masses and dashpots, with their number of nodes.
+ATTACHED = {"MASS": 1, "DASHPOTA": 2}
+
 
 @dataclass(frozen=True)
 class LineElement:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from corota.errors import DeckError, Diagnostic, InputError
 from corota.io.deck.build.model import ModelBuilder
-from corota.io.deck.cards.assembly import close_part
 from corota.io.deck.deck import Deck, nearest
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.interpret import interpret
 from corota.io.deck.lexer import Lexer, key
 from corota.io.deck.restart import card_that_reads, with_earlier_steps
+from corota.lazy import lazy
 from corota.model.units import Units
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from corota.model.model import Model
+
+close_part = lazy("corota.io.deck.cards.assembly:close_part")
 
 
 def read_deck(

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.io.vtk.parts import Parts
 from corota.results.averaging import section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
@@ -93,6 +92,8 @@ class Grid:
         self.rows: dict[str, Ints] = {}
         points = mesh.points
         if parts is not None:
+            from corota.io.vtk.parts import Parts
+
             cut = Parts(self.chain, self.ends, parts[self._index], mesh.n_nodes)
             self.chain, self.ends, self.sizes = cut.chain, cut.ends, cut.sizes
             self.types, self._index = self.types[cut.cells], self._index[cut.cells]

@@ -14,7 +14,6 @@ import numpy as np
 from corota.analysis.parallel.partition import process_of_cells
 from corota.errors import CorotaError, FileError
 from corota.io.atomic_file import AtomicFile
-from corota.io.checksum import fletcher32
 from corota.io.contacts import store_contacts
 from corota.io.datasets import Series, make_group, store
 from corota.io.description import store_description
@@ -22,7 +21,7 @@ from corota.io.file_options import FileOptions, wanted
 from corota.io.finite import check_frame
 from corota.io.vtk.frame_arrays import cell_data, cells_and_nodes, halved, point_data, scalars
 from corota.io.vtk.grid import Grid
-from corota.io.vtk.packing import packed
+from corota.lazy import lazy
 from corota.results import variables as vf
 from corota.results.averaging import AVERAGING, Averaging
 
@@ -39,6 +38,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+fletcher32 = lazy("corota.io.checksum:fletcher32")
+packed = lazy("corota.io.vtk.packing:packed")
 
 #: Bytes of one array of a frame up to which several frames share a chunk, uncompressed.
 SMALL = 4096

@@ -13,14 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.terms.contact.advice import corner_note, fillet_note
-from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, Pair, Terms
-from corota.analysis.terms.contact.side import check_side
+from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, Terms
 from corota.analysis.terms.term import Term
 from corota.data_classes import dataclass
 from corota.errors import ModelError, UnsupportedError
+from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie
-from corota.model.schemes import SCHEMES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,11 +26,18 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.term import StatePoint
     from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+# Parts that models without contact do not need.
+check_side = lazy("corota.analysis.terms.contact.side:check_side")
+corner_note = lazy("corota.analysis.terms.contact.advice:corner_note")
+fillet_note = lazy("corota.analysis.terms.contact.advice:fillet_note")
+make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 
 #: Procedures that support contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
@@ -104,7 +109,7 @@ class ContactTerm(Term):
         self.system = system
         model = system.model
         items: list[ContactPair | Tie] = [*model.ties, *model.contacts]
-        self.pairs = [Pair(system, item) for item in items]
+        self.pairs: list[Pair] = [make_pair(system, item) for item in items]
         names: dict[str, int] = {}
         for pair in self.pairs:
             count = names[pair.item.name] = names.get(pair.item.name, 0) + 1
@@ -223,9 +228,16 @@ class ContactTerm(Term):
                 if not pair.tied:
                     pair.persist(pair.evaluate(x, x, self.system.nlgeom))
         self.law_share = 1.0
+        if scheme:
+            self._share_law(scheme, step)
+        self._keep_law_force()
+
+    def _share_law(self, scheme: str, step: Step) -> None:
+        """Weigh laws of pressure as the time scheme weighs forces."""
+        from corota.model.schemes import SCHEMES
+
         if scheme in SCHEMES:
             self.law_share -= SCHEMES[scheme](step.alpha, step.rho_inf).alpha_f  # type: ignore[attr-defined]
-        self._keep_law_force()
 
     def _start(self, explicit: bool) -> None:
         """Check the initial gaps: report, adjust or ramp them."""

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
+#: States of a constraint, as the laws of the core number them.
+OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Fraction of its full area below which a node counts as uncovered.
 COVERED = 1e-9
 
@@ -58,4 +60,4 @@ class Terms:
         return self if self.between is None else self.between
 
 
-__all__ = ["COVERED", "Terms"]
+__all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "Terms"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.pair import COVERED, OPEN
+from corota.analysis.terms.contact.gaps import COVERED, OPEN
 from corota.arrays import distinct
 
 if TYPE_CHECKING:

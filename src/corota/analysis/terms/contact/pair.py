@@ -11,7 +11,7 @@ import numpy as np
 
 from corota import _core
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
-from corota.analysis.terms.contact.gaps import COVERED, Terms
+from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SLIPPING, Terms
 from corota.analysis.terms.contact.setup import contact_core, tie_core
 from corota.arrays import distinct
 from corota.model.contact import METHODS, ContactPair, Tie
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     Constraints = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats | None]
 
-#: States of a constraint, as the laws of the core number them.
-OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Deformations below this fraction of the model's size are rounding.
 NONE = 1e-8
 #: Change of the pressure of a redundant corner per error of its gap, relative to its stiffness: it

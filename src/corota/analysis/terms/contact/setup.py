@@ -11,7 +11,7 @@ from corota import _core
 from corota.analysis.terms.contact.smoothing import smoothed
 from corota.analysis.terms.contact.surface import Surface
 from corota.errors import ModelError
-from corota.mesh import EDGES
+from corota.mesh.data import EDGES
 from corota.mesh.parts import part_of_cells
 from corota.model import elements
 from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness

@@ -10,9 +10,8 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.io.deck import numerals
-from corota.io.deck.build.base_motion import base_motion
-from corota.io.deck.cards.thermal import build_temperature
 from corota.io.deck.deck import nearest
+from corota.lazy import lazy
 from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
 from corota.model.material_table import MaterialTable
@@ -23,7 +22,10 @@ if TYPE_CHECKING:
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import Draft, StepDraft
     from corota.mesh.data import Ints
-    from corota.model.loads import Load
+    from corota.model.loads import Load, Temperature
+
+base_motion = lazy("corota.io.deck.build.base_motion:base_motion")
+build_temperature = lazy("corota.io.deck.cards.thermal:build_temperature")
 
 
 class LoadBuilder:
@@ -133,7 +135,8 @@ class LoadBuilder:
             nodes = self.targets.nodes(draft)
             if nodes is None or amplitude is None:
                 return None
-            return build_temperature(draft, nodes, amplitude)
+            found: Temperature = build_temperature(draft, nodes, amplitude)
+            return found
         if draft.kind.startswith("surface "):
             edges = self._edges_of(draft)
             if edges is None or amplitude is None:

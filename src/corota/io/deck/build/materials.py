@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.cards.plastic import build_mises
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
     from corota.model.materials import Material
+
+build_mises = lazy("corota.io.deck.cards.plastic:build_mises")
 
 
 def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) -> Material | None:

@@ -8,18 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import InputError
-from corota.io.deck.build.contact import build_contacts
 from corota.io.deck.build.loads import LoadBuilder
 from corota.io.deck.build.materials import share_damping
 from corota.io.deck.build.mesh import MeshBuilder, views_in
-from corota.io.deck.build.pretension import PretensionBuilder
 from corota.io.deck.build.sections import SectionBuilder
 from corota.io.deck.build.targets import Targets
-from corota.io.deck.build.ties import build_tie
-from corota.io.deck.cards.attachments import build_attachments
-from corota.io.deck.cards.thermal import build_initial
 from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 from corota.model.loads import InitialVelocity
 from corota.model.model import Model
 from corota.model.steps import Static, SteadyState
@@ -30,6 +26,13 @@ if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import Draft, StepDraft
     from corota.model.steps import Step
+
+# Parts that few decks have.
+build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
+build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
+build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
+build_tie = lazy("corota.io.deck.build.ties:build_tie")
+pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
 
 
 class ModelBuilder:
@@ -48,9 +51,11 @@ class ModelBuilder:
         """Everything."""
         targets = self.targets
         self.sets.fill()
-        pretension = PretensionBuilder(self.deck, self.model, self.sets)
-        pretension.cut()
-        targets.twins = pretension.twins()
+        pretension = None
+        if self.deck.pretensions:
+            pretension = pretension_builder(self.deck, self.model, self.sets)
+            pretension.cut()
+            targets.twins = pretension.twins()
         targets.rotating = np.zeros(self.mesh.n_nodes, bool)
         share_damping(self.deck)
         until = sum(step.times[1] for step in self.deck.steps)
@@ -71,24 +76,29 @@ class ModelBuilder:
                     tie,
                 )
         targets.at = self.meshes.views[0]
-        build_contacts(deck, model, self.sets, targets.nodes, targets.rotating)
+        if deck.has_contact:
+            build_contacts(deck, model, self.sets, targets.nodes, targets.rotating)
         model.amplitudes = {a.name: a for a in deck.amplitudes.values()}
-        pretension.join(targets.nodes, targets.rotating)
+        if pretension is not None:
+            pretension.join(targets.nodes, targets.rotating)
         model.supports += self.loads.supports(deck.supports)
-        build_attachments(deck, model, targets.nodes)
+        if deck.attached:
+            build_attachments(deck, model, targets.nodes)
         for item in deck.velocities:
             nodes = targets.nodes(item)
             if nodes is not None:
                 model.velocities.append(
                     InitialVelocity(nodes, item.value, item.index, item.row.where)
                 )
-        build_initial(deck, model, targets.nodes, targets.cells_of)
+        if deck.initial:
+            build_initial(deck, model, targets.nodes, targets.cells_of)
         for draft in deck.steps:
             step = self._step(draft)
             if step is not None:
                 step.restart = draft.restart
                 model.steps.append(step)
-        pretension.share_fields()
+        if pretension is not None:
+            pretension.share_fields()
         self.sets.report_missing(targets.used | {key(tie.surface) for tie in deck.ties})
         model.time_points = deck.time_points
         model.title = " ".join(deck.heading)

@@ -15,7 +15,6 @@ from corota.errors import InputError
 from corota.io.deck.build.materials import build_material
 from corota.io.deck.build.mesh import View, views_in
 from corota.io.deck.build.temperatures import constant_temperature, drop_temperatures
-from corota.io.deck.cards.lines import build_lines, truss_section
 from corota.io.deck.deck import nearest
 from corota.io.deck.elements import (
     ASK,
@@ -26,6 +25,7 @@ from corota.io.deck.elements import (
     WRITTEN_BY_MESHIO,
 )
 from corota.io.deck.lexer import key
+from corota.lazy import lazy
 from corota.mesh.parts import nodes_of_cells
 from corota.model.local_strain import LocalStrain
 from corota.model.sections import Section
@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 
 #: Cards that give beams and springs their section.
 SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
+
+build_lines = lazy("corota.io.deck.cards.lines:build_lines")
+truss_section = lazy("corota.io.deck.cards.lines:truss_section")
 
 
 class SectionBuilder:
@@ -98,9 +101,9 @@ class SectionBuilder:
             material = materials[key(draft.material)]
             if material is not None:
                 self._section(view, draft, found.cells, material)
-        build_lines(
-            self.deck, self.model, self.meshes, self.sets, materials, self.targets.rotating, owner
-        )
+        if any(view.scope.lines for view in self.meshes.views):
+            rotating = self.targets.rotating
+            build_lines(self.deck, self.model, self.meshes, self.sets, materials, rotating, owner)
         bare = np.flatnonzero(owner == -1)
         if len(bare) and (drafts or self.deck.steps):
             label = self.mesh.cell_labels[bare[0]]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
     from corota.mesh.data import Ints, Mesh
 
-_FACE = re.compile(r"S(\d{1,9})\Z", re.ASCII)
+_FACE = r"S(\d{1,9})\Z"
 _NONE: Ints = np.zeros(0, np.int64)
 
 
@@ -349,7 +349,7 @@ class Sets:
         if not row.face:
             free = self.mesh.boundary_edges()
             return free[np.isin(free[:, 0], cells)]
-        match = _FACE.match(row.face)
+        match = re.match(_FACE, row.face, re.ASCII)
         if not match:
             self.deck.error(
                 surface.card,

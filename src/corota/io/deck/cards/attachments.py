@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import AttachedDraft, Draft
+from corota.io.deck.elements import ATTACHED
 from corota.io.deck.lexer import key
 from corota.model.attachments import Dashpot, PointMass
 
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
     Find = Callable[[Draft], str | Ints | None]
 
-#: Element types and their numbers of nodes.
-TYPES = {"MASS": 1, "DASHPOTA": 2}
 #: The card that gives the value of each.
 CARDS = {"MASS": "MASS", "DASHPOTA": "DASHPOT"}
 
@@ -32,7 +31,7 @@ def elements(deck: Deck, card: Card, type_: str) -> None:
     """``*ELEMENT, TYPE=MASS`` or ``DASHPOTA``: label, nodes; the set names them."""
     name = deck.required(card, "ELSET")
     draft = AttachedDraft(type_, name, card)
-    count = TYPES[type_]
+    count = ATTACHED[type_]
     for row in card.rows():
         deck.extra_fields(card, row, count + 1)
         numbers = [deck.integer(card, row, 0, "the element number")]
@@ -112,4 +111,4 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
                 model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value, where=where))
 
 
-__all__ = ["TYPES", "AttachedDraft", "build_attachments", "dashpot", "elements", "mass"]
+__all__ = ["AttachedDraft", "build_attachments", "dashpot", "elements", "mass"]

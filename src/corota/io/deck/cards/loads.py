@@ -20,24 +20,17 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card, Row
 
 
-_TRACTION = re.compile(r"(TRVEC|TRSHR)(\d{1,9})\Z", re.ASCII)
-
-
+_FACE = r"P(\d{1,9})\Z"
+_TRACTION = r"(TRVEC|TRSHR)(\d{1,9})\Z"
 #: Loads of other programs, and what to give instead.
 _OTHER_LOADS = (
-    (re.compile(r"(PZ|BZ)\Z"), "a planar model takes no load out of its plane"),
-    (re.compile(r"HP\d?\Z"), "give each edge its mean pressure: P1 to P4, or P on surfaces"),
-    (
-        re.compile(r"(P\d?|[BP][XY]|TRVEC\d?|TRSHR\d?)NU\Z"),
-        "no user subroutine is called: give values",
-    ),
-    (re.compile(r"(ROTA|CORIO)\Z"), "rotate the base by *BOUNDARY, or give BX and BY"),
-    (re.compile(r"ROTDYNF\Z"), "CENTRIF takes the square of the angular velocity"),
-    (re.compile(r"(F|VBF|SBF|SP)\d?\Z"), "give springs by *SPRING, pressures by P1 to P4"),
+    (r"(PZ|BZ)\Z", "a planar model takes no load out of its plane"),
+    (r"HP\d?\Z", "give each edge its mean pressure: P1 to P4, or P on surfaces"),
+    (r"(P\d?|[BP][XY]|TRVEC\d?|TRSHR\d?)NU\Z", "no user subroutine is called: give values"),
+    (r"(ROTA|CORIO)\Z", "rotate the base by *BOUNDARY, or give BX and BY"),
+    (r"ROTDYNF\Z", "CENTRIF takes the square of the angular velocity"),
+    (r"(F|VBF|SBF|SP)\d?\Z", "give springs by *SPRING, pressures by P1 to P4"),
 )
-
-
-_FACE = re.compile(r"P(\d{1,9})\Z", re.ASCII)
 
 
 def cload(deck: Deck, card: Card) -> None:
@@ -73,7 +66,7 @@ def dload(deck: Deck, card: Card) -> None:
         return
     for row in card.rows():
         label = key(row.get(1))
-        face = _FACE.match(label)
+        face = re.match(_FACE, label, re.ASCII)
         if face:
             _pressure(deck, card, row, int(face.group(1)), now)
         elif label == "GRAV":
@@ -82,11 +75,11 @@ def dload(deck: Deck, card: Card) -> None:
             _centrifugal(deck, card, row, now)
         elif label in ("BX", "BY", "PX", "PY"):
             _volume_force(deck, card, row, label, now)
-        elif traction := _TRACTION.match(label):
+        elif traction := re.match(_TRACTION, label, re.ASCII):
             _edge_traction(deck, card, row, traction.group(1), int(traction.group(2)), now)
         else:
             known = "expected P1 to P4, TRVEC1 to 4, TRSHR1 to 4, BX, BY, PX, PY, GRAV or CENTRIF"
-            why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
+            why = next((text for rule, text in _OTHER_LOADS if re.match(rule, label)), "")
             deck.row_error(
                 card,
                 row,
@@ -197,7 +190,7 @@ def dsload(deck: Deck, card: Card) -> None:
             if draft is not None:
                 now.loads.append(draft)
         else:
-            why = next((text for rule, text in _OTHER_LOADS if rule.match(label)), "")
+            why = next((text for rule, text in _OTHER_LOADS if re.match(rule, label)), "")
             deck.row_error(
                 card, row, 1, f"unknown load type {row.get(1)!r}; expected P, TRVEC or TRSHR", why
             )

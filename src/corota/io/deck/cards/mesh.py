@@ -10,14 +10,11 @@ import numpy as np
 from corota._core import parse_labels, parse_nodes, parse_table
 from corota.errors import Location
 from corota.io.deck import numerals
-from corota.io.deck.cards import attachments as attachments
-from corota.io.deck.cards.contact import profile
-from corota.io.deck.cards.generate import in_global_axes
-from corota.io.deck.cards.tie import couplers
 from corota.io.deck.deck import Deck, int_array, nearest
 from corota.io.deck.drafts import ElementBlock, Entry, NamedSet, NodeBlock, Surface, SurfaceRow
 from corota.io.deck.elements import (
     ALIASES,
+    ATTACHED,
     ELEMENTS,
     LINE_ELEMENTS,
     LINES,
@@ -25,12 +22,19 @@ from corota.io.deck.elements import (
     why_unsupported,
 )
 from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
+from corota.lazy import lazy
 from corota.mesh.data import N_NODES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.mesh.data import Ints
+
+# Functions of cards that few decks have.
+attached_elements = lazy("corota.io.deck.cards.attachments:elements")
+couplers = lazy("corota.io.deck.cards.tie:couplers")
+in_global_axes = lazy("corota.io.deck.cards.generate:in_global_axes")
+profile = lazy("corota.io.deck.cards.contact:profile")
 
 #: Elements that name the reference node of ``*DISTRIBUTING COUPLING``.
 COUPLERS = ("DCOUP2D", "DCOUP3D")
@@ -115,8 +119,8 @@ def element(deck: Deck, card: Card) -> None:
     if type_ in COUPLERS:
         couplers(deck, card)
         return
-    if type_ in attachments.TYPES:
-        attachments.elements(deck, card, type_)
+    if type_ in ATTACHED:
+        attached_elements(deck, card, type_)
         return
     if type_ in ELEMENTS:
         size = N_NODES[ELEMENTS[type_].kind]
