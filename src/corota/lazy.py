@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from sys import modules
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ def lazy(place: str) -> Callable[..., Any]:
     module, _, name = place.partition(":")
 
     def call(*args: Any, **options: Any) -> Any:
-        return getattr(import_module(module), name)(*args, **options)
+        found = getattr(modules.get(module), name, None) or getattr(import_module(module), name)
+        return found(*args, **options)
 
     call.__name__ = call.__qualname__ = name
     return call

@@ -264,6 +264,8 @@ def labelled(name: str, units: Units, of: str = "") -> str:
     of : str
         The dimension, for names that :func:`dimension` does not know.
     """
+    if not units:
+        return name
     unit = units.label(of or dimension(name))
     return f"{name} [{unit}]" if unit and unit != "rad" else name
 

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 #: Bytes of a sample, and the share of its size that packing must save.
 SAMPLE, GAIN = 1 << 14, 0.4
+#: Bytes of a block without compression, at most; one without any.
+LONGEST, _EMPTY = 50_000, b"\0\0\0\xff\xff"
 #: Header of a zlib stream with a window of 32 KiB; the end of its last block.
 _HEAD, _END = b"\x78\x01", b"\x03\x00"
 
@@ -33,12 +35,24 @@ def packed(planes: Sequence[bytes], level: int) -> bytes:
     """
     pieces, check = [_HEAD], 1
     for plane in planes:
-        middle = (len(plane) - SAMPLE) // 2
-        sample = plane if middle <= 0 else plane[middle : middle + SAMPLE]
-        pays = len(_deflated(sample, level)) < (1.0 - GAIN) * len(sample)
-        pieces.append(_deflated(plane, level if pays else 0))
+        middle = max(0, (len(plane) - SAMPLE) // 2)
+        sample = plane[middle : middle + SAMPLE]
+        found = _deflated(sample, level)
+        if len(found) >= (1.0 - GAIN) * len(sample):
+            found = _stored(plane)
+        elif len(sample) < len(plane):
+            found = _deflated(plane, level)
+        pieces.append(found)
         check = zlib.adler32(plane, check)
     return b"".join([*pieces, _END, check.to_bytes(4, "big")])
+
+
+def _stored(data: bytes) -> bytes:
+    """Blocks without compression, the last one empty, as zlib writes them at level 0."""
+    if len(data) > LONGEST:
+        return _deflated(data, 0)
+    length = len(data).to_bytes(2, "little")
+    return b"\0" + length + bytes(byte ^ 255 for byte in length) + data + _EMPTY
 
 
 def _deflated(data: bytes, level: int) -> bytes:
