@@ -107,7 +107,7 @@ class Analysis(Protocol):
     steps: list[Step]
     warned: set[str]
     begun: list[Begun]
-    as_built: dict[str, str]
+    as_built: dict[str, Any]
     communicator: Communicator
 
     def known(self) -> dict[str, Any]:

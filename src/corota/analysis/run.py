@@ -186,7 +186,7 @@ class Analysis:
         #: Starts of the steps so far, digests of the system's initial arrays, and the
         #: checkpoint that the run continues from.
         self.begun: list[Begun] = []
-        self.as_built: dict[str, str] = {}
+        self.as_built: dict[str, Any] = {}
         self.start = None if start is None else start.part(self.communicator)
         self.resumed = self.start
 

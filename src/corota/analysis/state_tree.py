@@ -12,7 +12,6 @@ digest only, which identifies a system of another model.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import hashlib
 import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -50,6 +49,8 @@ BLANK: dict[str, dict[str, Any]] = {
 PACKAGES = ("corota.analysis.", "corota.model.", "corota.mesh", "corota.results.", "corota.errors")
 #: Modules of the model whose objects are results, not input.
 FOUND = ("corota.model.paths",)
+#: Bytes of an array of which a copy is kept, until its digest is needed.
+SMALL = 1 << 15
 #: Kinds of arrays that are stored.
 KINDS = "biufcSU"
 
@@ -64,6 +65,8 @@ class Unstorable(CorotaError):
 
 def digest(array: Any) -> str:
     """Digest of the numbers, shape and type of an array."""
+    import hashlib
+
     plain = np.ascontiguousarray(array)
     own = hashlib.blake2b(f"{plain.dtype.str}{array.shape}".encode(), digest_size=12)
     own.update(plain.data if plain.size else b"")
@@ -97,8 +100,8 @@ class Writer:
     ----------
     known : dict of str to object
         Objects that stand for themselves, by the names that trees have for them.
-    as_built : dict of str to str
-        Digests of arrays by their place, see :func:`arrays_as_built`.
+    as_built : dict of str to str or ndarray
+        Arrays by their place, see :func:`arrays_as_built`.
     by_value : bool
         Store objects of the model too.
 
@@ -111,7 +114,7 @@ class Writer:
     def __init__(
         self,
         known: dict[str, Any],
-        as_built: dict[str, str] | None = None,
+        as_built: dict[str, Any] | None = None,
         by_value: bool = False,
     ) -> None:
         self.arrays: list[Any] = []
@@ -153,7 +156,10 @@ class Writer:
 
     def _body(self, value: Any, place: str) -> dict[str, Any]:
         if isinstance(value, np.ndarray):
-            if self._as_built.get(place) == (found := digest(value) if self._as_built else ""):
+            built = self._as_built.get(place)
+            if isinstance(built, np.ndarray):
+                built = digest(built)
+            if built == (found := digest(value) if self._as_built else ""):
                 return {"built": found}
             return self._order(value)
         kind = type(value)
@@ -374,9 +380,12 @@ def _class(name: str) -> Any:
     return found
 
 
-def arrays_as_built(value: Any, known: dict[str, Any], place: str) -> dict[str, str]:
-    """Digests of the arrays of a value by their place."""
-    found = _Digests(known)
+def arrays_as_built(value: Any, known: dict[str, Any], place: str) -> dict[str, Any]:
+    """The arrays of a value by their place: copies of small ones, digests of others.
+
+    Digests of small arrays are needed for a checkpoint only, which small jobs do not write.
+    """
+    found = _Digests(known, keep=SMALL)
     found.write(value, place)
     return found.digests
 
@@ -391,17 +400,20 @@ def copies_as_built(value: Any, known: dict[str, Any]) -> dict[str, Any]:
 class _Digests(Writer):
     """A writer that only notes where arrays are."""
 
-    def __init__(self, known: dict[str, Any], copy: bool = False) -> None:
+    def __init__(self, known: dict[str, Any], copy: bool = False, keep: int = -1) -> None:
         super().__init__(known)
-        self.digests: dict[str, str] = {}
+        self.digests: dict[str, Any] = {}
         self.copies: dict[str, Any] = {}
-        self._copy = copy
+        self._copy, self._keep = copy, keep
 
     def _order(self, value: Any) -> dict[str, Any]:
         raise AssertionError
 
     def _body(self, value: Any, place: str) -> dict[str, Any]:
         if isinstance(value, np.ndarray):
+            if value.nbytes <= self._keep:
+                self.digests[place] = value.copy()
+                return {}
             self.digests[place] = found = digest(value)
             if self._copy:
                 self.copies[found] = value.copy()
@@ -413,6 +425,7 @@ class _Digests(Writer):
 
 def digest_of(tree: Any, arrays: list[Any]) -> str:
     """Digest of a tree with its arrays; where things were read from does not count."""
+    import hashlib
     import json
 
     own = hashlib.sha256(json.dumps(_without_places(tree), sort_keys=True).encode())

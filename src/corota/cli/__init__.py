@@ -95,6 +95,9 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         from corota import _core
 
         _core.require_memory(0.0, f"corota {command}")
+        # At the end of a chain of imports, calls within NumPy's cross the end of a block of
+        # Python's stack a thousand times, and each time the system has to map another one.
+        import_module("numpy")
         run = import_module(f"corota.cli.{command}").run
         if command not in READING:
             collect_garbage()

@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import hashlib
 import json
 import sys
 from pathlib import Path
@@ -13,8 +12,11 @@ from corota.errors import FileError
 from corota.io.atomic_file import replace_text
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from os import PathLike
 
+#: Bytes of a deck that is kept.
+SMALL = 1 << 18
 #: Libraries that affect the numbers and the files.
 LIBRARIES = ("numpy", "scipy", "h5py")
 
@@ -27,6 +29,8 @@ def sha256(path: str | PathLike[str]) -> str:
     FileError
         If it cannot be read.
     """
+    import hashlib
+
     try:
         found = hashlib.sha256()
         with open(path, "rb") as file:
@@ -45,6 +49,34 @@ def source_of(deck: str | PathLike[str]) -> dict[str, str]:
 def place_of(deck: str | PathLike[str]) -> dict[str, str]:
     """Name, digest and path of a deck, for later jobs."""
     return source_of(deck) | {"path": str(Path(deck).resolve())}
+
+
+def place_later(deck: str | PathLike[str]) -> Callable[[], dict[str, str]]:
+    """Give :func:`place_of` of a deck as it is now, when it is called.
+
+    A small deck is kept until then: loading the functions for digests takes longer than reading it.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    path = Path(deck)
+    try:
+        data = path.read_bytes() if path.stat().st_size <= SMALL else b""
+    except OSError as error:
+        raise FileError(f"{path}: cannot read: {error.strerror or error}") from None
+    if not data:
+        found = place_of(deck)
+        return lambda: found
+    whole = str(path.resolve())
+
+    def place() -> dict[str, str]:
+        import hashlib
+
+        return {"deck": path.name, "sha256": hashlib.sha256(data).hexdigest(), "path": whole}
+
+    return place
 
 
 def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path:
@@ -81,4 +113,4 @@ def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path
     return path
 
 
-__all__ = ["place_of", "sha256", "source_of", "write_provenance"]
+__all__ = ["place_later", "place_of", "sha256", "source_of", "write_provenance"]

@@ -22,8 +22,8 @@ MOST_WAITING = 64 << 20
 class TaskQueue:
     """Tasks in their order. Before the start each one is executed at once.
 
-    The thread takes them four times a second. Those of a small job, and the last ones of every
-    job, are left to the thread that waits for the end: two threads of Python do not run at once.
+    The thread takes them four times a second; those of a small job wait until its end, because two
+    threads of Python do not run at once.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class TaskQueue:
     error : Exception or None
         The first one; the tasks after it are dropped.
     seconds : float
-        Processor time of the tasks.
+        Processor time of the thread.
     """
 
     def __init__(self, flush: Callable[[], None]) -> None:
@@ -84,7 +84,7 @@ class TaskQueue:
             self.error = self.error or error
 
     def drain(self) -> None:
-        """End the thread, and execute all pending tasks."""
+        """Execute all pending tasks, and end the thread."""
         if self._thread is None:
             return
         self._stop = True
@@ -97,14 +97,14 @@ class TaskQueue:
 
     def _work(self) -> None:
         rest = FIRST_REST
-        while not self._stop:
-            self._hurry.wait(rest)
+        while self._tasks or not self._stop:
+            if not self._stop:
+                self._hurry.wait(rest)
+                self._some.wait()
             rest = BEAT
             self._hurry.clear()
-            self._some.wait()
             self._some.clear()
-            if not self._stop:
-                self._empty()
+            self._empty()
             if self._tasks:
                 self._some.set()
 
