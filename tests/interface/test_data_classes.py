@@ -6,8 +6,10 @@ from __future__ import annotations
 import inspect
 import pickle
 import pkgutil
+import re
 from dataclasses import FrozenInstanceError, field, fields, make_dataclass, replace
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -90,6 +92,13 @@ def test_every_class_is_made_as_by_the_standard_library() -> None:
         items = [(item.name, item.type, item) for item in fields(kind)]
         twin = make_dataclass(kind.__name__, items, namespace={"__doc__": kind.__doc__ or "twin"})
         assert arguments(kind) == arguments(twin), kind
+
+
+def test_the_package_uses_no_other_data_classes() -> None:
+    source = Path(corota.__file__).parent
+    other = re.compile(r"^ *from dataclasses import .*\bdataclass\b", re.MULTILINE)
+    found = [p.name for p in source.rglob("*.py") if other.search(p.read_text(encoding="utf-8"))]
+    assert found == ["data_classes.py"]
 
 
 def test_methods_are_those_of_the_standard_library() -> None:

@@ -75,6 +75,7 @@ class Series:
     Parameters
     ----------
     made : h5py.h5d.DatasetID
+    dtype : dtype
     chunks : tuple of int
     level : int
         Of gzip, 0 for none.
@@ -82,9 +83,11 @@ class Series:
         Of rows that are not written.
     """
 
-    def __init__(self, made: Any, chunks: tuple[int, ...], level: int, fill: float) -> None:
-        self._id, self.chunks, self.level, self.fill = made, chunks, level, fill
-        self.dtype = made.dtype
+    def __init__(
+        self, made: Any, dtype: np.dtype[Any], chunks: tuple[int, ...], level: int, fill: float
+    ) -> None:
+        self._id, self.dtype, self.chunks = made, dtype, chunks
+        self.level, self.fill = level, fill
 
     @property
     def rows(self) -> int:
@@ -107,20 +110,21 @@ class Series:
         """Create it with some rows; those that are not written are `fill`, or 0."""
         from h5py import h5d, h5s
 
-        kind = _type(np.dtype(dtype))
+        number = np.dtype(dtype)
+        kind = _type(number)
         space = h5s.create_simple(shape, (h5s.UNLIMITED, *shape[1:]))
         layout = _layout(chunks, level, fill)
         made = h5d.create(group.id, name.encode(), kind, space, layout)
         if data is not None and data.size:
             made.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(data), kind)
-        return cls(made, chunks, level, fill or 0.0)
+        return cls(made, number, chunks, level, fill or 0.0)
 
     @classmethod
     def open(cls, group: Any, name: str) -> Series:
         """Continue one of an existing file."""
         found = group[name]
         level = found.compression_opts or 0
-        return cls(found.id, found.chunks, level, float(found.fillvalue))
+        return cls(found.id, found.dtype, found.chunks, level, float(found.fillvalue))
 
     def resize(self, rows: int) -> None:
         """Cut it off, or extend it by rows of its fill value."""

@@ -227,7 +227,7 @@ class JobFiles(BaseObserver):
         inputs = {os.path.realpath(file) for file in model.sources}
         kept = self.folder.glob(f"{glob.escape(name)}.step-*.ckpt")
         for path in (*(self.folder / f"{name}.{ending}" for ending in ENDINGS), *kept):
-            if os.path.realpath(path) in inputs:
+            if path.exists() and os.path.realpath(path) in inputs:
                 raise InputError(
                     f"{path} is an input of this job and would be replaced by its results: use "
                     "another folder (-o) or name (--name)"

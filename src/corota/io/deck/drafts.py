@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from corota.model.steps import Output, Step
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class NodeBlock:
     """Nodes of consecutive lines: labels (n,), coordinates (n, 3), line numbers (n,)."""
 
@@ -28,7 +28,7 @@ class NodeBlock:
     lines: Ints
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class ElementBlock:
     """Elements of one type: labels (n,), node labels (n, k), line numbers (n,)."""
 
@@ -40,7 +40,7 @@ class ElementBlock:
     lines: Ints
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class Entry:
     """Labels, or the name of another set, in a set."""
 
@@ -49,7 +49,7 @@ class Entry:
     name: str = ""
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class NamedSet:
     """A node or element set: entries in the user's order."""
 
@@ -58,7 +58,7 @@ class NamedSet:
     entries: list[Entry] = field(default_factory=list)
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class SurfaceRow:
     """One line of a surface: element label or set, and a face such as ``S2``."""
 
@@ -68,7 +68,7 @@ class SurfaceRow:
     face: str
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class Surface:
     """A surface of element edges, of nodes, or a rigid profile.
 
@@ -85,7 +85,7 @@ class Surface:
     fillet: float = 0.0
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class SectionDraft:
     """One ``*SOLID SECTION``."""
 
@@ -102,7 +102,7 @@ class SectionDraft:
     nodal: bool = False
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class PlasticDraft:
     """Numbers of ``*PLASTIC`` and ``*CYCLIC HARDENING``; ``ready`` is false after an error."""
 
@@ -114,7 +114,7 @@ class PlasticDraft:
     cyclic: list[CurveDraft] | None = None
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class CurveDraft:
     """Yield stress against plastic strain at one temperature, with the places of the rows.
 
@@ -128,7 +128,7 @@ class CurveDraft:
     voce: tuple[float, float] | None = None
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class MaterialDraft:
     """One ``*MATERIAL`` with the numbers of the cards below it."""
 
@@ -155,7 +155,7 @@ class MaterialDraft:
         return max(counts) > 1
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class Draft:
     """One data line of a support or a load, its target not yet looked up.
 
@@ -177,7 +177,7 @@ class Draft:
     keep: bool = False
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class InitialDraft:
     """A line of initial temperature or stress; ``point`` from 1, 0 for all."""
 
@@ -185,7 +185,7 @@ class InitialDraft:
     point: int = 0
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class StepDraft:
     """One step as written."""
 
@@ -212,7 +212,7 @@ class StepDraft:
     preload: bool | None = None
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class Instance:
     """A part placed in the plane: shift, then turn by ``angle`` about ``centre``."""
 
@@ -225,7 +225,7 @@ class Instance:
     scope: Scope = field(default_factory=lambda: Scope())
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class Scope:
     """One name space: the flat model, a part, or an instance's own data."""
 
@@ -277,7 +277,7 @@ class AttachedDraft:
     value: float | None = None
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class InteractionDraft:
     """One ``*SURFACE INTERACTION`` with the cards below it.
 
@@ -293,7 +293,7 @@ class InteractionDraft:
     friction: float = 0.0
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class PairDraft:
     """One line of ``*CONTACT PAIR`` or ``*TIE``: slave, master and options."""
 
@@ -318,7 +318,7 @@ class PairDraft:
         return (key(self.slave), key(self.master)) == (key(slave), key(master))
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class GeneralDraft:
     """General contact: whether all outer edges take part, or the pairs of its lines."""
 
@@ -330,7 +330,7 @@ class GeneralDraft:
     where: Location | None = None
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class LineDraft:
     """A section of line elements: ``role`` is ``beam`` or ``spring``."""
 
@@ -343,7 +343,7 @@ class LineDraft:
     rows: list[Row] = field(default_factory=list)
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class PretensionDraft:
     """One section: its surface, its node, and the normal, if it is given."""
 
@@ -353,7 +353,7 @@ class PretensionDraft:
     normal: tuple[float, float] | None = None
 
 
-@dataclass(slots=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class TieDraft:
     """One constraint as written.
 

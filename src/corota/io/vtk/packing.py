@@ -58,5 +58,10 @@ def _stored(data: bytes) -> bytes:
 def _deflated(data: bytes, level: int) -> bytes:
     """Blocks of deflate up to a whole byte, none of them the last."""
     how = zlib.Z_RLE if level == 1 else zlib.Z_DEFAULT_STRATEGY
-    packer = zlib.compressobj(level, zlib.DEFLATED, -zlib.MAX_WBITS, zlib.DEF_MEM_LEVEL, how)
+    window, memory = zlib.MAX_WBITS, zlib.DEF_MEM_LEVEL
+    if level == 1:
+        # Runs are the same with as little memory as the data need, which is there sooner.
+        window = min(max(9, (len(data) + 300).bit_length()), window)
+        memory = min(window - 6, memory)
+    packer = zlib.compressobj(level, zlib.DEFLATED, -window, memory, how)
     return packer.compress(data) + packer.flush(zlib.Z_FULL_FLUSH)
