@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 #: Bytes of a sample, and the share of its size that packing must save.
 SAMPLE, GAIN = 1 << 14, 0.4
+#: Bytes of an array whose planes are packed together: there the number of blocks takes the time.
+SMALL = 1 << 12
 #: Bytes of a block without compression, at most; one without any.
 LONGEST, _EMPTY = 50_000, b"\0\0\0\xff\xff"
 #: Header of a zlib stream with a window of 32 KiB; the end of its last block.
@@ -34,6 +36,8 @@ def packed(planes: Sequence[bytes], level: int) -> bytes:
         nothing else, and it takes half the time.
     """
     pieces, check = [_HEAD], 1
+    if sum(map(len, planes)) <= SMALL:
+        planes = [b"".join(planes)]
     for plane in planes:
         middle = max(0, (len(plane) - SAMPLE) // 2)
         sample = plane[middle : middle + SAMPLE]
