@@ -95,7 +95,8 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
         return Attempt(target, outcome, contact)
     if loaded:
         return ""
-    said = "; relaxation from the last converged state found no equilibrium nearby"
+    tried = "neither relaxation nor a damped motion" if aided else "no relaxation"
+    said = f"; {tried} from the last converged state found an equilibrium nearby"
     if sunk_corner(system.contact_term):
         return said  # the message has the reason
     return f"{said}: the bodies snap or fold; use Dynamic to follow that"
