@@ -6,6 +6,7 @@ from __future__ import annotations
 import http.client
 import json
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -17,6 +18,7 @@ from corota.io.stop_request import request_stop, stop_file
 from corota.report.chunk import unpack
 from corota.report.records import JobPaths
 from corota.report.server import JobWatch, PageServer
+from corota.results.observer import BaseObserver
 
 
 def bar(name: str = "bar") -> ct.Model:
@@ -124,6 +126,19 @@ def test_a_request_that_an_earlier_run_left_is_forgotten(tmp_path: Path) -> None
     assert len(results.frames) == 4
 
 
+class Wait(BaseObserver):
+    """Waits for one more look at the files after every hundredth increment."""
+
+    def __init__(self, looks: list[int]) -> None:
+        self.looks = looks
+
+    def increment(self, frame: ct.Frame) -> None:
+        if frame.increment in (100, 200, 300):
+            before, late = self.looks[0], time.monotonic() + 30.0
+            while self.looks[0] == before and time.monotonic() < late:
+                time.sleep(0.001)
+
+
 def test_pages_while_the_run_writes(tmp_path: Path) -> None:
     """Whole answers at every moment: the files are read while they are exchanged."""
     watch = JobWatch(JobPaths(tmp_path, "bar"))
@@ -145,7 +160,8 @@ def test_pages_while_the_run_writes(tmp_path: Path) -> None:
     reader.start()
     try:
         with ct.JobFiles(tmp_path) as files:
-            ct.solve(bar(), ct.Static(increments=300), observers=[files], threads=1)
+            watched = [files, Wait(looks)]
+            ct.solve(bar(), ct.Static(increments=300), observers=watched, threads=1)
     finally:
         done.set()
         reader.join(30.0)
