@@ -50,9 +50,43 @@ def test_the_deformable_body_is_on_the_left(name, gap):
 
 
 @pytest.mark.parametrize("name", list(CURVES))
-def test_a_body_on_the_wrong_side_is_refused(name):
+@pytest.mark.parametrize("gap", [0.05, 1e-9, 0.0, -1e-9, -1e-3, -0.1])
+def test_a_body_on_the_wrong_side_is_refused(name, gap):
+    """A body that touched its curve or overlapped it had force 0, without a word."""
     with pytest.raises(ModelError, match=r"wrong side.*node \d+ is nearest.*other\s+order"):
-        ct.solve(block(reversed_(CURVES[name](1.05))))
+        ct.solve(block(reversed_(CURVES[name](1.0 + gap))))
+
+
+@pytest.mark.parametrize("gap", [0.0, -1e-3])
+def test_the_side_is_that_of_the_body_where_all_edges_are_the_slave(gap):
+    mesh = ct.mesh.rectangle(1.0, 1.0, nx=2, ny=2000)  # edges at the side are nearer than the foot
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("top", x=0.0, y=-0.01)
+    edges = np.concatenate(list(mesh.edge_sets.values()))
+    model.contact(edges, ct.RigidCurve.line((9.0, -gap), (-9.0, -gap)))
+    with pytest.raises(ModelError, match="wrong side"):
+        ct.solve(model)
+
+
+def test_a_disc_in_a_hole_drawn_as_a_disc_is_refused():
+    mesh = ct.mesh.annulus(1.0, 2.0, 2, 24)
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("inner")
+    model.contact("outer", ct.RigidCurve.circle((0.0, 0.0), 2.0))
+    with pytest.raises(ModelError, match="wrong side"):
+        ct.solve(model)
+
+
+def test_the_back_of_a_body_may_be_the_slave():
+    """The upper side of a strip on a floor, which may roll up later."""
+    mesh = ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2, origin=(0.0, 0.0))
+    model = ct.Model(mesh)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("bottom")
+    model.contact("top", ct.RigidCurve.line((-9.0, 0.0), (19.0, 0.0)), name="c")
+    assert ct.solve(model).frames[-1].scalars["c: force y"] == 0.0
 
 
 def test_a_body_beside_the_end_of_a_curve_is_on_no_side():
@@ -72,3 +106,48 @@ def test_a_round_corner_of_few_slave_edges_is_said_before_the_run(fillet, said):
     results = ct.solve(block(ct.RigidCurve.polyline(points, closed=True, fillet=fillet), -0.02))
     notes = [note for note in results.notes if "1.2 slave edges" in note]
     assert bool(notes) is said
+
+
+PRESSED = """*NODE
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=E
+1, 1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.
+*SOLID SECTION, ELSET=E, MATERIAL=M
+1.
+*SURFACE, NAME=FOOT
+E, S1
+*SURFACE, NAME=FLOOR, TYPE=SEGMENTS
+START, {start}, 0.
+LINE, {end}, 0.
+*RIGID BODY, ANALYTICAL SURFACE=FLOOR
+*SURFACE INTERACTION, NAME=I
+*CONTACT PAIR, INTERACTION=I, TYPE={method}
+FOOT, FLOOR
+*BOUNDARY
+3, 1, 1
+4, 1, 1
+*STEP
+*STATIC
+*BOUNDARY
+3, 2, 2, -.01
+4, 2, 2, -.01
+*END STEP
+"""
+
+
+@pytest.mark.parametrize("method", ["MORTAR", "NODE TO SURFACE"])
+def test_a_deck_presses_a_block_on_a_profile_without_reference_node(tmp_path, method):
+    """E A d / h = 1000 * 0.01 = 10; drawn the other way round it is refused."""
+    path = tmp_path / "a.inp"
+    path.write_text(PRESSED.format(start=-5.0, end=9.0, method=method))
+    frame = ct.solve(ct.read(path)).frames[-1]
+    assert frame.scalars["FOOT-FLOOR: force y"] == pytest.approx(10.0, rel=1e-9)
+    path.write_text(PRESSED.format(start=9.0, end=-5.0, method=method))
+    with pytest.raises(ModelError, match="wrong side"):
+        ct.solve(ct.read(path))

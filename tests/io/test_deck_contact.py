@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -146,12 +147,15 @@ def test_the_rigid_body_of_a_profile_lies_to_its_right(tmp_path: Path) -> None:
     )
 
 
-def test_a_profile_without_a_rigid_body_stays(tmp_path: Path) -> None:
-    model = read(tmp_path, deck(INTERACTION + PROFILE + PAIR.replace("High", "Die")))
+@pytest.mark.parametrize("body", ["", BODY.replace(", REF NODE=30", "")])
+def test_a_profile_without_a_reference_node_stays(tmp_path: Path, body: str) -> None:
+    """A rigid body without REF NODE was refused, though the page calls it fixed."""
+    model = read(tmp_path, deck(INTERACTION + PROFILE + body + PAIR.replace("High", "Die")))
     curve = model.contacts[0].master
     assert isinstance(curve, RigidCurve)
     assert curve.reference is None
-    assert any("stays where it is" in note for note in model.notes)
+    missing = "REF NODE" if body else r"\*RIGID BODY"
+    assert any(re.search(f"has no {missing}, so it stays where it is", n) for n in model.notes)
 
 
 def test_fillets_round_corners(tmp_path: Path) -> None:
@@ -209,6 +213,8 @@ FAULTS = [
     (PROFILE.replace("START, 3., 4.\n", ""), "LINE", "comes first"),
     (PROFILE.replace("CIRCL", "PARAB"), "PARAB", "START, LINE or CIRCL"),
     (BODY, "ANALYTICAL", "no surface named 'Die'"),
+    (BODY.replace("REF NODE=30", "ROT NODE=30"), "RIGID BODY", "REFNODE= is missing"),
+    (BODY.replace("REF NODE=30", "NSET=30"), "RIGID BODY", "REFNODE= is missing"),
     (BODY.replace("Die", "Low"), "ANALYTICAL", "not a rigid profile"),
     ("*TIE, NAME=T\nLow\n", "Low\n", "master surface is missing"),
     (

@@ -86,7 +86,7 @@ class Deck:
     #: Reference nodes of distributing couplings, by the set of their elements.
     couplers: dict[str, Draft] = field(default_factory=dict)
     pretensions: list[PretensionDraft] = field(default_factory=list)
-    carriers: dict[str, tuple[Card, Draft]] = field(default_factory=dict)
+    carriers: dict[str, tuple[Card, Draft | None]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     hidden: int = 0

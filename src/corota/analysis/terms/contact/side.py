@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.analysis.terms.contact.tunneling import AT_ONCE, other_side
 from corota.errors import ModelError
+from corota.mesh.parts import part_of_nodes
 from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
@@ -21,14 +22,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-#: Cosine between the normals of slave and curve from which the slave faces away.
+#: Cosine between the normals of slave and curve from which the slave faces away; as far on the
+#: other side it faces the curve, and between them neither.
 BACK = 0.2
 #: Distances that are equal, in slave edges.
 SAME = 1e-9
 
 
 def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
-    """Refuse a slave surface that starts wholly on the wrong side of a rigid curve.
+    """Refuse a slave surface whose body starts on the wrong side of a rigid curve.
+
+    The body may have its surface on the curve, or reach through it by less than half.
 
     Parameters
     ----------
@@ -45,22 +49,35 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     curve = getattr(pair.item, "master", None)
     if not isinstance(curve, RigidCurve):
         return
+    mesh = system.model.mesh
     pieces = other_side(pair, x, x)[0]
     ends = x[pair.slave.nodes[:, :2], :2]
     size = SAME * float(pair.slave.length.max())
     distance, normal, inside = _signed(pieces, ends.mean(axis=1), size)
-    if not inside.any() or (distance[inside] > -size).any():
-        return
     along = ends[:, 1] - ends[:, 0]
     outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
-    nearest = int(np.argmax(np.where(inside, distance, -np.inf)))
-    if outward[nearest] @ normal[nearest] < BACK:
-        return  # it overlaps the curve, and faces it
-    label = system.model.mesh.node_labels[pair.slave.nodes[nearest, 0]]
+    turned = (outward * normal).sum(axis=1)
+    steep = np.abs(turned) < BACK
+    nearest = int(np.argmin(np.where(inside & ~steep, np.abs(distance), np.inf)))
+    if not inside[nearest] or turned[nearest] < BACK:
+        return
+    # The edge faces away: the body is behind, or in front with its back to the curve.
+    part = part_of_nodes(mesh)
+    body = np.isin(part, part[pair.slave.node_list])
+    behind, _, inside = _signed(pieces, x[body, :2], size)
+    if not inside.any() or behind[inside].max() >= -behind[inside].min():
+        return
+    label = mesh.node_labels[pair.slave.nodes[nearest, 0]]
+    depth = -float(distance[nearest])
+    place = (
+        "on it"
+        if abs(depth) <= size
+        else f"{abs(depth):.4g} {'behind' if depth > 0 else 'through'} it"
+    )
     name = f" {curve.name!r}" if curve.name else ""
     raise ModelError(
-        f"contact pair {pair.item.name!r}: the whole slave surface starts on the wrong side of "
-        f"the rigid curve{name}: node {label} is nearest, {-distance[nearest]:.4g} behind it. "
+        f"contact pair {pair.item.name!r}: the slave surface starts on the wrong side of "
+        f"the rigid curve{name}: node {label} is nearest, {place}. "
         "The deformable body belongs on the left of the curve's direction of travel; give its "
         "points in the other order (corota plot draws the rigid body shaded)",
         pair.item.where,

@@ -203,17 +203,16 @@ class _Builder:
         for columns in (slice(0, 2), slice(2, 4), slice(4, 6)):
             rows[:, columns] = placed(rows[:, columns], view.instance)
         reference: int | None = None
-        if name in self.carriers:
-            _, draft = self.carriers[name]
+        card, draft = self.carriers.get(name, (surface.card, None))
+        if draft is not None:
             reference = single_node(self.deck, self.find, draft, self.model)
             if reference is None:
                 return None
             self.rotating[reference] = True
         else:
-            self.deck.note(
-                f"{surface.card.where}: rigid profile {surface.name} has no *RIGID BODY, so it "
-                "stays where it is"
-            )
+            missing = "REF NODE" if name in self.carriers else "*RIGID BODY"
+            text = f"rigid profile {surface.name} has no {missing}, so it stays where it is"
+            self.deck.note(f"{card.where}: {text}")
         self.curves[name] = curve = _made(rows, surface.fillet, reference)
         curve.name = view.prefix + surface.name
         return curve

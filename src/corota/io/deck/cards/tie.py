@@ -79,14 +79,18 @@ def parameter_row(card: Card, name: str) -> Row:
 def rigid_body(deck: Deck, card: Card) -> None:
     """``*RIGID BODY, NSET= or ELSET= or ANALYTICAL SURFACE=, REF NODE=[, ROT NODE=]``."""
     deck.no_rows(card)
-    reference = _reference(deck, card, "REFNODE")
-    if card.has("ANALYTICALSURFACE") and reference is not None:
+    profile = card.has("ANALYTICALSURFACE")
+    alone = profile and not card.has("NSET") and not card.has("ELSET")
+    # A profile without a reference node is fixed.
+    fixed = alone and not card.has("REFNODE") and not card.has("ROTNODE")
+    reference = None if fixed else _reference(deck, card, "REFNODE")
+    if profile and (fixed or reference is not None):
         if not deck.required(card, "ANALYTICALSURFACE"):
             return
         deck.carriers[key(card.value("ANALYTICALSURFACE"))] = (card, reference)
+    if alone:
         _rotation_node(deck, card, reference)
-        if not card.has("NSET") and not card.has("ELSET"):
-            return
+        return
     given = [p for p in ("NSET", "ELSET", "PINNSET", "TIENSET") if card.has(p)]
     if not given or (card.has("NSET") and card.has("ELSET")):
         deck.error(card, card.where, "either NSET= or ELSET= is expected")
