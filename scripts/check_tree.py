@@ -15,6 +15,48 @@ ROOT = Path(__file__).resolve().parent.parent
 MAX_KILOBYTES = 600
 SPDX = "SPDX-License-Identifier: BSD-3-Clause"
 SOURCES = {".py", ".pyi", ".rs", ".sh"}
+#: What may stand in the root. A run writes its files beside its deck: one that was started here
+#: without a folder shows as a name that is missing from this list.
+ROOT_NAMES = frozenset(
+    [
+        ".cargo",
+        ".ci",
+        ".gitattributes",
+        ".github",
+        ".gitignore",
+        ".pre-commit-config.yaml",
+        "CHANGELOG.md",
+        "CITATION.cff",
+        "CODE_OF_CONDUCT.md",
+        "CONTRIBUTING.md",
+        "Cargo.lock",
+        "Cargo.toml",
+        "LICENSE",
+        "Makefile",
+        "README.md",
+        "SECURITY.md",
+        "benchmarks",
+        "docs",
+        "examples",
+        "notebooks",
+        "packaging",
+        "pyproject.toml",
+        "requirements-dev.in",
+        "requirements-dev.txt",
+        "requirements-docs.in",
+        "requirements-docs.txt",
+        "requirements-mesh.in",
+        "requirements-mesh.txt",
+        "requirements-view.in",
+        "requirements-view.txt",
+        "requirements.txt",
+        "rust",
+        "rustfmt.toml",
+        "scripts",
+        "src",
+        "tests",
+    ]
+)
 REGISTRY = re.compile(r"--(extra-)?index-url|--find-links|^# .*https?://", re.MULTILINE)
 
 
@@ -36,6 +78,8 @@ def faults(path: Path) -> list[str]:
     """
     file = ROOT / path
     found = []
+    if path.parts[0] not in ROOT_NAMES:
+        found.append("is none of the names of the root (ROOT_NAMES in scripts/check_tree.py)")
     size = file.stat().st_size
     if size > MAX_KILOBYTES * 1024:
         found.append(f"{size // 1024} kB; at most {MAX_KILOBYTES}")

@@ -25,7 +25,7 @@ pub enum Lanes {
     Scalar,
     /// 256-bit registers (x86-64 with AVX2 and FMA), else as [`Lanes::Best`].
     Four,
-    /// 512-bit registers (x86-64 with AVX-512), else as [`Lanes::Best`].
+    /// 512-bit registers (x86-64 with AVX-512, feature `avx512`), else as [`Lanes::Best`].
     Eight,
 }
 
@@ -75,10 +75,11 @@ impl<K: Kernel> WithSimd for Run<K> {
 /// Run a kernel with the widest type that is wanted and there.
 pub fn dispatch<K: Kernel>(lanes: Lanes, kernel: K) -> K::Output {
     if lanes == Lanes::Scalar {
-        return kernel.run::<f64>();
+        return one_by_one(kernel);
     }
     #[cfg(target_arch = "x86_64")]
     {
+        #[cfg(feature = "avx512")]
         if lanes != Lanes::Four
             && let Some(simd) = pulp::x86::V4::try_new()
         {
@@ -87,16 +88,22 @@ pub fn dispatch<K: Kernel>(lanes: Lanes, kernel: K) -> K::Output {
         if let Some(simd) = pulp::x86::V3::try_new() {
             return Simd::vectorize(simd, Run(kernel));
         }
-        kernel.run::<f64>()
+        one_by_one(kernel)
     }
     #[cfg(target_arch = "aarch64")]
     {
         match pulp::aarch64::Neon::try_new() {
             Some(simd) => Simd::vectorize(simd, Run(kernel)),
-            None => kernel.run::<f64>(),
+            None => one_by_one(kernel),
         }
     }
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    one_by_one(kernel)
+}
+
+/// Run a kernel with plain numbers; out of line, for all that end here.
+#[inline(never)]
+fn one_by_one<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<f64>()
 }
 

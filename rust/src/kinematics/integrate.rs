@@ -411,8 +411,11 @@ where
     sums
 }
 
-/// Local force and stiffness of an element (of a batch) with local dofs `q`.
-#[inline(always)]
+/// Local force and stiffness of an element with local dofs `q`.
+///
+/// Out of line: all that evaluates single elements shares one instance of each element. Not for
+/// packs, which are compiled for the processor's instructions only where they are inlined.
+#[inline(never)]
 pub fn local<E, T: Real, const N: usize, const M: usize, const A: usize>(
     x: &Nodal<T, N, 2>,
     q: &Nodal<T, N, M>,

@@ -9,7 +9,7 @@ use crate::base::small::{Blocks, Nodal};
 use crate::base::{Kernel, Real};
 use crate::elements::Element;
 use crate::kinematics::corotation::Frame;
-use crate::kinematics::integrate::{History, Local};
+use crate::kinematics::integrate::{History, Local, local};
 use crate::kinematics::per_point::PerPoint;
 
 /// The assembly of a chunk, to be run with the processor's widest numbers.
@@ -53,8 +53,14 @@ where
                 stride: self.stride,
                 per_point: PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride),
             };
-            let mut answer = Local::zero();
-            E::law_into(&x, &frame.q, section, &mut history, context.tangent, &mut answer);
+            let mut answer;
+            if T::LANES == 1 {
+                answer =
+                    local::<E, T, N, M, A>(&x, &frame.q, section, &mut history, context.tangent);
+            } else {
+                answer = Local::zero();
+                E::law_into(&x, &frame.q, section, &mut history, context.tangent, &mut answer);
+            }
             let force = frame.force(&answer.force);
             if context.stressed && E::TURNS {
                 // Forces turn with the element, from the reference on.
