@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -3,13 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from corota.analysis.state_tree import Reader, Writer, digest_of
-from corota.data_classes import dataclass
 from corota.errors import UnsupportedError
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ Source: CalculiX 2.20, ``loadadd.f`` and ``bodyadd.f``; tests/steps compares wit
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,6 @@ import numpy as np
 from corota import _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
 from corota.arrays import distinct
-from corota.data_classes import dataclass
 from corota.errors import InputError, ModelError
 from corota.mesh.data import EDGES
 from corota.model import elements

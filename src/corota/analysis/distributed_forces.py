@@ -9,12 +9,11 @@ displacement is computed once.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import InputError, ModelError
 from corota.mesh import selection
 from corota.model import elements

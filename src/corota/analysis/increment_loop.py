@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 from corota.analysis.increments import Increments
-from corota.data_classes import dataclass
 from corota.errors import ConvergenceError, Interrupted
 from corota.results.observer import Iteration
 

@@ -8,12 +8,11 @@ linear solve, so that the elements at the moved edge do not take all of it.
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import SingularError
 
 if TYPE_CHECKING:

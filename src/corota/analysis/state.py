@@ -3,12 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

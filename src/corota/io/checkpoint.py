@@ -12,7 +12,7 @@ import contextlib
 import hashlib
 import json
 import os
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,6 @@ import numpy as np
 
 from corota.analysis.checkpoint import Checkpoint
 from corota.analysis.state_tree import Reader
-from corota.data_classes import dataclass
 from corota.errors import FileError
 from corota.io.atomic_file import full
 from corota.io.file_options import CHECKPOINTS

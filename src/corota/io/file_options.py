@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 from corota.results import variables as vf
 from corota.results.derived import DERIVED

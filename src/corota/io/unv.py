@@ -3,14 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import FileError, InputError, Location
 from corota.io.meshio_bridge import from_meshio
 

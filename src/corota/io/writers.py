@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 
 if TYPE_CHECKING:

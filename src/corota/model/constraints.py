@@ -3,12 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError, Location
 

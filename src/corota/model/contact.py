@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from corota import _core
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError, Location
 

@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
 
 from corota import _core
-from corota.data_classes import dataclass
 from corota.names import choose
 
 if TYPE_CHECKING:

@@ -3,13 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError, Location, number
 from corota.mesh import selection

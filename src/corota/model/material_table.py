@@ -3,14 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.arrays import distinct
-from corota.data_classes import dataclass
 from corota.errors import InputError, number
 from corota.model.materials import Expansion, Material
 from corota.model.plasticity import Mises, Voce

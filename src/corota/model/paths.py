@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError
 from corota.model.dofs import dof_index

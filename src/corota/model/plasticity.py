@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError
 from corota.model.materials import _positive, isotropic_compliance

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 from corota.model.materials import _positive, isotropic_compliance
 from corota.model.single_point import LawOfTheCore

@@ -12,9 +12,9 @@ acceleration. The energy-momentum scheme takes its forces from the core.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 
 if TYPE_CHECKING:

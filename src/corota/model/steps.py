@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from corota.arrays import distinct
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.loading import Loading

@@ -8,8 +8,8 @@ here label axes, tables and files, and are used by :mod:`corota.check.units`.
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 
-from corota.data_classes import dataclass
 from corota.errors import InputError, Location
 from corota.names import did_you_mean
 

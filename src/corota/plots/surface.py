@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.mesh import EDGES
 from corota.mesh.shape_functions import shape_functions
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 from corota.io.modes import as_results
 from corota.io.result_reader import FileResults, read_vtkhdf

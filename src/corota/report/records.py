@@ -6,13 +6,12 @@ from __future__ import annotations
 import csv
 import json
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import FileError
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ variables at points are: in histories, pictures, tables and result files.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 
 if TYPE_CHECKING:

@@ -3,12 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from corota.data_classes import dataclass
 from corota.display import Brief, brief, picture, table
 from corota.errors import InputError
 

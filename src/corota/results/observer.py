@@ -3,9 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
-
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from corota.model.model import Model

@@ -3,10 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from corota.data_classes import dataclass
 from corota.display import CELLS_DRAWN, Brief, brief, picture, table
 from corota.errors import InputError
 from corota.results.frame import Frame, PointFields

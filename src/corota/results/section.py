@@ -3,14 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.arrays import distinct
-from corota.data_classes import dataclass
 from corota.display import Brief
 from corota.errors import InputError
 from corota.mesh.data import EDGES

@@ -6,11 +6,10 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib import import_module
@@ -12,7 +12,6 @@ from inspect import cleandoc
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Literal
 
-from corota.data_classes import dataclass
 from corota.errors import InputError
 
 if TYPE_CHECKING:

@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from corota import mesh as meshes
 from corota.analysis.run import solve
-from corota.data_classes import dataclass
 from corota.model.contact import RigidCurve
 from corota.model.materials import Elastic, Material
 from corota.model.model import Model

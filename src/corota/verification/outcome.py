@@ -3,10 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from corota.verification.catalogue import Study, Value

@@ -9,14 +9,13 @@ dofs change, so a map of positions is built once and applied to the values.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.linear.triplets import Triplets
-from corota.data_classes import dataclass
 from corota.errors import ModelError
 
 if TYPE_CHECKING:

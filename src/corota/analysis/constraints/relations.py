@@ -8,11 +8,10 @@ are numbered as in the system; displacements are along the axes of the nodes.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

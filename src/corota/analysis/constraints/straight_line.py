@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.constraints.relations import Relation
 from corota.analysis.newton import ElementFailure
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

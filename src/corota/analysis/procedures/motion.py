@@ -7,6 +7,7 @@ scheme put into residual and tangent; so there is one Newton's method.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from corota.analysis.terms.inertia import MotionState
 from corota.analysis.terms.term import StatePoint
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,6 @@ from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.terms.attachments import Attachments
 from corota.analysis.terms.redistribution import set_moving_mass
 from corota.analysis.terms.term import Term
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

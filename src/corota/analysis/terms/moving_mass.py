@@ -9,9 +9,9 @@ consistent mass does, with the same sum.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from corota.data_classes import dataclass
 from corota.model.steps import Dynamic, Frequency
 
 if TYPE_CHECKING:

@@ -13,13 +13,12 @@ in the plane and through the thickness; for an isotropic material ``(1 + nu) alp
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.parallel.communicator import ALONE
-from corota.data_classes import dataclass
 from corota.errors import ModelError
 from corota.model import elements
 from corota.model.material_table import MaterialTable

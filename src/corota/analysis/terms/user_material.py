@@ -3,13 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.newton import ElementFailure
-from corota.data_classes import dataclass
 from corota.model import elements
 from corota.model.user_material import UserMaterial
 

@@ -13,6 +13,7 @@ mean rotation matrix and the mean positions (see docs/dynamics.md).
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,6 @@ import numpy as np
 from corota import _core
 from corota.analysis.blocks import core_input
 from corota.analysis.terms.user_material import UserBlocks
-from corota.data_classes import dataclass
 from corota.model import elements
 
 if TYPE_CHECKING:

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import Diagnostic, Location
 from corota.io.deck import numerals
 from corota.io.deck.drafts import (

@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from corota.data_classes import dataclass
 from corota.errors import Location
 from corota.io.deck.lexer import Card, Row, key
 

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from corota.data_classes import dataclass
+from dataclasses import dataclass
+
 from corota.model import elements
 
 

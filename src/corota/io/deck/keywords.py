@@ -3,10 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from corota.data_classes import dataclass
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 from corota.lazy import lazy

@@ -6,12 +6,11 @@ from __future__ import annotations
 import os
 import re
 import stat
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from corota import _core
-from corota.data_classes import dataclass
 from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
 from corota.io.deck.parameters import Parameters

@@ -6,7 +6,7 @@ Source: CalculiX GraphiX manual, "Result Format"; layout checked against files o
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from corota.data_classes import dataclass
+from dataclasses import dataclass
 
 #: Our kinds: type number in the file, and nodes of it that the type has.
 ELEMENTS = {

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.io.atomic_file import TextFile
 from corota.io.file_options import FileOptions
 from corota.io.finite import check_frame

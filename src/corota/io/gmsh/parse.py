@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import re
 import sys
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota._core import parse_reals
-from corota.data_classes import dataclass
 from corota.errors import InputError, Location, UnsupportedError
 from corota.io.deck import numerals
 from corota.io.deck.lexer import decode

@@ -14,6 +14,7 @@ I. Stewart and D. G. Schaeffer, *Singularities and Groups in Bifurcation Theory*
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,6 @@ from corota.analysis.procedures.path.controls import Row
 from corota.analysis.procedures.path.corrector import tangent_at
 from corota.analysis.procedures.path.plan import Increment, PathStalled
 from corota.analysis.procedures.path.tracer import LEFT, PathTracer
-from corota.data_classes import dataclass
 from corota.errors import SingularError
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ Source: M. A. Crisfield, *Non-linear Finite Element Analysis of Solids and Struc
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from corota.analysis.path_system import product
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

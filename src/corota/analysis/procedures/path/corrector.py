@@ -7,14 +7,13 @@ right-hand sides.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.newton import DIVERGED, ElementFailure, GiveUp, ResidualNorms, Settings
 from corota.analysis.path_system import Metric, Point, Tangent, product
-from corota.data_classes import dataclass
 from corota.errors import SingularError
 
 if TYPE_CHECKING:

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from corota.analysis.procedures.path.controls import Factor, Row
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from corota.analysis.path_system import Point, Tangent

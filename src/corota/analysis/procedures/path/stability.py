@@ -11,12 +11,11 @@ Source: W. Wagner and P. Wriggers, Engineering Computations 5 (1988) 103-109; R.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import SingularError
 
 if TYPE_CHECKING:

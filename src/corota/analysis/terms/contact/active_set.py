@@ -8,13 +8,12 @@ slipping constraints is found by Newton's method; where that cycles, by sweeps.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

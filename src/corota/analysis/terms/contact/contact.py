@@ -8,14 +8,13 @@ core as functions of the nodal positions alone, with exact first and second deri
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, Terms
 from corota.analysis.terms.term import Term
-from corota.data_classes import dataclass
 from corota.errors import ModelError, UnsupportedError
 from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie

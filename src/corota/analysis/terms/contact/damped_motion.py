@@ -14,6 +14,7 @@ damping.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,6 @@ import numpy as np
 from corota.analysis.energies import Energies
 from corota.analysis.newton import ElementFailure
 from corota.analysis.terms.contact.forward import ForwardContact
-from corota.data_classes import dataclass
 from corota.errors import ConvergenceError
 
 if TYPE_CHECKING:

@@ -12,12 +12,10 @@ Source: F. H. Clarke, *Optimization and Nonsmooth Analysis* (1983), ch. 2.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from corota.data_classes import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

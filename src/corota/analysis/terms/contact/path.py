@@ -7,6 +7,7 @@ commit; a point's own states give the direction of the path there.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS
 from corota.analysis.terms.contact.event_predictor import predict_through_events
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
-from corota.data_classes import dataclass
 from corota.errors import ModelError
 
 if TYPE_CHECKING:

@@ -15,13 +15,13 @@ generalized equations*, MRC report 1965 (1979).
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.terms.contact.complementarity import lemke
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN, SLIPPING
-from corota.data_classes import dataclass
 from corota.errors import SingularError
 
 if TYPE_CHECKING:

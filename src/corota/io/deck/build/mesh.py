@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.data_classes import dataclass
 from corota.errors import Diagnostic, Location
 from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, collapsed
 from corota.io.deck.lexer import key

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.arrays import distinct
-from corota.data_classes import dataclass
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import view_of
 from corota.io.deck.deck import nearest
