@@ -11,16 +11,15 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 static POOLS: Mutex<BTreeMap<(u32, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
 
-/// Runs `work` on a pool of `threads`, or right here for one thread.
-///
-/// If the system gives no threads the work is done on the calling one.
-pub fn run<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+/// Runs `work` on a pool of `threads` and passes it their number; for one thread, or if the system
+/// gives no threads, right here with 1. Outside of a pool rayon would start one of its own.
+pub fn run<R: Send>(threads: usize, work: impl FnOnce(usize) -> R + Send) -> R {
     if threads <= 1 {
-        return work();
+        return work(1);
     }
     match get(threads) {
-        Some(pool) => pool.install(work),
-        None => work(),
+        Some(pool) => pool.install(|| work(threads)),
+        None => work(1),
     }
 }
 

@@ -410,7 +410,7 @@ mod tests {
         let graph =
             PlacedGraph { xadj: &xadj, adjncy: &adjncy, weights: &weights, points: &points };
         let alone = dissect(graph, false);
-        let shared = crate::base::pool::run(3, || dissect(graph, true));
+        let shared = crate::base::pool::run(3, |_| dissect(graph, true));
         assert!(alone.is_some() && alone == shared);
     }
 

@@ -6,6 +6,7 @@ use super::error::{LinearError, Singular};
 use super::lu::Lu;
 use super::multifrontal::Numeric;
 use super::nullspace;
+use super::packing;
 use super::pattern::Pattern;
 use super::scaling::{
     BALANCED, apply_scale, balance, largest_at, max_abs, scale_of, subtract_product,
@@ -74,8 +75,7 @@ impl Ldlt {
             *p = x[d as usize];
         }
         team(solve_tuner, threads, size, SHARED_SOLVE, |threads| {
-            let solve = Backsolve { symbolic, numeric, threads };
-            pool::run(threads, || solve.solve(permuted));
+            pool::run(threads, |threads| Backsolve { symbolic, numeric, threads }.solve(permuted));
         });
         for (p, &d) in permuted.iter().zip(&symbolic.order) {
             x[d as usize] = *p;
@@ -235,7 +235,10 @@ impl LinearSolver for Ldlt {
         self.symbolic = Symbolic::new(pattern, &self.points, threads)?;
         if threads > 1 && self.symbolic.work > SHARED_FACTOR[0] {
             // Each thread sets addresses aside when it begins: that must show in what is free.
-            pool::run(threads, || rayon::broadcast(|_| drop(std::hint::black_box(vec![0u8; 64]))));
+            pool::run(threads, |threads| match threads {
+                1 => packing::reserve(),
+                _ => rayon::broadcast(|_| packing::reserve()).into_iter().collect(),
+            })?;
         }
         let values = self.symbolic.values(threads) + pattern.row_idx.len();
         memory::require(8 * values, || format!("the factorisation of {n} equations"))?;
@@ -259,13 +262,14 @@ impl LinearSolver for Ldlt {
         }
         self.ready = false;
         self.fallback = None;
+        packing::reserve()?;
         scale_of(&self.col_ptr, &self.row_idx, values, &mut self.scale);
         let threads = self.threads;
         let Self {
             col_ptr, row_idx, scale, values: scaled, symbolic, numeric, factor_tuner, ..
         } = self;
         let size = team(factor_tuner, threads, symbolic.work, SHARED_FACTOR, |threads| {
-            pool::run(threads, || {
+            pool::run(threads, |threads| {
                 let share = threads > 1;
                 let mut size = apply_scale(col_ptr, row_idx, values, scale, scaled, share)?;
                 if size.entry > BALANCED {

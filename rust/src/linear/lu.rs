@@ -9,6 +9,7 @@ use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Spec};
 
 use super::error::{LinearError, Singular};
+use super::packing;
 use super::pattern::Pattern;
 use super::scaling::{largest_at, max_abs};
 use super::{Inertia, LinearSolver, check_rhs};
@@ -130,6 +131,7 @@ impl LinearSolver for Lu {
             )));
         }
         self.ready = false;
+        packing::reserve()?;
         self.equilibrate(values)?;
         let (Some(symbolic), Some(memory)) = (&self.symbolic, &mut self.memory) else {
             return Err(LinearError::Order("call analyze before factorize"));

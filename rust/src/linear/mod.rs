@@ -49,6 +49,7 @@ pub mod minimum_degree;
 pub mod multifrontal;
 pub mod nullspace;
 pub mod ordering;
+pub mod packing;
 pub mod pattern;
 pub mod scaling;
 pub mod separator;

@@ -87,7 +87,7 @@ fn dissect(
     let known = points.len() == weights.len() && points.iter().flatten().all(|x| x.is_finite());
     if known && weights.len() >= PLACED {
         let graph = PlacedGraph { xadj, adjncy, weights, points };
-        let order = pool::run(threads, || dissection::dissect(graph, threads > 1));
+        let order = pool::run(threads, |threads| dissection::dissect(graph, threads > 1));
         if let Some(order) = order {
             return Ok(order);
         }

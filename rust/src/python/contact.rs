@@ -298,7 +298,7 @@ impl Contact {
     fn search(&mut self, py: Python<'_>, x: Rows<'_>) -> PyResult<bool> {
         let x = self.configuration(&x, "x")?;
         let (threads, pair) = (self.workers(), &mut self.pair);
-        Ok(py.detach(|| pool::run(threads, || pair.update(x))))
+        Ok(py.detach(|| pool::run(threads, |_| pair.update(x))))
     }
 
     /// Candidate pairs (P, 2): slave edge (node_to_segment: constraint), master edge or piece.
@@ -331,7 +331,7 @@ impl Contact {
             None => None,
         };
         let (threads, pair) = (self.workers(), &mut self.pair);
-        self.terms = py.detach(|| pool::run(threads, || pair.evaluate(x, old)));
+        self.terms = py.detach(|| pool::run(threads, |_| pair.evaluate(x, old)));
         self.collect(py)
     }
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from corota.analysis.parallel.communicator import ALONE
+from corota.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -27,6 +28,13 @@ class Observers:
 
     def __init__(self, each: Iterable[Observer]) -> None:
         self.each = list(each)
+        for observer in self.each:
+            for event in ("start", "increment", "end"):
+                if not callable(getattr(observer, event, None)):
+                    raise InputError(
+                        f"an observer is derived from corota.BaseObserver; {observer!r} has no "
+                        f"method {event}"
+                    )
         #: Processes whose observers decide together.
         self.communicator: Communicator = ALONE
 

@@ -25,7 +25,7 @@ from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.output import output as contact_output
 from corota.analysis.terms.moving_mass import mass_of_step
-from corota.errors import ConvergenceError, CorotaError, UnsupportedError
+from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
 from corota.lazy import lazy
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
 from corota.results.results import Frame, Results
@@ -155,6 +155,14 @@ class Analysis:
         if steps is None:
             steps = model.steps or [Static()]
             start = model.start if start is None else start
+        if keep not in ("all", "last"):
+            raise InputError(f"keep must be 'all' or 'last', not {keep!r}")
+        if threads is not None and not (hasattr(threads, "__index__") and threads >= 0):
+            raise InputError(f"threads must be a whole number >= 0, not {threads!r}")
+        if not isinstance(solver, str):
+            for name in ("analyze", "factorize", "solve"):
+                if not callable(getattr(solver, name, None)):
+                    raise InputError(f"a linear solver needs a method {name}; {solver!r} has none")
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)

@@ -239,8 +239,14 @@ class Reader:
         Raises
         ------
         UnsuitableState
-            If the tree belongs to something else.
+            If the tree belongs to something else, or is no tree of a :class:`Writer`.
         """
+        try:
+            return self._value(tree, fresh)
+        except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
+            raise UnsuitableState(f"its contents are damaged: {error!r:.200}") from None
+
+    def _value(self, tree: Any, fresh: Any = None) -> Any:
         if not isinstance(tree, dict):
             return tree
         if "known" in tree:
@@ -251,7 +257,7 @@ class Reader:
             return self._made[tree["again"]]
         if "tuple" in tree:
             old = fresh if isinstance(fresh, tuple) else ()
-            return tuple(self.read(t, f) for t, f in _beside(tree["tuple"], old))
+            return tuple(self._value(t, f) for t, f in _beside(tree["tuple"], old))
         if "code" in tree and "n" not in tree:
             return fresh
         for kind in ("scalar", "complex", "bytes"):
@@ -271,18 +277,18 @@ class Reader:
         if "list" in tree:
             old: Any = list(fresh) if isinstance(fresh, list) else []
             out: Any = self._keep(number, fresh if isinstance(fresh, list) else [])
-            out[:] = [self.read(t, f) for t, f in _beside(tree["list"], old)]
+            out[:] = [self._value(t, f) for t, f in _beside(tree["list"], old)]
         elif "dict" in tree:
             old = dict(fresh) if isinstance(fresh, dict) else {}
             out = self._keep(number, fresh if isinstance(fresh, dict) else {})
             out.clear()
             for key, part in tree["dict"]:
-                name = self.read(key)
-                out[name] = self.read(part, old.get(name))
+                name = self._value(key)
+                out[name] = self._value(part, old.get(name))
         elif "set" in tree:
             out = self._keep(number, fresh if isinstance(fresh, set) else set())
             out.clear()
-            out.update(self.read(t) for t in tree["set"])
+            out.update(self._value(t) for t in tree["set"])
         elif "class" in tree and "parts" in tree:
             out = self._object(tree, fresh)
         else:
@@ -342,7 +348,7 @@ class Reader:
             object.__setattr__(own, name, value)
         for name, part in tree["parts"].items():
             old = _parts(own).get(name)
-            value = self.read(part, old)
+            value = self._value(part, old)
             if value is None and isinstance(part, dict):
                 continue  # code that a new object has to be given
             object.__setattr__(own, name, value)

@@ -26,7 +26,7 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
     from corota import __version__
     from corota.analysis.state_tree import UnsuitableState
     from corota.io.checkpoint import newest, rebuilt
-    from corota.io.provenance import source_of
+    from corota.io.provenance import changed_file
     from corota.io.resume import files_of, foreign
 
     begin = time.perf_counter()
@@ -35,12 +35,12 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
     saved, refused = newest(job if args.output is None else Path(args.output) / job.name)
     for reason in refused:
         terminal.line(f"  note: not used: {reason}")
-    known = saved.options["source"].get("sha256")
+    source = saved.options["source"]
     deck = job.suffix == ".inp" and job.exists()
-    if deck and known and source_of(job)["sha256"] != known:
+    if deck and "sha256" in source and (changed := changed_file(source, job)):
         raise FileError(
-            f"{job}: the deck has changed since {saved.path} was written: run it again, or "
-            f"continue with the old one: corota resume {saved.path}"
+            f"{changed}: it has changed since {saved.path} was written: run {job} again, or "
+            f"continue with the old model: corota resume {saved.path}"
         )
     model, steps = rebuilt(saved)
     terminal.line(f"From {saved.path}: {saved.state.where}")

@@ -118,7 +118,7 @@ def run(args: Any, terminal: Terminal) -> int:
 def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
     from corota import __version__
     from corota.io.job import CHECKPOINT_SECONDS, JobFiles
-    from corota.io.provenance import place_later, write_provenance
+    from corota.io.provenance import write_provenance
     from corota.io.writers import STREAMS
 
     begin = time.perf_counter()
@@ -136,7 +136,7 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
     if not model.steps:
         raise ModelError(f"{args.deck}: there is no *STEP, so there is nothing to solve")
     if args.provenance and communicator.first:
-        write_provenance(Path(args.output), model.name, args.deck)
+        write_provenance(Path(args.output), model.name, model.sources)
     every = args.checkpoint_every
     streams = [f for f in args.formats or ["vtkhdf"] if f in STREAMS]
     files = JobFiles(
@@ -152,7 +152,6 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
         profile={"read": read},
         checkpoint_every=every or 0,
         checkpoint_seconds=CHECKPOINT_SECONDS if every is None else 0.0,
-        source=place_later(args.deck),
     )
     return carry_out(model, None, files, terminal, args, begin, communicator=communicator)
 

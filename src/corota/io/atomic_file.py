@@ -7,16 +7,22 @@ import contextlib
 import os
 import time
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from corota.errors import FileError
+from corota.io.regular_file import open_to_write
 from corota.lazy import lazy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 copyfile = lazy("shutil:copyfile")
 
 #: Age of a file from which each commit is flushed before it is renamed [s]; a run that is
 #: younger is cheap to repeat.
 YOUNG = 1.0
+#: Bytes of a page, the unit in which a file is written.
+PAGE = 1 << 14
 
 
 def full(error: OSError, path: Path) -> FileError:
@@ -65,8 +71,9 @@ class AtomicFile:
         self._born = time.monotonic()
         self._at = 0
         self._size = 0
-        self._pending: list[tuple[int, bytes]] = []
-        self._behind: list[tuple[int, bytes]] = []
+        #: Pages written since the last commit, and those that the hidden copy is behind by.
+        self._pages: dict[int, bytearray] = {}
+        self._behind: dict[int, bytearray] = {}
         self._shown = False
         try:
             self.hidden.unlink(missing_ok=True)
@@ -88,30 +95,47 @@ class AtomicFile:
         return self._at
 
     def write(self, data: bytes | memoryview) -> int:
-        held = bytes(data)
-        self._pending.append((self._at, held))
-        self._at += len(held)
+        view = memoryview(data).cast("B")
+        for number, inside, part in self._parts(len(view)):
+            page = self._pages.get(number)
+            if page is None:
+                page = self._pages[number] = bytearray(PAGE)
+                self._read_shown(number * PAGE, memoryview(page))
+            page[inside] = view[part]
+        self._at += len(view)
         self._size = max(self._size, self._at)
-        return len(held)
+        return len(view)
 
     def read(self, size: int) -> bytes:
-        held = bytearray(size)
-        return bytes(held[: self.readinto(held)])
+        data = bytearray(size)
+        return bytes(data[: self.readinto(data)])
 
     def readinto(self, buffer: bytearray | memoryview) -> int:
         view = memoryview(buffer).cast("B")
-        start, end = self._at, min(self._at + len(view), self._size)
+        count = max(0, min(len(view), self._size - self._at))
         view[:] = bytes(len(view))
+        self._read_shown(self._at, view[:count])
+        for number, inside, part in self._parts(count):
+            if number in self._pages:
+                view[part] = self._pages[number][inside]
+        self._at += count
+        return count
+
+    def _parts(self, count: int) -> Iterator[tuple[int, slice, slice]]:
+        """Pages of the next bytes: number, place within the page, place among the bytes."""
+        done = 0
+        while done < count:
+            number, start = divmod(self._at + done, PAGE)
+            size = min(PAGE - start, count - done)
+            yield number, slice(start, start + size), slice(done, done + size)
+            done += size
+
+    def _read_shown(self, start: int, view: memoryview) -> None:
+        """Fill a buffer from the visible file as far as that goes."""
         if self._shown:
             with open(self.path, "rb") as file:
                 file.seek(start)
                 file.readinto(view)
-        for offset, data in self._pending:
-            first, last = max(start, offset), min(end, offset + len(data))
-            if first < last:
-                view[first - start : last - start] = data[first - offset : last - offset]
-        self._at = end
-        return end - start
 
     def truncate(self, size: int | None = None) -> int:
         self._size = self._at if size is None else size
@@ -133,28 +157,28 @@ class AtomicFile:
         FileError
             If writing fails; the visible file keeps the state of the commit before.
         """
-        if not self._pending and self._shown:
+        if not self._pages and self._shown:
             return
         try:
             with open(self.hidden, "r+b") as file:
                 self._apply(file, self._behind)
-                self._apply(file, self._pending)
+                self._apply(file, self._pages)
                 file.truncate(self._size)
                 if time.monotonic() - self._born >= YOUNG:
                     file.flush()
                     os.fsync(file.fileno())
         except OSError as error:
             raise full(error, self.path) from None
-        self._behind, self._pending = self._pending, []
+        self._behind, self._pages = self._pages, {}
         try:
             self._swap(last)
         except OSError as error:
             raise full(error, self.path) from None
 
-    def _apply(self, file: IO[bytes], writes: list[tuple[int, bytes]]) -> None:
-        for offset, data in writes:
-            file.seek(offset)
-            file.write(data)
+    def _apply(self, file: IO[bytes], pages: dict[int, bytearray]) -> None:
+        for number, page in sorted(pages.items()):
+            file.seek(number * PAGE)
+            file.write(page)
 
     def _swap(self, last: bool) -> None:
         if last:
@@ -163,7 +187,7 @@ class AtomicFile:
         if not self._shown:
             os.replace(self.hidden, self.path)
             copyfile(self.path, self.hidden)
-            self._behind = []
+            self._behind = {}
             self._shown = True
             return
         try:
@@ -172,7 +196,7 @@ class AtomicFile:
         except OSError:  # a file system without hard links: the copy costs more, not safety
             os.replace(self.hidden, self.path)
             copyfile(self.path, self.hidden)
-            self._behind = []
+            self._behind = {}
             return
         os.replace(self.hidden, self.path)
         os.replace(self._spare, self.hidden)
@@ -203,8 +227,8 @@ class TextFile:
     def __init__(self, path: Path, keep: bool = False) -> None:
         self.path = path
         try:
-            mode = "r+b" if keep else "w+b"
-            self._file = open(path, mode, buffering=0)  # noqa: SIM115 (closed by close)
+            file = open_to_write(path, os.O_RDWR | (0 if keep else os.O_TRUNC))
+            self._file = open(file, "r+b", buffering=0)  # noqa: SIM115 (closed by close)
             self._file.seek(0, os.SEEK_END)
         except OSError as error:
             raise full(error, path) from None
@@ -272,6 +296,7 @@ def replace_text(path: Path, text: str) -> None:
     """
     hidden = path.with_name(f".{path.name}.next")
     try:
+        hidden.unlink(missing_ok=True)  # it may be a link
         hidden.write_text(text, encoding="utf-8", newline="\n")
         os.replace(hidden, path)
     except OSError as error:

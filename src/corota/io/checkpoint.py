@@ -19,10 +19,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.checkpoint import Checkpoint
-from corota.analysis.state_tree import Reader
+from corota.analysis.state_tree import Reader, UnsuitableState
 from corota.errors import FileError
 from corota.io.atomic_file import full
 from corota.io.file_options import CHECKPOINTS
+from corota.io.regular_file import parse_json, require_regular
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -77,8 +78,11 @@ def rebuilt(saved: Saved) -> tuple[Model, list[Step]]:
             "corota.resume(path, model=...)"
         )
     tree, arrays, _ = saved.model
-    found = Reader(arrays, {}).read(tree)
-    return found["model"], found["steps"]
+    try:
+        found = Reader(arrays, {}).read(tree)
+        return found["model"], found["steps"]
+    except (UnsuitableState, LookupError, TypeError) as error:
+        raise FileError(f"{saved.path}: not a checkpoint of this program: {error}") from None
 
 
 def store(
@@ -106,6 +110,7 @@ def store(
         f.name: getattr(state, f.name) for f in fields(state) if f.name not in ("tree", "arrays")
     }
     try:
+        hidden.unlink(missing_ok=True)  # it may be a link
         with h5py.File(hidden, "w", userblock_size=HEAD) as file:
             file.attrs["program"] = __version__
             file.attrs["job"], file.attrs["run"] = job, run
@@ -172,10 +177,10 @@ def _tree(group: Any, tree: Any, arrays: Sequence[Any]) -> None:
 
 
 def _untree(group: Any) -> tuple[Any, list[Any]]:
-    tree = json.loads(bytes(group["tree"][()]))
+    tree = parse_json(bytes(group["tree"][()]))
     whole: dict[str, Any] = {}
     arrays = []
-    for kind, shape, start in json.loads(bytes(group["places"][()])):
+    for kind, shape, start in parse_json(bytes(group["places"][()])):
         if kind not in whole:
             whole[kind] = group[f"numbers {kind.strip('<>|=')}"][()].view(np.dtype(kind))
         size = int(np.prod(shape, dtype=int))
@@ -196,6 +201,7 @@ def load(path: Path) -> Saved:
 
     from corota import __version__
 
+    require_regular(path)
     try:
         with open(path, "rb") as raw:
             head = raw.read(HEAD)
@@ -210,7 +216,7 @@ def load(path: Path) -> Saved:
                     f"{path}: written by version {program}; this is {__version__}, which may round "
                     "differently: continue with that version"
                 )
-            own = json.loads(str(file.attrs["head"]))
+            own = parse_json(str(file.attrs["head"]))
             tree, arrays = _untree(file["state"])
             model = None
             if "model" in file:
@@ -218,10 +224,10 @@ def load(path: Path) -> Saved:
             return Saved(
                 path,
                 Checkpoint(**own, tree=tree, arrays=arrays),
-                json.loads(bytes(file["files"][()])),
+                parse_json(bytes(file["files"][()])),
                 str(file.attrs["job"]),
                 str(file.attrs["run"]),
-                json.loads(str(file.attrs["options"])),
+                parse_json(str(file.attrs["options"])),
                 model,
             )
     except (OSError, KeyError, ValueError, TypeError) as error:

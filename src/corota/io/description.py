@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.io.datasets import store
+from corota.io.regular_file import parse_json
 from corota.model.description import describe
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def description_of_results(group: Any) -> dict[str, Any]:
     """The description in a result file; empty in those of versions without."""
     if NAME not in group:
         return {}
-    found: dict[str, Any] = json.loads(bytes(group[NAME][:]))
+    found: dict[str, Any] = parse_json(bytes(group[NAME][:]))
     return found
 
 

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 from typing import TYPE_CHECKING
 
 from corota.errors import FileError
 from corota.io.atomic_file import full
+from corota.io.regular_file import open_to_write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -43,9 +45,10 @@ class FolderLock:
     def _take(self) -> int | None:
         """The lock; None if the file was removed by its last holder meanwhile."""
         try:
-            file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+            file = open_to_write(self.path, os.O_RDWR)
         except OSError as error:
-            raise full(error, self.path.with_name(self._job)) from None
+            odd = error.errno in (errno.ELOOP, errno.EINVAL)  # a link or a pipe in its place
+            raise full(error, self.path if odd else self.path.with_name(self._job)) from None
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -18,7 +18,7 @@ from corota.io.events import Events, json_line
 from corota.io.file_options import CHECKPOINTS, LEVEL, FileOptions
 from corota.io.finite import check_frame
 from corota.io.folder_lock import FolderLock
-from corota.io.provenance import place_later
+from corota.io.provenance import source_of
 from corota.io.requests import due_now, left_over, wants_file
 from corota.io.stop_request import StopRequest, stop_file
 from corota.io.tables.csv_history import CsvWriter, Histories
@@ -30,7 +30,7 @@ from corota.names import choose
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from os import PathLike
     from types import TracebackType
 
@@ -93,9 +93,9 @@ class JobFiles(BaseObserver):
     checkpoint_seconds : float
         Least time between checkpoints [s]; 0 for none by time. Where one checkpoint costs more than
         a hundredth of it, a hundred times that cost, so that large models do not wait for them.
-    source : dict of str to str, or callable, optional
-        Source of the model, for checkpoints: ``deck`` and its ``sha256``, or a function that gives
-        them.
+    source : dict, optional
+        Source of the model, for checkpoints, as :func:`corota.io.provenance.source_of` gives it;
+        that of ``model.sources`` by default.
     resume : Saved, optional
         Continue the files of a run from one of its checkpoints.
 
@@ -136,7 +136,7 @@ class JobFiles(BaseObserver):
         profile: dict[str, float] | None = None,
         checkpoint_every: int = 0,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
-        source: dict[str, str] | Callable[[], dict[str, str]] | None = None,
+        source: dict[str, Any] | None = None,
         resume: Saved | None = None,
     ) -> None:
         self.folder, self.name = Path(folder), name
@@ -192,7 +192,7 @@ class JobFiles(BaseObserver):
         self._place = self._source
         if not self._place and model.sources:
             with contextlib.suppress(FileError):
-                self._place = place_later(model.sources[0])
+                self._place = source_of(model.sources)
         self._histories = Histories(model, steps, self._extra)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -428,7 +428,7 @@ class JobFiles(BaseObserver):
             "parts": self._form.parts,
             "every": self._every,
             "seconds": self._seconds,
-            "source": self._place() if callable(self._place) else self._place,
+            "source": self._place,
         }
 
     def iteration(self, info: Iteration) -> None:

@@ -60,6 +60,7 @@ def write_npz(results: Results, path: Path) -> None:
         data[name.replace(" ", "_")] = np.array([f.scalars.get(name, 0.0) for f in frames])
     hidden = path.with_name(f".{path.name}.next")
     try:
+        hidden.unlink(missing_ok=True)  # it may be a link
         with open(hidden, "wb") as file:
             np.savez_compressed(file, **data)
         os.replace(hidden, path)

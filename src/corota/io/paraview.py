@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 READABLE = (".vtkhdf", ".hdf", ".pvd", ".vtu")
 
 _SCRIPT = '''\
-"""Show {file} in ParaView: deformed, colored by {label}, with a time axis.
+"""Show a result file of Corota in ParaView: deformed and colored, with a time axis.
 
-    paraview --script={script}        or Macros > Import new macro
-    pvpython {script} picture.png     without a window
+    paraview --script=THIS_FILE        or Macros > Import new macro
+    pvpython THIS_FILE picture.png     without a window
 
 The result file must be in the folder of this script; move both together.
 """
@@ -129,7 +129,6 @@ def write_paraview(
         raise InputError(f"{script}: the script must be in the folder of {source}")
     text = _SCRIPT.format(
         file=source.name,
-        script=script.name,
         label=labelled(name, unit),
         array=array,
         component=component,

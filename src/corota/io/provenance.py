@@ -4,19 +4,19 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from corota.errors import FileError
 from corota.io.atomic_file import replace_text
+from corota.io.regular_file import require_regular
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Mapping, Sequence
     from os import PathLike
 
-#: Bytes of a deck that is kept.
-SMALL = 1 << 18
 #: Libraries that affect the numbers and the files.
 LIBRARIES = ("numpy", "scipy", "h5py")
 
@@ -31,6 +31,7 @@ def sha256(path: str | PathLike[str]) -> str:
     """
     import hashlib
 
+    require_regular(path)
     try:
         found = hashlib.sha256()
         with open(path, "rb") as file:
@@ -41,46 +42,58 @@ def sha256(path: str | PathLike[str]) -> str:
         raise FileError(f"{path}: cannot read: {error.strerror or error}") from None
 
 
-def source_of(deck: str | PathLike[str]) -> dict[str, str]:
-    """Name and digest of a deck."""
-    return {"deck": Path(deck).name, "sha256": sha256(deck)}
+def source_of(files: Sequence[str | PathLike[str]]) -> dict[str, Any]:
+    """Digests of a deck and of all that was read with it.
 
+    Parameters
+    ----------
+    files : sequence of path-like
+        The deck, then the files that it includes.
 
-def place_of(deck: str | PathLike[str]) -> dict[str, str]:
-    """Name, digest and path of a deck, for later jobs."""
-    return source_of(deck) | {"path": str(Path(deck).resolve())}
-
-
-def place_later(deck: str | PathLike[str]) -> Callable[[], dict[str, str]]:
-    """Give :func:`place_of` of a deck as it is now, when it is called.
-
-    A small deck is kept until then: loading the functions for digests takes longer than reading it.
+    Returns
+    -------
+    dict
+        ``deck``: name of the deck; ``path``: its path; ``sha256``: its digest; ``included``:
+        digests of the other files by their paths relative to the deck's folder.
 
     Raises
     ------
     FileError
-        If it cannot be read.
+        If one cannot be read.
     """
-    path = Path(deck)
-    try:
-        data = path.read_bytes() if path.stat().st_size <= SMALL else b""
-    except OSError as error:
-        raise FileError(f"{path}: cannot read: {error.strerror or error}") from None
-    if not data:
-        found = place_of(deck)
-        return lambda: found
-    whole = str(path.resolve())
-
-    def place() -> dict[str, str]:
-        import hashlib
-
-        return {"deck": path.name, "sha256": hashlib.sha256(data).hexdigest(), "path": whole}
-
-    return place
+    deck, *others = (Path(file).resolve() for file in files)
+    # A checkpoint carries a digest of its own, and may be replaced by the job that reads it.
+    others = [file for file in others if ".ckpt" not in file.suffixes]
+    included = {os.path.relpath(file, deck.parent): sha256(file) for file in others}
+    return {"deck": deck.name, "path": str(deck), "sha256": sha256(deck), "included": included}
 
 
-def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path:
+def changed_file(source: Mapping[str, Any], deck: str | PathLike[str]) -> str:
+    """Name of the first file that is missing or differs from its digest; empty if there is none.
+
+    Parameters
+    ----------
+    source : mapping
+        Of :func:`source_of`.
+    deck : path-like
+        The deck as it is.
+    """
+    folder = Path(deck).resolve().parent
+    wanted = {str(deck): source["sha256"]}
+    wanted |= {str(folder / name): digest for name, digest in source.get("included", {}).items()}
+    for name, digest in wanted.items():
+        try:
+            if sha256(name) != digest:
+                return name
+        except FileError:
+            return name
+    return ""
+
+
+def write_provenance(folder: Path, name: str, files: Sequence[str | PathLike[str]]) -> Path:
     """Write ``NAME.provenance.json`` into a folder; return its path.
+
+    `files` are the deck and what it includes.
 
     Raises
     ------
@@ -105,7 +118,7 @@ def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path
         "python": platform.python_version(),
         "system": f"{sys.platform} {platform.machine()}",
         "libraries": libraries,
-        "input": source_of(deck),
+        "input": source_of(files),
     }
     path = folder / f"{name}.provenance.json"
     folder.mkdir(parents=True, exist_ok=True)
@@ -113,4 +126,4 @@ def write_provenance(folder: Path, name: str, deck: str | PathLike[str]) -> Path
     return path
 
 
-__all__ = ["place_later", "place_of", "sha256", "source_of", "write_provenance"]
+__all__ = ["changed_file", "sha256", "source_of", "write_provenance"]

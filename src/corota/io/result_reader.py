@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
@@ -15,6 +14,7 @@ import numpy as np
 from corota.errors import FileError, InputError
 from corota.io.contacts import contacts_of_results
 from corota.io.description import description_of_results
+from corota.io.regular_file import parse_json
 from corota.io.vtk.grid import VTK_TYPES
 from corota.io.vtk.parts import whole
 from corota.mesh import Cells, Mesh
@@ -402,7 +402,7 @@ class FileResults(Results):
         model = Model(_mesh(file), str(own.attrs["job"]))
         model.contacts = contacts_of_results(own)
         model.unit_system = Units.of(*filter(None, str(own.attrs.get("units", "")).split(", ")))
-        info = json.loads(own.attrs["info"]) if "info" in own.attrs else {}
+        info = parse_json(own.attrs["info"]) if "info" in own.attrs else {}
         super().__init__(model, info=info)
         self.description = description_of_results(own)
         names = ("version", "job", "run")

@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.errors import FileError, InputError, Location
+from corota.errors import InputError, Location
 from corota.io.meshio_bridge import from_meshio
+from corota.io.regular_file import read_bytes
 
 if TYPE_CHECKING:
     import os
@@ -55,10 +55,7 @@ def read_unv(path: str | os.PathLike[str]) -> Mesh:
     FileError
         If the file cannot be read.
     """
-    try:
-        lines = Path(path).read_text(encoding="latin-1").splitlines()
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror or error}") from error
+    lines = read_bytes(path).decode("latin-1").splitlines()
     found = _Found()
     readers = {2411: _nodes, 781: _nodes, 2412: _elements, **dict.fromkeys(_GROUPS, _group)}
     for number, start, stop in _data_sets(lines, str(path)):

@@ -369,6 +369,8 @@ class Tie(Brief):
     def __post_init__(self) -> None:
         if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
             raise InputError("the tolerance of a tie must be >= 0", self.where)
+        if np.array_equal(self.slave, self.master):
+            raise InputError("a surface cannot be tied to itself", self.where)
         if not self.name:
             self.name = f"{_called(self.slave)}-{_called(self.master)}"
 

@@ -13,6 +13,7 @@ from corota.display import Brief
 from corota.errors import InputError, number
 from corota.model.loading import Loading
 from corota.model.loads import LOAD_KINDS, check_loads, check_supports
+from corota.model.paths import ArcLength, DisplacementControl
 from corota.names import choose
 
 if TYPE_CHECKING:
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     from corota.errors import Location
     from corota.model.loads import Fixed, Load, LoadKind
-    from corota.model.paths import ArcLength, DisplacementControl
 
     #: Share of critical damping of all modes, or (first, last, share) of ranges of modes.
     ModalDamping = float | Sequence[tuple[int, int, float]]
@@ -129,8 +129,27 @@ class Step(Brief, Loading):
         self.smallest_increment = self.smallest_increment or min(
             self.first_increment, 1e-6 * self.period
         )
-        if self.max_increments < 1:
-            raise InputError("a step needs at least one increment", self.where)
+        self._control_numbers()
+
+    def _control_numbers(self) -> None:
+        """Check tolerances and counts of the procedures that have them.
+
+        Raises
+        ------
+        InputError
+            If a tolerance is not above 0 and at most 1, or a count is not a whole number in its
+            range.
+        """
+        for name in ("tolerance", "error_tolerance"):
+            value = getattr(self, name, 1.0)
+            if not (isinstance(value, (int, float)) and 0.0 < value <= 1.0):
+                raise InputError(f"{name} must be > 0 and <= 1, not {value!r}", self.where)
+        for name, least in (("increments", 0), ("max_increments", 1), ("max_iterations", 1)):
+            value = getattr(self, name, least)
+            if not (hasattr(value, "__index__") and value >= least):
+                raise InputError(
+                    f"{name} must be a whole number >= {least}, not {value!r}", self.where
+                )
 
     def _kinds(self) -> None:
         """Name the kinds of loads that are removed."""
@@ -193,7 +212,13 @@ class Static(Step):
             raise InputError(
                 f"at_limit must be 'stop' or 'follow', not {self.at_limit!r}", self.where
             )
+        self._control_numbers()
         if self.path is not None:
+            if not isinstance(self.path, (ArcLength, DisplacementControl)):
+                raise InputError(
+                    f"path must be an ArcLength or a DisplacementControl, not {self.path!r}",
+                    self.where,
+                )
             self._path_increments()
             return
         if self.increments:
@@ -256,6 +281,7 @@ class Dynamic(Step):
     starts_in_motion = True
 
     def __post_init__(self) -> None:
+        self._control_numbers()
         if self.increments:
             self.first_increment = self.period / self.increments
             self.largest_increment = self.first_increment

@@ -36,6 +36,8 @@ STYLE = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "svg.fonttype": "none",
+    # Names of sets and jobs may hold a dollar sign.
+    "text.parse_math": False,
     "figure.dpi": 110.0,
     "axes.prop_cycle": None,
 }

@@ -124,6 +124,7 @@ def response(
         figure = new_figure(5.6, 4.6, shown=path is None)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
         upper.semilogy(frequency, size, color=COLORS[0], linewidth=1.4)
+        upper.yaxis.set_major_formatter("{x:g}")
         lower.plot(
             frequency, np.degrees(phase), color=COLORS[0], linewidth=1.4, marker=".", markersize=3
         )

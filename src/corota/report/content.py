@@ -3,15 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.errors import InputError
+from corota.errors import FileError, InputError
 from corota.io.modes import as_results
+from corota.io.regular_file import parse_json, read_bytes
 from corota.io.result_reader import FileResults, read_vtkhdf
 from corota.mesh import EDGES
 from corota.model import elements
@@ -121,8 +121,8 @@ def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> C
 def _provenance(job: JobPaths) -> dict[str, Any]:
     path = job.path("provenance.json")
     try:
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        found: dict[str, Any] = parse_json(read_bytes(path))
+    except (FileError, ValueError):
         return {}
     return found
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import FileError
+from corota.io.regular_file import parse_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -229,9 +229,11 @@ class JobRecords:
             self.records.names, self.records.rows = table
         for line in lines:
             try:
-                self.records.take(json.loads(line))
-            except json.JSONDecodeError:
+                record = parse_json(line)
+            except ValueError:
                 continue  # a line that the end of a process cut
+            if isinstance(record, dict):
+                self.records.take(record)
         rows = self._table.lines()
         if rows and self._table.restarted:
             self.records.names, self.records.units = without_units(next(csv.reader(rows[:1])))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import secrets
 import threading
 import time
@@ -145,6 +146,10 @@ class JobWatch:
         request_stop(self.job.folder, self.job.name)
 
 
+#: Request of a frame, by a number that a run can have.
+_FRAME = re.compile(r"frame/([0-9]{1,9})")
+
+
 class _Handler(BaseHTTPRequestHandler):
     """Answers below the address with the token; all else is not found."""
 
@@ -166,8 +171,8 @@ class _Handler(BaseHTTPRequestHandler):
         data = None
         if name in ("model", "history"):
             data = getattr(self.watch, name)()
-        elif name.startswith("frame/") and name[6:].isdigit():
-            data = self.watch.frame(int(name[6:]))
+        elif frame := _FRAME.fullmatch(name):
+            data = self.watch.frame(int(frame[1]))
         if data is None:
             return self._answer(b"", "application/octet-stream", HTTPStatus.NO_CONTENT)
         return self._answer(data, "application/octet-stream")
@@ -188,7 +193,8 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get("Host") not in (f"{HOST}:{port}", f"localhost:{port}"):
             return None
         parts = self.path.split("?")[0].split("/", 2)
-        if len(parts) != 3 or not secrets.compare_digest(parts[1], self.token):
+        # Only bytes may be compared beyond ASCII.
+        if len(parts) != 3 or not secrets.compare_digest(parts[1].encode(), self.token.encode()):
             return None
         return parts[2]
 

@@ -6,10 +6,13 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import os
 from dataclasses import asdict
 from typing import IO, TYPE_CHECKING, Any
 
 from corota.errors import FileError
+from corota.io.atomic_file import replace_text
+from corota.io.regular_file import open_to_write, parse_json, read_bytes
 from corota.sweeps.measures import Measure
 from corota.sweeps.variant import DeckBuild, Job, Outcome
 
@@ -44,14 +47,14 @@ class Store:
             return
         self._job = digest(job)
         try:
-            text = path.read_text(encoding="utf-8") if path.exists() else ""
-        except (OSError, UnicodeDecodeError) as error:
+            text = read_bytes(path).decode("utf-8") if path.exists() else ""
+        except UnicodeDecodeError as error:
             raise FileError(f"{path}: cannot be read as the store of a sweep: {error}") from None
         # A line without an end was being written when the sweep was stopped.
         self._whole = text[: text.rfind("\n") + 1]
         for number, line in enumerate(self._whole.splitlines(), 1):
             try:
-                found = json.loads(line)
+                found = parse_json(line)
                 outcome = Outcome(**found["outcome"])
                 self._known[found["digest"]] = outcome
             except (ValueError, KeyError, TypeError):
@@ -82,8 +85,9 @@ class Store:
         if self.path is not None:
             try:
                 if self._cut:
-                    self.path.write_text(self._whole, encoding="utf-8")
-                self._file = self.path.open("a", encoding="utf-8")
+                    replace_text(self.path, self._whole)
+                file = open_to_write(self.path, os.O_WRONLY | os.O_APPEND)
+                self._file = open(file, "a", encoding="utf-8")
             except OSError as error:
                 raise FileError(f"{self.path}: {error.strerror}") from None
         return self
@@ -110,7 +114,8 @@ def digest(job: Job) -> str:
     if isinstance(job.build, DeckBuild):
         from corota.io.provenance import source_of
 
-        parts += [str(source_of(job.build.path)["sha256"]), repr(dict(job.build.options))]
+        files = source_of(job.build.files())
+        parts += [files["sha256"], repr(files["included"]), repr(dict(job.build.options))]
     else:
         parts.append(text_of(job.build))
     for name, measure in job.measures.items():

@@ -30,6 +30,14 @@ class DeckBuild:
 
         return read(self.path, parameters=parameters, **self.options)
 
+    def files(self) -> list[Path]:
+        """The deck and the files that it includes."""
+        from corota.io.deck.lexer import Lexer
+
+        lexer = Lexer(self.path, bool(self.options.get("allow_include")))
+        lexer.read()
+        return [self.path, *sorted(lexer.files - {self.path.resolve()})]
+
 
 @dataclass(frozen=True)
 class Job:

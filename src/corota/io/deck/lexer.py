@@ -371,6 +371,10 @@ class Lexer:
             shown = os.path.join(os.path.dirname(card.where.file), name)
             self.scan(self._source(shown, found[0]), [*stack, found[1]])
 
+    def allows(self, path: Path) -> bool:
+        """Whether the deck may read a file: one in its folder or below, links followed."""
+        return self.allow_include or path.resolve().is_relative_to(self._root)
+
     def _opened(self, card: Card, stack: list[Path], name: str) -> tuple[bytes, Path] | None:
         """Bytes and place of a file that a card names; ``None`` after an error."""
         where = card.at("INPUT")
@@ -385,7 +389,7 @@ class Lexer:
             return None
         try:
             target = path.resolve()
-            if not self.allow_include and not target.is_relative_to(self._root):
+            if not self.allows(target):
                 self._error(
                     where,
                     f"{numerals.shown(name)} is outside the folder of the deck",

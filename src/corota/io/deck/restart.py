@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from corota.errors import FileError
 from corota.io.deck.lexer import Lexer
-from corota.io.provenance import sha256
+from corota.io.provenance import changed_file
 
 if TYPE_CHECKING:
     from corota.io.checkpoint import Saved
@@ -57,6 +57,14 @@ def with_earlier_steps(
     if deck.n_errors:
         return cards, None
     job = lexer.path.parent / (card.value("JOB") or lexer.path.stem)
+    if not lexer.allows(job):
+        deck.error(
+            card,
+            card.where,
+            f"JOB={card.value('JOB')} is outside the folder of the deck",
+            hint="move the earlier job there, or allow it: --allow-include",
+        )
+        return cards, None
     saved = _chosen(job, step, increment)
     saved.state.leave_step = increment is None or card.has("ENDSTEP")
     earlier = Lexer(_earlier_deck(saved), lexer.allow_include)
@@ -122,11 +130,11 @@ def _earlier_deck(saved: Saved) -> Path:
         )
     places = [Path(source["path"]), saved.path.with_name(source["deck"])]
     for path in places:
-        if path.exists() and sha256(path) == source["sha256"]:
+        if path.exists() and not changed_file(source, path):
             return path
     raise FileError(
-        f"{places[0]}: the deck of the earlier job is not there, or has changed since "
-        f"{saved.path} was written"
+        f"{places[0]}: the deck of the earlier job, or a file that it includes, is not there or "
+        f"has changed since {saved.path} was written"
     )
 
 

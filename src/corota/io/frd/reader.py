@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.errors import FileError, UnsupportedError
 from corota.io.frd.layout import KINDS, NODES
+from corota.io.regular_file import read_bytes
 from corota.mesh import Cells, Mesh
 from corota.model.model import Model
 from corota.results import variables as vf
@@ -28,10 +29,7 @@ class _Source:
     """Bytes of a file with a place to read from."""
 
     def __init__(self, path: Path) -> None:
-        try:
-            self.data = path.read_bytes()
-        except OSError as error:
-            raise FileError(f"{path}: {error.strerror or error}") from None
+        self.data = read_bytes(path)
         self.path, self.at = path, 0
 
     def line(self) -> str:

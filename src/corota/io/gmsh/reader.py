@@ -3,22 +3,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from pathlib import Path
+import os
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota import _core
-from corota.errors import FileError, InputError
+from corota.errors import InputError
 from corota.io.deck.lexer import READ
 from corota.io.gmsh.parse import NAMES, Parsed, Reader
+from corota.io.regular_file import read_bytes, require_regular
 from corota.mesh.data import Cells, Mesh
 from corota.mesh.plane import into_plane
 from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
 
 if TYPE_CHECKING:
-    import os
-
     from corota.mesh.data import Floats, Ints
 
 #: Default names of physical groups, as Gmsh writes them into decks.
@@ -38,12 +37,9 @@ def read_gmsh(path: str | os.PathLike[str]) -> Mesh:
     FileError
         If the file cannot be read.
     """
-    try:
-        _core.require_memory(READ * Path(path).stat().st_size, f"reading {path}")
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror or error}") from error
-    parsed = Reader(str(path), data).read()
+    require_regular(path)
+    _core.require_memory(READ * os.path.getsize(path), f"reading {path}")
+    parsed = Reader(str(path), read_bytes(path)).read()
     return _mesh(parsed, str(path))
 
 

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from corota.errors import FileError
+from corota.io.regular_file import read_bytes
 from corota.io.vtk.grid import POLY_LINE, VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
@@ -50,8 +51,8 @@ def read_vtk_xml(path: Path) -> Results:
         if path.suffix.lower() == ".vtu":
             pieces = [path]
         else:
-            entries = ElementTree.parse(path).getroot().findall("Collection/DataSet")
-            pieces = [path.parent / str(entry.get("file")) for entry in entries]
+            entries = ElementTree.fromstring(read_bytes(path)).findall("Collection/DataSet")
+            pieces = [_inside(path.parent, str(entry.get("file"))) for entry in entries]
         read = [_arrays(piece) for piece in pieces]
         if not read:
             raise ValueError("no frames")
@@ -60,8 +61,6 @@ def read_vtk_xml(path: Path) -> Results:
         # A single file is the end of an analysis, not its start.
         for number, data in enumerate(read, start=int(path.suffix.lower() == ".vtu")):
             results.add(_frame(mesh, data, number))
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror or error}") from None
     except (ElementTree.ParseError, KeyError, ValueError, IndexError) as error:
         raise FileError(f"{path}: damaged, or not written by Corota: {error}") from None
     return results
@@ -78,8 +77,16 @@ class _Sectioned(Results):
         return self._numbers
 
 
+def _inside(folder: Path, name: str) -> Path:
+    """Path of a file that a collection names, which must be below its folder."""
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise ValueError(f"{name!r} is outside the folder of the file")
+    return path
+
+
 def _arrays(path: Path) -> dict[str, Any]:
-    raw = path.read_bytes()
+    raw = read_bytes(path)
     head, mark, blob = raw.partition(b'<AppendedData encoding="raw">\n_')
     if not mark:
         raise ValueError(f"{path.name} has no appended data")
