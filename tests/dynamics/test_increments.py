@@ -101,3 +101,27 @@ def test_automatic_increments_pass_a_kink_of_the_base():
         period=1.0, first_increment=0.01, scheme="newmark", nlgeom=False, max_increments=300
     )
     assert ct.solve(model, step, fields=False).frames[-1].time == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("free", [False, True])
+@pytest.mark.parametrize("scheme", ["hht", "energy_momentum"])
+def test_increments_do_not_depend_on_the_axes(scheme, free):
+    """A body, its motion and its load turned by any angle: the same increments, to rounding."""
+    sizes = []
+    for angle in np.radians([0.0, 20.0, 45.0]):
+        c, s = np.cos(angle), np.sin(angle)
+        turn = np.array([[c, -s], [s, c]])
+        mesh = ct.mesh.rectangle(6.0, 0.6, nx=10, ny=1)
+        mesh.points[:] = mesh.points @ turn.T
+        model = ct.Model(mesh)
+        model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3, rho=1.0))
+        load, speed = turn @ [0.1, -0.3], turn @ [1.0, 0.3]
+        if free:
+            model.velocity(x=speed[0], y=speed[1], spin=0.5, about=(0.0, 0.0))
+        else:
+            model.fix("left")
+        model.force("right", x=load[0], y=load[1])
+        sizes.append(column(run(model, period=3.0, scheme=scheme), "dt"))
+    assert len({len(s) for s in sizes}) == 1
+    for other in sizes[1:]:
+        assert np.allclose(other, sizes[0], rtol=1e-6)

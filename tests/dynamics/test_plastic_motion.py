@@ -102,3 +102,20 @@ def test_pressure_in_motion_follows_the_edge():
     # Over half a turn: the force (cos, sin) of pi t integrates to (0, 2 / pi).
     assert last["momentum y"] == pytest.approx(2.0 / np.pi, rel=2e-2)
     assert abs(last["momentum x"]) < 2e-2
+
+
+@pytest.mark.parametrize("element", ["Q4D", "Q4DI"])
+def test_energy_momentum_finds_a_coarse_increment_of_plastic_drilling_elements(element):
+    """The tangent of the scheme is symmetric, the exact one is not: 175 iterations without help."""
+    model = ct.Model(ct.mesh.rectangle(4.0, 0.8, nx=4, ny=1))
+    material = ct.Mises(E=2e3, nu=0.3, yield_stress=6.0, isotropic=40.0, kinematic=30.0, rho=1.0)
+    model.section("all", element=element, material=material)
+    model.velocity(x=0.3, spin=1.2, about=(1.0, 0.3))
+    model.velocity("right", y=6.0)
+    step = ct.Dynamic(period=0.045, increments=3, scheme="energy_momentum")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the size of the strain
+        results = ct.solve(model, step, threads=1)
+    assert column(results, "iterations").max() <= 16
+    assert results.frames[-1].scalars["ALLPD"] > 0.0
+    assert abs(results.frames[-1].scalars["energy balance error"]) < 1e-9

@@ -12,6 +12,8 @@ import corota as ct
 from corota.analysis.equations import System
 from corota.analysis.linear.lanczos import largest
 from corota.analysis.linear.solvers import Multifrontal
+from corota.mesh import Mesh
+from corota.mesh.data import Cells
 from corota.model.loads import EdgeLoad, NodalForce
 from support.frames import column, euler_load, node_at, williams_toggle
 from support.tied import with_nodes
@@ -242,3 +244,36 @@ def test_a_column_of_two_parts_buckles_as_what_holds_it_says(joint):
     found = ct.solve(model, steps, threads=1, fields=False).modes[-1].factors[0]
     exact = 0.8 if joint == "rough contact" else 1.0
     assert found == pytest.approx(exact, rel=0.02)
+
+
+@pytest.mark.parametrize("share", [1.0, 0.75, 0.25])
+def test_all_that_perturbs_adds_to_the_preload(share):
+    """After half the critical load a column has half of it left, be it force, heat or shortening.
+
+    A clamped bar: N = 4 pi^2 E I / L^2, by a force, by E A alpha (T - T0), by E A u / L.
+    """
+    young, area, inertia, alpha, n, start = 1e7, 0.01, 4e-7, 1e-5, 32, 20.0
+    points = np.column_stack([np.linspace(0.0, 1.0, n + 1), np.zeros(n + 1)])
+    critical = 4.0 * np.pi**2 * young * inertia
+
+    def factor(hot, give, critical):
+        lines = np.stack([np.arange(n), np.arange(1, n + 1)], axis=1)
+        mesh = Mesh(points, [Cells("line2", lines, np.arange(1, n + 1))])
+        model = ct.Model(mesh)
+        material = ct.Elastic(E=young, expansion=alpha)
+        model.beam(np.arange(n), material=material, area=area, inertia=inertia)
+        model.fix([0], rotation=True)
+        model.fix([n], x=0.0 if hot else None, rotation=True)
+        model.initial_temperature(start)
+        steps = [ct.Static(**give(0.5 * critical)), ct.Buckle(**give(share * critical))]
+        return ct.solve(model, steps, threads=1, fields=False).modes[-1].factors[0]
+
+    def heat(rise):
+        return {"loads": [ct.Temperature(np.arange(n + 1), np.full(n + 1, start + rise))]}
+
+    found = [
+        factor(False, lambda p: {"loads": [NodalForce([n], 0, -p)]}, critical),
+        factor(True, heat, critical / (young * area * alpha)),
+        factor(False, lambda u: {"supports": [ct.Fixed([n], 0, -u)]}, critical / (young * area)),
+    ]
+    assert found == pytest.approx(3 * [0.5 / share], rel=0.02)

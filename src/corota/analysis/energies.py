@@ -37,7 +37,7 @@ TERMS = {
     "ALLSD": "dissipation of contact stabilization",
     "ALLCL": "energy stored by contact pressure laws",
     "ALLPW": "work of contact forces in central differences less ALLFD and ALLCL",
-    "ALLWK": "work of loads and of moving supports",
+    "ALLWK": "work of loads and of moving supports; kinetic energy set at the start of a step",
     "ALLTH": "work of thermal expansion and of moduli that follow the temperature",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
 }
@@ -93,9 +93,12 @@ class Energies:
             self.set_kinetic(0.0)
 
     def set_kinetic(self, kinetic: float) -> None:
-        """Set the kinetic energy at the start of a step, in place of the last one's."""
+        """Set the kinetic energy at the start of a step, in place of the last one's.
+
+        What another mass, another velocity or a stop changes is work from outside.
+        """
         if self._reference is not None:
-            self._reference += kinetic - self.kinetic
+            self.work += kinetic - self.kinetic
         self.kinetic = kinetic
 
     def drive(self, external: Floats, reaction: Floats) -> None:
@@ -250,8 +253,8 @@ class Balance:
     def driven(self, now: MotionState) -> float:
         """Energy of the body in the frame of the driver: that of an impact from rest."""
         moved = self.system.conditions.constrained & ~self.system.is_rotation
-        speed = np.abs(now.v[moved]).max(initial=0.0)
-        return 0.5 * self.mass * float(speed) ** 2
+        velocity = self.system.by_node(np.where(moved, now.v, 0.0))[:, :2]
+        return 0.5 * self.mass * float((velocity * velocity).sum(axis=1).max())
 
     def accept(self, motion: NewmarkMotion | ConservingMotion, contact: Floats) -> None:
         """Add the work of an increment, in which contact has a force, shape (n_dofs,)."""

@@ -181,8 +181,8 @@ def _perturbation(
     model = system.model
     own = bool(step.loads) or any(s.value != 0.0 for s in step.supports)
     loads = Conditions(system)
-    # Temperatures are absolute: what heats is the difference from the state.
-    loads.temperatures.begin_at(system.conditions.temperatures.at(0.0))
+    # As a force adds to the preload, so does what a temperature differs from the initial one.
+    loads.temperatures.begin_at(system.free.start)
     with_model = number == 1 or not own
     loads.add_items(
         [*(model.loads if with_model else []), *step.loads],

@@ -53,8 +53,8 @@ if TYPE_CHECKING:
 AIM = 0.7
 #: Increments that a wave of a load needs at least, and those that follow it well.
 LEAST_PER_WAVE, PER_WAVE = 4.0, 20.0
-#: Displacements below this share of the model's size are as good as none.
-REST = 1e-5
+#: Displacements below this share of the model's radius are as good as none.
+REST = 2e-5
 #: Automatic increments may miss the straight line of an amplitude by this share of its size.
 LOAD_ERROR = 0.05
 #: It shrinks or grows at most by these factors.
@@ -406,13 +406,19 @@ def _local_error(
     speed = v[counts] - v[counts].mean(axis=0)
     strain = deformation(reference[counts], x[counts], system.nlgeom)
     rate = v[counts] - rigid_rates(x[counts], v[counts])
+    least = REST * _largest(reference[counts] - reference[counts].mean(axis=0))
     worst = 0.0
     pairs = ((rigid, travel, speed), (other, strain, rate))
     for wrong, moved, moving in pairs:
-        size = max(np.abs(moved).max(), dt * np.abs(moving).max(), REST * system.length)
-        worst = max(worst, float(np.abs(wrong).max() / size))
+        size = max(_largest(moved), dt * _largest(moving), least)
+        worst = max(worst, _largest(wrong) / size)
     # No increment is short enough for the relative error of a motion out of rest.
     return abs(beta - 1.0 / 6.0) * dt * dt * worst / step.error_tolerance
+
+
+def _largest(vectors: Floats) -> float:
+    """Largest length of the vectors of nodes, whatever the axes."""
+    return float(np.hypot(*vectors.T).max())
 
 
 __all__ = ["DynamicStepper", "dynamic_step", "warn_of_long_increments"]

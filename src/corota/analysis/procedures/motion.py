@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.acceleration import Acceleration
 from corota.analysis.terms.inertia import MotionState
 from corota.analysis.terms.term import StatePoint
 
@@ -186,6 +187,19 @@ class ConservingMotion(Motion):
     Loads are taken at the middle of the increment. The increment that moments do work on is
     ``2 tan(dphi / 2)``, which also carries the rotational velocities.
     """
+
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
+        """Newton correction; the tangent is symmetric, which the exact one is not."""
+        du, negative = super().predict(at, du_prescribed)
+        if not (self.system.joined or du_prescribed.any()):
+            du = self._acceleration.improve(self.end.u, du)
+        return du, negative
+
+    @cached_property
+    def _acceleration(self) -> Acceleration:
+        """Of this increment; rotations count by the displacements that they give an element."""
+        turns = self.system.is_rotation
+        return Acceleration(np.where(turns, self.system.cell_size, 1.0))
 
     def increment(self, u: Floats) -> Floats:
         """Increment that the forces do work on, shape (n_dofs,)."""
