@@ -98,7 +98,7 @@ def main() -> int:
     lines = [f"{path}: {fault}" for path in tracked() for fault in faults(path)]
     if "## [Unreleased]" not in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"):
         lines.append("CHANGELOG.md: no section '## [Unreleased]'")
-    graph = house_facts.without_conveniences(ROOT, house_facts.imports(ROOT))
+    graph = house_facts.imports(ROOT)
     lines += [
         f"modules import each other in a circle: {', '.join(sorted(group))}"
         for group in house_facts.circles(graph)

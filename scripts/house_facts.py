@@ -16,18 +16,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- facts: begin -->", "<!-- facts: end -->"
-#: Methods of convenience that call a function on their own object: imports when they are called.
-FACADES = {
-    "corota.model.model": {"corota.model.summary"},
-    "corota.results.results": {
-        "corota.results.arrays",
-        "corota.results.history",
-        "corota.results.members",
-        "corota.results.probe",
-        "corota.results.reduction",
-        "corota.results.section",
-    },
-}
 #: Folders whose imports are looked at for circles by themselves.
 PARTS = ("analysis", "io/deck", "model", "results")
 
@@ -51,11 +39,15 @@ def lines_with(tree: Path, pattern: str, but: str = "") -> int:
 
 
 def imports(tree: Path) -> dict[str, set[str]]:
-    """Modules that each module imports, type annotations included, package files left out."""
+    """Modules that each module imports: for types, within functions and from packages as well.
+
+    The root package names what users see; its names load at their first use.
+    """
     texts = {"corota." + p.removesuffix(".py").replace("/", "."): t for p, t in sources(tree)}
-    graph: dict[str, set[str]] = {name: set() for name in texts}
-    for name, text in texts.items():
-        for node in ast.walk(ast.parse(text)):
+    texts = {name.removesuffix(".__init__"): text for name, text in texts.items()}
+    graph: dict[str, set[str]] = {name: set() for name in texts if name != "corota"}
+    for name in graph:
+        for node in ast.walk(ast.parse(texts[name])):
             if isinstance(node, ast.ImportFrom) and node.module:
                 for item in node.names:
                     inner = f"{node.module}.{item.name}"
@@ -67,13 +59,10 @@ def imports(tree: Path) -> dict[str, set[str]]:
     return graph
 
 
-def without_conveniences(tree: Path, graph: dict[str, set[str]]) -> dict[str, set[str]]:
-    """The graph less the imports of methods of convenience: those here and in pyproject.toml."""
+def exceptions(tree: Path) -> int:
+    """Imports that the order of the layers leaves out."""
     text = (tree / "pyproject.toml").read_text(encoding="utf-8")
-    dropped = {(a, b) for a, found in FACADES.items() for b in found}
-    for above, below in re.findall(r'^ +"(corota[\w.]*) -> (corota[\w.]*)",', text, re.MULTILINE):
-        dropped |= {(above, k) for k in graph if k == below or k.startswith(below + ".")}
-    return {k: {m for m in v if (k, m) not in dropped} for k, v in graph.items()}
+    return len(re.findall(r'"corota[\w.*]* -> corota[\w.*]*"', text))
 
 
 def circles(graph: dict[str, set[str]]) -> list[set[str]]:
@@ -108,7 +97,7 @@ def circles(graph: dict[str, set[str]]) -> list[set[str]]:
 def in_circles(tree: Path, part: str = "") -> int:
     """Modules of a part of the package that take part in circles within it."""
     start = "corota." + part.replace("/", ".")
-    graph = without_conveniences(tree, imports(tree))
+    graph = imports(tree)
     graph = {k: {m for m in v if m.startswith(start)} for k, v in graph.items()}
     return sum(len(g) for g in circles({k: v for k, v in graph.items() if k.startswith(start)}))
 
@@ -190,6 +179,7 @@ FACTS: dict[str, Callable[[Path], int]] = {
         f"modules in import circles, {part}": lambda t, part=part: in_circles(t, part)
         for part in PARTS
     },
+    "exceptions from the order of layers": exceptions,
     "folders of Rust in import circles": lambda t: sum(len(g) for g in circles(rust_folders(t))),
     "names of contact discretizations matched in Rust": lambda t: rust_lines_with(
         t, r"Method::(Mortar|NodeToSegment)"
@@ -226,7 +216,7 @@ def main() -> int:
     if chosen.circles:
         for part in ("", *PARTS):
             start = "corota." + part.replace("/", ".")
-            graph = without_conveniences(chosen.trees[-1], imports(chosen.trees[-1]))
+            graph = imports(chosen.trees[-1])
             inner = {k: {m for m in v if m.startswith(start)} for k, v in graph.items()}
             for group in circles({k: v for k, v in inner.items() if k.startswith(start)}):
                 sys.stdout.write(f"{part or 'corota'}: {', '.join(sorted(group))}\n")

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.blocks import blocks_of
 from corota.analysis.linear.matrix import SymmetricPattern
 from corota.analysis.parallel.communicator import ALONE, Communicator
 from corota.analysis.parallel.partition import bisected, own_blocks, partition
 from corota.errors import InputError
+from corota.model.blocks import blocks_of
 
 
 class Pretended(Communicator):

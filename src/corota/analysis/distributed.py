@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import _core
+import corota._core as _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
 from corota.arrays import distinct
 from corota.errors import InputError, ModelError

@@ -21,7 +21,7 @@ from corota.model import elements
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota import _core
+    import corota._core as _core
     from corota.analysis.numbered_model import NumberedModel
     from corota.model.loads import BodyForce
 

@@ -12,7 +12,7 @@ from corota.analysis.distributed_forces import Pressure
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota import _core
+    import corota._core as _core
     from corota.analysis.distributed_forces import LoadSum
     from corota.analysis.numbered_model import NumberedModel
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from corota import _core
+import corota._core as _core
 from corota.model import elements
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.analysis.blocks import BlockOfCells
+    from corota.model.blocks import BlockOfCells
 
 #: Bytes for each entry of the element matrices (measured: 4.3 to 6.0), and for each node.
 ENTRY, NODE = 7.0, 700.0

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import _core
-from corota.analysis.blocks import blocks_of, check_shapes, core_input
+import corota._core as _core
 from corota.analysis.constraints.none import constraints_of
 from corota.analysis.linear.matrix import AssembledPattern
 from corota.analysis.linear.solvers import Multifrontal
@@ -24,6 +23,7 @@ from corota.analysis.terms.thermal import FreeStrains, start_temperatures
 from corota.errors import ModelError
 from corota.lazy import lazy
 from corota.model import elements
+from corota.model.blocks import blocks_of, check_shapes, core_input
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -92,7 +92,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
     from corota.errors import CorotaError
 
     try:
-        from corota import _core
+        import corota._core as _core
 
         _core.require_memory(0.0, f"corota {command}")
         # At the end of a chain of imports, calls within NumPy's cross the end of a block of

@@ -57,7 +57,7 @@ class Version(argparse.Action):
     """Print the version without importing large modules."""
 
     def __call__(self, parser: argparse.ArgumentParser, *rest: object) -> NoReturn:
-        from corota import __version__
+        from corota._core import __version__
 
         print(f"corota {__version__}")
         parser.exit(0)

@@ -23,7 +23,7 @@ def run(args: Any, terminal: Terminal) -> int:
 
 
 def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
-    from corota import __version__
+    from corota._core import __version__
     from corota.analysis.state_tree import UnsuitableState
     from corota.io.checkpoint import newest, rebuilt
     from corota.io.provenance import changed_file

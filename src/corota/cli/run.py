@@ -116,7 +116,7 @@ def run(args: Any, terminal: Terminal) -> int:
 
 
 def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
-    from corota import __version__
+    from corota._core import __version__
     from corota.io.job import CHECKPOINT_SECONDS, JobFiles
     from corota.io.provenance import write_provenance
     from corota.io.writers import STREAMS

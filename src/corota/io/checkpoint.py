@@ -103,7 +103,7 @@ def store(
     """
     import h5py
 
-    from corota import __version__
+    from corota._core import __version__
 
     hidden = path.with_name(f".{path.name}.next")
     head = {
@@ -199,7 +199,7 @@ def load(path: Path) -> Saved:
     """
     import h5py
 
-    from corota import __version__
+    from corota._core import __version__
 
     require_regular(path)
     try:

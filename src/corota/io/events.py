@@ -56,7 +56,7 @@ class Events(BaseObserver):
         self._cuts: dict[tuple[int, int], int] = {}
 
     def start(self, model: Model, steps: list[Step]) -> None:
-        from corota import __version__
+        from corota._core import __version__
 
         self._labels = model.mesh.node_labels
         self._emit(

@@ -103,7 +103,8 @@ def write_provenance(folder: Path, name: str, files: Sequence[str | PathLike[str
     import platform
     from importlib.metadata import PackageNotFoundError, version
 
-    from corota import __version__, _core
+    import corota._core as _core
+    from corota._core import __version__
 
     libraries = {}
     for library in LIBRARIES:

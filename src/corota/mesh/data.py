@@ -12,6 +12,7 @@ import numpy as np
 from corota.arrays import distinct
 from corota.display import CELLS_DRAWN, Brief, picture, table
 from corota.errors import InputError
+from corota.lazy import lazy
 from corota.mesh import selection
 from corota.names import choose, did_you_mean, listed, match
 
@@ -20,6 +21,12 @@ if TYPE_CHECKING:
 
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
+
+# Conveniences: functions of higher layers, which load at their first call.
+draw_model = lazy("corota.plots:model")
+mesh_grid = lazy("corota.io.vtk.pyvista_bridge:mesh_grid")
+mesh_of = lazy("corota.io.meshio_bridge:from_meshio")
+to_meshio = lazy("corota.io.meshio_bridge:to_meshio")
 
 #: Local node numbers of the edges of each cell kind: (first, last[, middle]).
 #: Corners counter-clockwise, then mid-sides 1-2, 2-3, ..., then the center.
@@ -353,8 +360,6 @@ class Mesh(Brief):
         UnsupportedError
             If meshio is not installed.
         """
-        from corota.io.meshio_bridge import to_meshio
-
         return to_meshio(self)
 
     @staticmethod
@@ -366,9 +371,8 @@ class Mesh(Brief):
         InputError
             If the mesh is not planar or has no such cells.
         """
-        from corota.io.meshio_bridge import from_meshio
-
-        return from_meshio(found, "meshio mesh")
+        mesh: Mesh = mesh_of(found, "meshio mesh")
+        return mesh
 
     def to_pyvista(self) -> Any:
         """A ``pyvista.UnstructuredGrid`` with labels, and sets as arrays of 0 and 1.
@@ -378,8 +382,6 @@ class Mesh(Brief):
         ResourceError
             If PyVista is not installed (``pip install corota[view]``).
         """
-        from corota.io.vtk.pyvista_bridge import mesh_grid
-
         return mesh_grid(self)
 
     def __repr__(self) -> str:
@@ -391,8 +393,6 @@ class Mesh(Brief):
         )
 
     def _repr_html_(self) -> str:
-        from corota import plots
-
         rows: dict[str, object] = {
             "nodes": f"{self.n_nodes:,}",
             "elements": ", ".join(f"{len(c):,} {c.kind}" for c in self.cells),
@@ -410,7 +410,7 @@ class Mesh(Brief):
                 rows[name] = listed(sets)
         drawn = ""
         if 0 < self.n_cells <= CELLS_DRAWN:
-            drawn = picture(lambda path: plots.model(self, path=path, dpi=80.0))
+            drawn = picture(lambda path: draw_model(self, path=path, dpi=80.0))
         return drawn + table(rows)
 
 

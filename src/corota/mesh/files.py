@@ -5,10 +5,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from corota.lazy import lazy
+
 if TYPE_CHECKING:
     import os
 
     from corota.mesh.data import Mesh
+
+# A convenience: a function of a higher layer, which loads at its first call.
+read_mesh = lazy("corota.io.formats:read_mesh")
 
 
 def read(path: str | os.PathLike[str]) -> Mesh:
@@ -33,6 +38,5 @@ def read(path: str | os.PathLike[str]) -> Mesh:
     FileError
         If the file cannot be read.
     """
-    from corota.io.formats import read_mesh
-
-    return read_mesh(path)
+    mesh: Mesh = read_mesh(path)
+    return mesh

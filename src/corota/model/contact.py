@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from corota import _core
+import corota._core as _core
 from corota.display import Brief
 from corota.errors import InputError, Location
 

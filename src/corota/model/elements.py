@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
 
-from corota import _core
+import corota._core as _core
 from corota.names import choose
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.display import CELLS_DRAWN, LONGEST, brief, picture, table
 from corota.errors import InputError, number
+from corota.lazy import lazy
 from corota.mesh import selection
 from corota.model.attachments import Dashpot, PointMass
 from corota.model.constraints import Constraint, Coupling, Equation, LocalAxes, StraightLine
@@ -65,6 +66,11 @@ if TYPE_CHECKING:
 
     Ints = NDArray[np.int64]
     Where = str | ArrayLike
+
+# Conveniences: functions of higher layers, which load at their first call.
+check_model = lazy("corota.check:check")
+draw_model = lazy("corota.plots:model")
+model_lines = lazy("corota.model.summary:model_lines")
 
 #: Findings of a check that its ``repr`` shows; ``print`` shows all.
 FINDINGS_SHOWN = 10
@@ -442,9 +448,7 @@ class Model(Loading, LineSections, InitialFields):
         >>> print(model.check().errors[0].message)
         a free body: it can move along y
         """
-        from corota.check import check
-
-        return Findings(check(self, steps))
+        return Findings(check_model(self, steps))
 
     def summary(self) -> str:
         """Nodes, elements, sets, sections, supports, loads and steps as text.
@@ -456,8 +460,6 @@ class Model(Loading, LineSections, InitialFields):
         >>> print(model.summary().splitlines()[0])
         strip: 22 nodes, 10 elements
         """
-        from corota.model.summary import model_lines
-
         return "\n".join(model_lines(self))
 
     def __repr__(self) -> str:
@@ -469,8 +471,6 @@ class Model(Loading, LineSections, InitialFields):
         )
 
     def _repr_html_(self) -> str:
-        from corota import plots
-
         mesh = self.mesh
         materials = {id(s.material): brief(s.material) for s in self.sections}
         rows = {
@@ -487,14 +487,12 @@ class Model(Loading, LineSections, InitialFields):
         shown = {name: value for name, value in rows.items() if value}
         drawn = ""
         if mesh.n_cells <= CELLS_DRAWN:
-            drawn = picture(lambda path: plots.model(self, path=path, dpi=80.0))
+            drawn = picture(lambda path: draw_model(self, path=path, dpi=80.0))
         return drawn + table(shown)
 
     def plot(self, **options: Any) -> Any:
         """Draw mesh, sets, supports, loads and contact; see :func:`corota.plots.model`."""
-        from corota import plots
-
-        return plots.model(self, **options)
+        return draw_model(self, **options)
 
     def _add_force(self, force: Force) -> None:
         self.loads += force.on(self.mesh)

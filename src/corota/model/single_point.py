@@ -43,7 +43,7 @@ class LawOfTheCore(Material, ABC):
             ``stress`` (n, 3), ``tangent`` (n, 3, 3), ``zz`` (n, 2; strain and stress through
             the thickness), ``PEEQ``, ``YRATIO``, ``PWORK``, ``PDISS`` (n,).
         """
-        from corota import _core
+        import corota._core as _core
 
         path = np.ascontiguousarray(np.atleast_2d(np.asarray(strain, float)))
         n = len(path)
@@ -66,7 +66,7 @@ class LawOfTheCore(Material, ABC):
         ndarray, shape (n,)
             Axial stress [force/length^2]; the transverse one is zero.
         """
-        from corota import _core
+        import corota._core as _core
 
         state = np.zeros(0)
         side = 0.0

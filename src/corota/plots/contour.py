@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
     from corota.model.units import Units
     from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
 
@@ -238,7 +239,7 @@ def label_bar(
     bar.ax.tick_params(width=0.5, length=2.5)
 
 
-def frame_title(results: Results, frame: int, scale: float) -> str:
+def frame_title(results: ResultSource, frame: int, scale: float) -> str:
     """Job, step, time and scale of the displacements."""
     state = results.frame(frame)
     shape = "undeformed shape" if scale == 0.0 else f"displacements times {scale:g}"

@@ -13,7 +13,7 @@ from corota.plots.figure import COLORS, INK
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MARKS = (("limit point", "o", "limit point"), ("bifurcation point", "D", "bifurcation point"))
 
 
-def has_stability(results: Results | None) -> bool:
+def has_stability(results: ResultSource | None) -> bool:
     """Whether any frame is known to be unstable or critical."""
     if results is None:
         return False
@@ -31,7 +31,7 @@ def has_stability(results: Results | None) -> bool:
     )
 
 
-def draw_path(ax: Any, x: Floats, y: Floats, results: Results, *, legend: bool = True) -> None:
+def draw_path(ax: Any, x: Floats, y: Floats, results: ResultSource, *, legend: bool = True) -> None:
     """Draw a path on axes.
 
     Parameters

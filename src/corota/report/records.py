@@ -280,7 +280,7 @@ def records_of_results(results: Results) -> Records:
 
 
 def _version() -> str:
-    from corota import __version__
+    from corota._core import __version__
 
     return __version__
 

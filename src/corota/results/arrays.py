@@ -17,7 +17,7 @@ from corota.results.reduction import variable_name
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
 #: Vectors of frames: attribute, names of the components, their variables.
 VECTORS = {
@@ -48,7 +48,7 @@ def require(module: str, extra: str) -> Any:
 
 
 def to_xarray(
-    results: Results, variables: Sequence[str] | None, frames: Sequence[int] | None
+    results: ResultSource, variables: Sequence[str] | None, frames: Sequence[int] | None
 ) -> Any:
     """Fields at the nodes as a dataset; see :meth:`corota.results.Results.to_xarray`."""
     xarray = require("xarray", "data")
@@ -95,7 +95,7 @@ def to_xarray(
     return xarray.Dataset(data, coordinates, head)
 
 
-def _every(results: Results) -> list[str]:
+def _every(results: ResultSource) -> list[str]:
     """Vectors, then tensors, then scalars, each once."""
     known = list(dict.fromkeys([*results.variables(-1), *results.variables(0)]))
     parts = {part for _, names in VECTORS.values() for part in names}
@@ -105,7 +105,7 @@ def _every(results: Results) -> list[str]:
     return found + [name for name in known if name not in skip]
 
 
-def _stack(results: Results, name: str, frames: Sequence[int]) -> Any:
+def _stack(results: ResultSource, name: str, frames: Sequence[int]) -> Any:
     rows = []
     for i in frames:
         try:
@@ -117,7 +117,7 @@ def _stack(results: Results, name: str, frames: Sequence[int]) -> Any:
     return np.stack(rows) if rows else np.zeros((0, results.mesh.n_nodes))
 
 
-def to_dataframe(results: Results, histories: Sequence[History | str]) -> Any:
+def to_dataframe(results: ResultSource, histories: Sequence[History | str]) -> Any:
     """Histories as columns over the total time; see :meth:`Results.to_dataframe`."""
     pandas = require("pandas", "data")
     if not histories:

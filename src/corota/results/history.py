@@ -11,6 +11,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from corota.display import Brief, brief, picture, table
 from corota.errors import InputError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,9 +19,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
+
+# A convenience: a function of a higher layer, which loads at its first call.
+draw_curve = lazy("corota.plots:curve")
 
 
 #: How labels show what was done with histories.
@@ -55,7 +59,7 @@ class History(Brief, NDArrayOperatorsMixin):
 
     name: str
     values: Floats
-    results: Results
+    results: ResultSource
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
         return np.array(self.values, dtype=dtype)
@@ -161,10 +165,8 @@ class History(Brief, NDArrayOperatorsMixin):
         -------
         matplotlib.figure.Figure
         """
-        from corota import plots
-
         other = against if isinstance(against, History) else self.results.history(against)
-        return plots.curve(self, other, path=path, ax=ax)
+        return draw_curve(self, other, path=path, ax=ax)
 
     def to_dataframe(self) -> Any:
         """One column over the total time, as a ``pandas.DataFrame``.

@@ -11,16 +11,20 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError
+from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from numpy.typing import ArrayLike, NDArray
 
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+# A convenience: a function of a higher layer, which loads at its first call.
+draw_forces = lazy("corota.plots:section_forces")
 
 
 @dataclass(repr=False)
@@ -43,7 +47,7 @@ class Members(Brief):
         [force*length]; linear between.
     """
 
-    results: Results = field(repr=False)
+    results: ResultSource = field(repr=False)
     frame: int
     cells: Ints
     nodes: Ints
@@ -76,12 +80,10 @@ class Members(Brief):
         self, name: str = "M", *, path: str | PathLike[str] | None = None, **options: Any
     ) -> Any:
         """Draw the diagram of ``N``, ``V`` or ``M``; see :func:`corota.plots.section_forces`."""
-        from corota import plots
-
-        return plots.section_forces(self, name, path=path, **options)
+        return draw_forces(self, name, path=path, **options)
 
 
-def members(results: Results, cells: str | ArrayLike | None, frame: int) -> Members:
+def members(results: ResultSource, cells: str | ArrayLike | None, frame: int) -> Members:
     """Find them; see :meth:`corota.results.Results.member_forces`."""
     mesh = results.mesh
     names = results.variables(frame)

@@ -11,6 +11,7 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError
+from corota.lazy import lazy
 from corota.mesh.data import EDGES
 from corota.mesh.shape_functions import shape_functions
 from corota.names import choose
@@ -23,10 +24,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.mesh import Mesh
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+# A convenience: a function of a higher layer, which loads at its first call.
+draw_along = lazy("corota.plots:along")
 
 #: How far outside an element, in its natural coordinates, a point may lie by rounding.
 INSIDE = 1e-7
@@ -126,7 +130,7 @@ class Place(Brief):
         A point in an element instead.
     """
 
-    results: Results
+    results: ResultSource
     name: str
     nodes: Ints
     inside: Interpolation | None = field(default=None, repr=False)
@@ -144,7 +148,7 @@ class Place(Brief):
         """
         results = self.results
         if self.inside is None:
-            found = results.history(variable, at=self.nodes.tolist())
+            found: History = results.history(variable, at=self.nodes.tolist())
             found.name = f"{found.name.partition(' at ')[0]} at {self.name}"
             return found
         values = [
@@ -160,7 +164,7 @@ class Place(Brief):
 
 
 def place(
-    results: Results, node: int | None, point: ArrayLike | None, where: str | ArrayLike | None
+    results: ResultSource, node: int | None, point: ArrayLike | None, where: str | ArrayLike | None
 ) -> Place:
     """Find a place; see :meth:`corota.results.Results.at`."""
     mesh = results.mesh
@@ -196,7 +200,7 @@ class Line(Brief):
     frame : int
     """
 
-    results: Results
+    results: ResultSource
     points: Floats
     frame: int = -1
 
@@ -230,12 +234,12 @@ class Line(Brief):
 
     def plot(self, *variables: str, path: str | PathLike[str] | None = None, ax: Any = None) -> Any:
         """Draw variables over the distance; see :func:`corota.plots.along`."""
-        from corota import plots
-
-        return plots.along(self, variables, path=path, ax=ax)
+        return draw_along(self, variables, path=path, ax=ax)
 
 
-def line(results: Results, path: str | ArrayLike, points: int, frame: int, spread: str) -> Line:
+def line(
+    results: ResultSource, path: str | ArrayLike, points: int, frame: int, spread: str
+) -> Line:
     """Find a line; see :meth:`corota.results.Results.along`."""
     mesh = results.mesh
     choose(spread, ("even", "given"), "spread of points")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Ints = NDArray[np.int64]
 
@@ -36,7 +36,7 @@ REDUCERS = ("auto", "sum", "mean", "max")
 
 
 def history(
-    results: Results, name: str, at: str | int | Sequence[int] | None, combine: str
+    results: ResultSource, name: str, at: str | int | Sequence[int] | None, combine: str
 ) -> History:
     """A variable over the frames; see :meth:`corota.results.Results.history`."""
     frames = results.frames
@@ -55,7 +55,7 @@ def history(
     return History(name + where, np.array(values), results)
 
 
-def variable_name(results: Results, name: str) -> str:
+def variable_name(results: ResultSource, name: str) -> str:
     """Name of a variable of any frame.
 
     Raises
@@ -77,7 +77,7 @@ def variable_name(results: Results, name: str) -> str:
         ) from None
 
 
-def _one(results: Results, name: str, index: int, at: Ints | None, combine: str) -> float:
+def _one(results: ResultSource, name: str, index: int, at: Ints | None, combine: str) -> float:
     """A variable of a frame at nodes, or everywhere."""
     frame = results.frame(index)
     if name in NODAL and getattr(frame, NODAL[name][0]) is None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from corota.display import CELLS_DRAWN, Brief, brief, picture, table
 from corota.errors import InputError
+from corota.lazy import lazy
 from corota.results.frame import Frame, PointFields
 
 if TYPE_CHECKING:
@@ -30,6 +31,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+# Conveniences: functions of higher layers, which load at their first call.
+draw_contour = lazy("corota.plots:contour")
+results_grid = lazy("corota.io.vtk.pyvista_bridge:results_grid")
+show = lazy("corota.plots:view")
+write_report = lazy("corota.report:write_report")
+write_results = lazy("corota.io.writers:write")
 
 __all__ = ["Frame", "PointFields", "Results"]
 
@@ -225,12 +233,10 @@ class Results(Brief):
         **options
             Those of :func:`corota.plots.contour`.
         """
-        from corota import plots
-
         if not name:
             stressed = "MISES" in self.variables(options.get("frame", -1))
             name = "MISES" if stressed and self.nodal("MISES").any() else "U"
-        return plots.contour(self, name, **options)
+        return draw_contour(self, name, **options)
 
     def view(
         self, name: str = "", *, scale: float = 1.0, path: str | PathLike[str] | None = None
@@ -251,9 +257,7 @@ class Results(Brief):
         ResourceError
             If PyVista is not installed (``pip install corota[view]``).
         """
-        from corota import plots
-
-        return plots.view(self, name, scale=scale, path=path)
+        return show(self, name, scale=scale, path=path)
 
     def write(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write to a file; its extension selects the format (:mod:`corota.io.writers`).
@@ -273,9 +277,8 @@ class Results(Brief):
         FileError
             If the file cannot be written.
         """
-        from corota.io.writers import write
-
-        return write(self, path, **options)
+        written: Path = write_results(self, path, **options)
+        return written
 
     def report(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write an HTML page of the results; see :func:`corota.report.write_report`.
@@ -292,9 +295,8 @@ class Results(Brief):
         FileError
             If the file cannot be written.
         """
-        from corota.report import write_report
-
-        return write_report(self, path, **options)
+        written: Path = write_report(self, path, **options)
+        return written
 
     def at(
         self,
@@ -540,8 +542,6 @@ class Results(Brief):
         ResourceError
             If PyVista is not installed (``pip install corota[view]``).
         """
-        from corota.io.vtk.pyvista_bridge import results_grid
-
         return results_grid(self, frame, scale)
 
     def close(self) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ NEVER_NEGATIVE = (
 
 
 def sampled(
-    results: Results,
+    results: ResultSource,
     name: str,
     frame: int,
     onto: Callable[[Floats], Floats],

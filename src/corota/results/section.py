@@ -12,11 +12,13 @@ import numpy as np
 from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError
+from corota.lazy import lazy
 from corota.mesh.data import EDGES
 from corota.mesh.parts import parts_without
 from corota.mesh.shape_functions import shape_functions
 from corota.model import elements
 from corota.results.averaging import natural_nodes
+from corota.results.element_forces import element_forces
 from corota.results.history import History
 
 if TYPE_CHECKING:
@@ -24,10 +26,13 @@ if TYPE_CHECKING:
 
     from corota.mesh import Mesh
     from corota.results.frame import Frame
-    from corota.results.results import Results
+    from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
+
+# A convenience: a function of a higher layer, which loads at its first call.
+draw_diagram = lazy("corota.plots:section_diagram")
 
 #: Share of the model's size below which a node lies on the cut, and a cut ends on the surface.
 ON = 1e-7
@@ -111,7 +116,7 @@ class Cut:
 
     def __init__(
         self,
-        results: Results,
+        results: ResultSource,
         start: ArrayLike,
         end: ArrayLike,
         cells: str | ArrayLike | None = None,
@@ -289,8 +294,6 @@ class Cut:
         model = self.results.model
         if not model.sections or not state.fields:
             return None
-        from corota.analysis.element_forces import element_forces
-
         cells = np.concatenate([c.cells for c in self.crossings])
         found = element_forces(model, cells, state, self._nlgeom(state))
         if found is None:
@@ -396,7 +399,7 @@ class Cut:
 
 
 def _points(
-    results: Results, crossing: _Crossing, state: Frame, index: int
+    results: ResultSource, crossing: _Crossing, state: Frame, index: int
 ) -> tuple[Floats, Floats, Floats]:
     """Natural points (p, 2), weights with the thickness (n, p), stress (n, p, 4) of cells."""
     if "S11" not in results.variables(index):
@@ -469,14 +472,14 @@ def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> NDArray[np.bool_]:
     return mask
 
 
-def _depth(results: Results, crossing: _Crossing) -> Floats:
+def _depth(results: ResultSource, crossing: _Crossing) -> Floats:
     """Thickness at both ends of the part of each cell that is cut, shape (n, 2)."""
     ends = crossing.ends
     first, last = (_thickness(results, crossing, ends[..., i]) for i in (0, 1))
     return np.asarray(first * (1.0 - crossing.share) + last * crossing.share)
 
 
-def _thickness(results: Results, crossing: _Crossing, nodes: Ints) -> Floats:
+def _thickness(results: ResultSource, crossing: _Crossing, nodes: Ints) -> Floats:
     """Thickness of nodes of the cells, of the shape of `nodes` (n, k); lines have none."""
     if crossing.kind == "line2":
         return np.zeros(nodes.shape)
@@ -525,7 +528,7 @@ class SectionDiagram(Brief):
         As in :class:`SectionForces`.
     """
 
-    results: Results = field(repr=False)
+    results: ResultSource = field(repr=False)
     distance: Floats
     N: Floats
     V: Floats
@@ -533,13 +536,11 @@ class SectionDiagram(Brief):
 
     def plot(self, **options: Any) -> Any:
         """Draw them over the axis; see :func:`corota.plots.section_diagram`."""
-        from corota import plots
-
-        return plots.section_diagram(self, **options)
+        return draw_diagram(self, **options)
 
 
 def diagram(
-    results: Results, path: ArrayLike, width: float, count: int, frame: int
+    results: ResultSource, path: ArrayLike, width: float, count: int, frame: int
 ) -> SectionDiagram:
     """Cut across an axis; see :meth:`corota.results.Results.section_diagram`."""
     corners = np.asarray(path, dtype=np.float64)

@@ -108,7 +108,7 @@ class Store:
 
 def digest(job: Job) -> str:
     """Digest of the common data of all rows."""
-    from corota import __version__
+    from corota._core import __version__
 
     parts = [__version__]
     if isinstance(job.build, DeckBuild):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from corota import _core
+import corota._core as _core
 from corota.analysis.linear.forks import unforked
 from corota.errors import InputError, SingularError
 from corota.lazy import lazy

@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.blocks import blocks_of
 from corota.errors import InputError
 from corota.model import elements
+from corota.model.blocks import blocks_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from corota.analysis.blocks import BlockOfCells
     from corota.analysis.parallel.communicator import Communicator
+    from corota.model.blocks import BlockOfCells
     from corota.model.model import Model
 
     Floats = NDArray[np.float64]

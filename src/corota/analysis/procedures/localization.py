@@ -11,7 +11,7 @@ from corota.model import elements
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
-    from corota.analysis.blocks import BlockOfCells
+    from corota.model.blocks import BlockOfCells
     from corota.results.results import PointFields
 
 #: Difference of the plastic strain within an element from which it counts.

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.blocks import BlockOfCells
     from corota.analysis.parallel.communicator import Communicator
+    from corota.model.blocks import BlockOfCells
     from corota.model.materials import Material
     from corota.model.model import Model
 

@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import _core
-from corota.analysis.blocks import core_input
+import corota._core as _core
 from corota.analysis.terms.user_material import UserBlocks
 from corota.model import elements
+from corota.model.blocks import core_input
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.blocks import BlockOfCells
     from corota.analysis.equations import System
+    from corota.model.blocks import BlockOfCells
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]

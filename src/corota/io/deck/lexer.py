@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from corota import _core
+import corota._core as _core
 from corota.errors import Diagnostic, FileError, InputError, Location
 from corota.io.deck import numerals
 from corota.io.deck.parameters import Parameters

@@ -122,7 +122,7 @@ class FrdWriter:
         return {"length": self._file.length, "blocks": self._blocks, "frames": self._frames}
 
     def _head(self) -> bytes:
-        from corota import __version__
+        from corota._core import __version__
 
         model = self._model
         now = time.localtime()

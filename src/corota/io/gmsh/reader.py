@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota import _core
+import corota._core as _core
 from corota.errors import InputError
 from corota.io.deck.lexer import READ
 from corota.io.gmsh.parse import NAMES, Parsed, Reader

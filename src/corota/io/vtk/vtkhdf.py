@@ -202,7 +202,7 @@ class VtkhdfWriter:
 
     def _static(self) -> None:
         """Write the constant data: topology, labels, sets, metadata."""
-        from corota import __version__
+        from corota._core import __version__
 
         mesh, root, grid = self.model.mesh, self._root, self._grid
         root.attrs["Version"] = np.array([2, 0], dtype=np.int64)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import _core
+import corota._core as _core
 from corota.analysis.terms.contact.discrete_gradient import discrete_gradient
 from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, SLIPPING, Terms
 from corota.analysis.terms.contact.setup import contact_core, tie_core

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import _core
+import corota._core as _core
 from corota.analysis.terms.contact.smoothing import smoothed
 from corota.analysis.terms.contact.surface import Surface
 from corota.errors import ModelError

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota import _core
-from corota.analysis.blocks import BlockOfCells, blocks_of, core_input
+import corota._core as _core
 from corota.model import elements
+from corota.model.blocks import BlockOfCells, blocks_of, core_input
 from corota.model.user_material import UserMaterial
 
 if TYPE_CHECKING:
