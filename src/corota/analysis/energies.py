@@ -36,7 +36,8 @@ TERMS = {
     "ALLFD": "frictional dissipation",
     "ALLSD": "dissipation of contact stabilization",
     "ALLCL": "energy stored by contact pressure laws",
-    "ALLPW": "work of contact forces in central differences less ALLFD and ALLCL",
+    "ALLPW": "work of pressures on gaps that change within static increments, and of all contact "
+    "forces in central differences; less ALLFD and ALLCL",
     "ALLWK": "work of loads and of moving supports; kinetic energy set at the start of a step",
     "ALLTH": "work of thermal expansion and of moduli that follow the temperature",
     "ETOTAL": "ALLKE + ALLIE + ALLVD + ALLFD + ALLSD + ALLCL - ALLPW - ALLWK - ALLTH",
@@ -155,9 +156,10 @@ class Energies:
         }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
         own["ETOTAL"] = sum(own[k] for k in gained) - own["ALLWK"] - own["ALLTH"]
-        if self.impact is not None:
-            own["ALLPW"] = self.impact
-            own["ETOTAL"] -= self.impact
+        pressed = self.system.contact_term.pressure_work
+        if self.impact is not None or pressed:
+            own["ALLPW"] = pressed + (self.impact or 0.0)
+            own["ETOTAL"] -= own["ALLPW"]
         if self._reference is None:
             self._reference = own["ETOTAL"]
         missing = own["ETOTAL"] - self._reference

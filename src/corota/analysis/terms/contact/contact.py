@@ -138,6 +138,10 @@ class ContactTerm(Term):
         self.law_share, self.law_force = 1.0, np.zeros(0)
         self.damping_work = 0.0
         self._damping_force = np.zeros(0)
+        #: Work of the pressures in static increments on gaps that change, less the energy that laws
+        #: store; none where surfaces stay closed.
+        self.pressure_work = 0.0
+        self._pressure = np.zeros(system.n_dofs)
         # Dof of each variable 3 node + component, -1 where there is none.
         self._dof = np.full(3 * len(system.per_node) + 1, -1, np.int64)
         self._dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
@@ -226,6 +230,8 @@ class ContactTerm(Term):
             for pair in self.pairs:
                 if not pair.tied:
                     pair.persist(pair.evaluate(x, x, self.system.nlgeom))
+        if self.damps and self.opens:
+            self._pressure = self._pressures()
         self.law_share = 1.0
         if scheme:
             self._share_law(scheme, step)
@@ -389,9 +395,24 @@ class ContactTerm(Term):
 
     def _forces_of_laws(self, terms: list[Terms], multipliers: Floats) -> Floats:
         """Pressures of the pairs with a law on the nodes, shape (n_dofs,)."""
+        laws = [pair.law is not None for pair in self.pairs]
+        return self._forces_of_pressures(terms, multipliers, laws)
+
+    def _pressures(self) -> Floats:
+        """Pressures of all pairs on the nodes in the committed state, shape (n_dofs,)."""
+        if self.at is None:
+            return np.zeros(self.system.n_dofs)
+        contact = [not pair.tied for pair in self.pairs]
+        return self._forces_of_pressures(self.at.acting, self.committed, contact)
+
+    def _forces_of_pressures(
+        self, terms: list[Terms], multipliers: Floats, chosen: list[bool]
+    ) -> Floats:
+        """Pressures of chosen pairs on the nodes, shape (n_dofs,)."""
         force = np.zeros(self.system.n_dofs)
-        for pair, own, (p, _) in zip(self.pairs, terms, self.parts(multipliers), strict=True):
-            if pair.law is not None:
+        each = zip(self.pairs, terms, self.parts(multipliers), chosen, strict=True)
+        for pair, own, (p, _), mine in each:
+            if mine:
                 none = np.zeros(pair.n)
                 pair.add_forces(own, self.dofs(own.variables), p, none, force, None)
         return self.system.at_nodes(force)
@@ -477,6 +498,7 @@ class ContactTerm(Term):
             mean = self._damping_force + (before if len(before) else 0.0)
             self.damping_work += 0.5 * float(mean @ (u - self.u))
         self.slip_start = None
+        moved, law = u - self.u, self.energies()["ALLCL"]
         contact_state.where = self.positions(0.5 * (self.u + u) if self.persistent else u)
         self.u, self.committed, self.time = u.copy(), contact_state.multipliers.copy(), step_time
         contact_state.states = [
@@ -498,6 +520,10 @@ class ContactTerm(Term):
             contact_state.terms[i] = replace(terms.bare or terms, between=None)
         self.at = contact_state
         self._keep_law_force()
+        if self.damps and self.opens:
+            before, self._pressure = self._pressure, self._pressures()
+            self.pressure_work += 0.5 * float((before + self._pressure) @ moved)
+            self.pressure_work += self.energies()["ALLCL"] - law
 
     def restore(self) -> None:
         """Go back to the committed state."""

@@ -1,0 +1,90 @@
+"""The energy account of static contact: closed where the answer is right, open where it is not."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.analysis.terms.contact.pair import Pair
+
+METHODS = ["mortar", "node_to_segment"]
+#: The sums are second-order accurate in the turn of normals within an increment.
+CLOSED = 5e-3
+
+
+def press_fit(method, friction=0.0, start="keep"):
+    inner, outer = ct.mesh.annulus(1.0, 2.0, 3, 24), ct.mesh.annulus(1.99, 3.0, 3, 20)
+    model = ct.Model(ct.mesh.assembly(inner=inner, outer=outer))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+    model.contact("inner.outer", "outer.inner", method=method, friction=friction, start=start)
+    points = model.mesh.points
+    for radius in (1.0, 3.0):
+        for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            node = int(np.argmin(np.hypot(*(points - radius * np.array([x, y])).T)))
+            model.fix([node], x=None if x else 0.0, y=0.0 if x else None)
+    return model
+
+
+def block(method, gap=0.0, friction=0.0, drag=0.0):
+    table = ct.mesh.rectangle(4.0, 1.0, 8, 2)
+    above = ct.mesh.rectangle(1.0, 1.0, 4, 4, origin=(1.0, 1.0 + gap))
+    model = ct.Model(ct.mesh.assembly(table=table, block=above))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+    model.contact("block.bottom", "table.top", method=method, friction=friction)
+    model.fix("table.bottom")
+    model.fix("block.top", x=drag, y=-0.02 - gap)
+    return model
+
+
+CASES = {
+    "press fit": lambda m: press_fit(m),
+    "press fit over the step": lambda m: press_fit(m, start="ramp"),
+    "press fit with friction": lambda m: press_fit(m, friction=0.3),
+    "block that closes a gap": lambda m: block(m, gap=0.05),
+    "dragged block": lambda m: block(m, friction=0.2, drag=1.0),
+    "dragged block that closes a gap": lambda m: block(m, 0.05, 0.2, 0.5),
+}
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("case", CASES)
+def test_the_balance_closes_in_one_increment(case, method):
+    """Contact begins within it: the work of loads alone would be up to 100 % off."""
+    results = ct.solve(CASES[case](method), ct.Static(increments=1), threads=1)
+    assert abs(results.frames[-1].scalars["energy balance error"]) <= CLOSED
+    assert not [n for n in results.notes if "energy balance" in n]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_removed_overlap_is_the_energy_of_a_press_fit(method):
+    """No load works: the strain energy is that of the pressures on the overlap."""
+    last = ct.solve(press_fit(method), ct.Static(increments=1), threads=1).frames[-1].scalars
+    assert last["ALLPW"] == pytest.approx(last["ALLSE"], rel=CLOSED)
+    assert last["ALLWK"] == pytest.approx(0.0, abs=1e-12 * last["ALLSE"])
+
+
+def test_pressures_do_no_work_as_increments_shrink():
+    work = []
+    for increments in (2, 4, 8):
+        step = ct.Static(increments=increments)
+        last = ct.solve(block("mortar", gap=0.05), step, threads=1).frames[-1].scalars
+        work.append(abs(last["ALLPW"]) / last["ALLSE"])
+    assert work[2] < 0.35 * work[0]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_friction_that_is_not_dissipated_is_seen(method, monkeypatch):
+    """A force along the surfaces whose work nothing accounts for: what a wrong friction does."""
+    commit = Pair.commit
+
+    def forget(self, *arguments):
+        commit(self, *arguments)
+        self.friction_work *= 0.5
+
+    monkeypatch.setattr(Pair, "commit", forget)
+    model = block(method, friction=0.2, drag=1.0)
+    results = ct.solve(model, ct.Static(increments=1), threads=1)
+    assert abs(results.frames[-1].scalars["energy balance error"]) > 0.2
+    assert [n for n in results.notes if "energy balance" in n]
