@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from corota.io.result_reader import read_results
     from corota.io.resume import resume
     from corota.mesh import Cells, Mesh
+    from corota.mesh.geometric import inside, near, on_circle, on_line
     from corota.model.attachments import Dashpot, PointMass
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
     from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
@@ -62,10 +63,12 @@ if TYPE_CHECKING:
         SteadyState,
     )
     from corota.model.user_material import UserMaterial
+    from corota.results.body_motion import BodyMotion
     from corota.results.history import History
     from corota.results.observer import BaseObserver, Iteration, Observer
     from corota.results.results import Frame, PointFields, Results
     from corota.sweeps import Sweep, grid, sample, sweep
+    from corota.sweeps.seek import Sought, seek
 
 
 #: Module of each public name; a module is its own entry.
@@ -74,6 +77,7 @@ _HOMES = {
     "Amplitude": "model.loads",
     "ArcLength": "model.paths",
     "BaseObserver": "results.observer",
+    "BodyMotion": "results.body_motion",
     "BodyForce": "model.loads",
     "Buckle": "model.steps",
     "Cells": "mesh",
@@ -127,6 +131,7 @@ _HOMES = {
     "RigidCurve": "model.contact",
     "Section": "model.sections",
     "SingularError": "errors",
+    "Sought": "sweeps.seek",
     "Static": "model.steps",
     "SteadyState": "model.steps",
     "StraightLine": "model.constraints",
@@ -138,12 +143,17 @@ _HOMES = {
     "Voce": "model.plasticity",
     "examples": "",
     "grid": "sweeps",
+    "inside": "mesh.geometric",
     "mesh": "",
+    "near": "mesh.geometric",
+    "on_circle": "mesh.geometric",
+    "on_line": "mesh.geometric",
     "plots": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
     "resume": "io.resume",
     "sample": "sweeps",
+    "seek": "sweeps.seek",
     "solve": "analysis.run",
     "sweep": "sweeps",
     "write": "io.formats",
@@ -155,6 +165,7 @@ __all__ = [
     "ArcLength",
     "BaseObserver",
     "BodyForce",
+    "BodyMotion",
     "Buckle",
     "Cells",
     "ContactPair",
@@ -206,6 +217,7 @@ __all__ = [
     "RigidCurve",
     "Section",
     "SingularError",
+    "Sought",
     "Static",
     "SteadyState",
     "StraightLine",
@@ -217,12 +229,17 @@ __all__ = [
     "Voce",
     "examples",
     "grid",
+    "inside",
     "mesh",
+    "near",
+    "on_circle",
+    "on_line",
     "plots",
     "read",
     "read_results",
     "resume",
     "sample",
+    "seek",
     "solve",
     "sweep",
     "write",
