@@ -142,6 +142,8 @@ class Material(Brief):
     remembers = True
     #: Whether it has material axes.
     oriented = False
+    #: The only measure of the local strain that it is for; empty for any.
+    local_strain = ""
     #: Whether trusses and beams support it.
     for_lines = False
     #: Whether its constants follow the temperature.
@@ -149,6 +151,11 @@ class Material(Brief):
     #: How many of its first parameters make the elastic or complementary energy; 0 for a law whose
     #: constants are unknown.
     elastic_constants = 0
+
+    @property
+    def incompressible(self) -> bool:
+        """Whether the volume is constant; possible in plane stress only."""
+        return False
 
     def compliance(self) -> NDArray[np.float64]:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).
