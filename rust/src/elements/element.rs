@@ -79,9 +79,6 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     /// [`crate::kinematics::about_mean`].
     const ABOUT_MEAN: bool = false;
 
-    /// Whether it may have a mean dilatation: not with the constant volume strain of a triangle, nor
-    /// with incompatible modes, which would have no stiffness then.
-    const MEAN_DILATATION: bool = !Self::LINE && Self::MEMORY == 0 && N != 3 && N != 6 && A < 2;
     /// Numbers of history of the element as a whole, beside those of its points, where the law
     /// has a history.
     const MEMORY: usize = 0;
@@ -98,7 +95,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     fn mass_rule() -> Vec<[f64; 3]>;
     /// Shape functions and natural derivatives.
     fn shape(xi: [f64; 2]) -> ([f64; N], [[f64; 2]; N]);
-    /// Functions of the mid-sides, one for each edge (a, a + 1); drilling elements only.
+    /// Functions of the mid-sides, one for each edge (a, a + 1); drilling elements and beams only.
     fn sides(_xi: [f64; 2]) -> [f64; N] {
         [0.0; N]
     }

@@ -226,7 +226,7 @@ where
             *v *= 0.5;
         }
     }
-    let inertia = if mass.1 == MassKind::Consistent && M == 3 && !E::LINE {
+    let inertia = if mass.1 == MassKind::Consistent && M == 3 && !E::SPRING {
         coupled(mass.0, step, &between, [&f0, &f1], (rates, rates_end), &mut tangent)
     } else {
         plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent)
@@ -303,7 +303,7 @@ fn plain<const N: usize, const M: usize>(
     crate::base::small::symmetric_times(&matrix, &a)
 }
 
-/// Inertia force of the consistent mass of a drilling element.
+/// Inertia force of the consistent mass of a drilling element or a beam.
 fn coupled<const N: usize, const M: usize>(
     mass: &Mass<f64, N>,
     step: &Step<'_, N, M>,
@@ -328,6 +328,12 @@ fn coupled<const N: usize, const M: usize>(
         }
         for i in 0..2 {
             rates_end[a][i] = 2.0 * bulges.change(a)[i] / dt - rates[a][i];
+        }
+        for b in 0..N {
+            f[a][M - 1] += mass.rr[a][b] * acc(between.psi[b], step.v0[b][M - 1]);
+            if step.tangent && b >= a {
+                tangent[a][b][M - 1][M - 1] += 2.0 / (dt * dt) * mass.rr[a][b];
+            }
         }
     }
     bulges.pass_on(between, &on_edge, &mut f);

@@ -2,7 +2,7 @@
 //! Hjiaj 2011; Cho et al. 2017).
 //!
 //! A point of an element is at `x = sum N_i x_i + sum M_k y_k`: the nodes, and for drilling
-//! elements the bulges of the edges `y_k = (phi_k - phi_k+1) R s_k` that ride with the element
+//! elements and beams the bulges of the edges `y_k = (phi_k - phi_k+1) R s_k` that ride with the element
 //! frame. In the positions (x, y) the kinetic energy has a constant matrix; all that depends on
 //! the configuration is the map from the dofs to y. With `eta_i = R X_i` (centroidal),
 //! `D = sum eta . x` and `gamma = S eta / D` the frame turns with
@@ -402,6 +402,12 @@ pub fn with_tangent<T: Real, const N: usize, const M: usize>(
     }
     if M == 2 {
         return (f, k);
+    }
+    for p in 0..N {
+        for q in 0..N {
+            f[p][M - 1] = mass.rr[p][q].fma(a[q][M - 1], f[p][M - 1]);
+            k[p][q][M - 1][M - 1] = mass.rr[p][q].scale(ca);
+        }
     }
     let spin = Spin::new(x, u, &mass.s);
     let (gamma, eta) = (&spin.gamma, &spin.eta);

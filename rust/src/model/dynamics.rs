@@ -28,8 +28,8 @@ pub struct BodyLoad<'a> {
     pub field: Field,
     /// Displacements at the start of a conserving step; empty for the force at the end of it.
     pub start: &'a [f64],
-    /// The mass that it acts on.
-    pub kind: MassKind,
+    /// The mass that it acts on; none where it is a force per length of lines.
+    pub kind: Option<MassKind>,
     /// Factor of the derivative that is added to the tangent.
     pub share: f64,
 }
@@ -52,6 +52,11 @@ pub struct Momenta {
     pub mass: f64,
 }
 
+/// Value at a point of a field given at the nodes.
+fn interpolate<const N: usize>(p: &Point<N>, nodal: &[f64; N]) -> f64 {
+    p.n.iter().zip(nodal).map(|(n, v)| n * v).sum()
+}
+
 impl<E, const N: usize, const M: usize, const A: usize> ChunkOf<E, N, M, A>
 where
     E: Element<N, M, A>,
@@ -65,6 +70,12 @@ where
         out
     }
 
+    /// Thickness of an element at a point; of lines, the area.
+    fn thickness(&self, e: usize, p: &Point<N>) -> f64 {
+        let nodal = self.nodal_thickness.get(e);
+        nodal.map_or(self.shared.section.thickness, |nodal| interpolate(p, nodal))
+    }
+
     /// Mass of an element. Where some nodes carry none, bulges of edges would ride with a frame
     /// that these nodes turn at any rate: there the consistent mass is the constant one.
     fn mass(&self, e: usize, x: &Nodal<f64, N, 2>, mut kind: MassKind) -> (Mass<f64, N>, MassKind) {
@@ -73,14 +84,9 @@ where
         if kind == MassKind::Consistent && 0 < light && light < N {
             kind = MassKind::Constant;
         }
-        let at = |p: &Point<N>, nodal: &[f64; N]| -> f64 {
-            p.n.iter().zip(nodal).map(|(n, v)| n * v).sum()
-        };
         let rho_t = |p: &Point<N>| {
-            let thickness =
-                self.nodal_thickness.get(e).map_or(s.section.thickness, |nodal| at(p, nodal));
-            let rho = self.nodal_density.get(e).map_or(s.rho, |nodal| at(p, nodal));
-            rho * thickness
+            let rho = self.nodal_density.get(e).map_or(s.rho, |nodal| interpolate(p, nodal));
+            rho * self.thickness(e, p)
         };
         let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, rho_t, kind);
         if E::LINE && M == 3 && s.section.thickness > 0.0 {
@@ -97,7 +103,7 @@ where
 
     /// Whether bulges of the edges couple with the nodes.
     fn coupled(kind: MassKind) -> bool {
-        kind == MassKind::Consistent && M == 3 && !E::LINE
+        kind == MassKind::Consistent && M == 3 && !E::SPRING
     }
 
     pub(super) fn add_inertia(&self, context: &Context<'_>, motion: &Motion<'_>, sink: &Sink<'_>) {
@@ -132,8 +138,17 @@ where
     ) {
         for e in (0..self.nodes.len()).filter(|&e| mask[self.elements[e] as usize]) {
             let (x, mut u) = self.gather::<f64>(e, context);
-            let (mass, kind) = self.mass(e, &x, load.kind);
-            let coupled = Self::coupled(kind);
+            let (mass, coupled) = match load.kind {
+                Some(kind) => {
+                    let (mass, kind) = self.mass(e, &x, kind);
+                    (mass, Self::coupled(kind))
+                }
+                None => {
+                    let (points, kind) = (&self.shared.mass_points, MassKind::Consistent);
+                    let volume = Mass::new::<E, M, A>(&x, points, |p| self.thickness(e, p), kind);
+                    (volume, Self::coupled(kind))
+                }
+            };
             let mut secant = None;
             if !load.start.is_empty() {
                 let (u0, field) = (self.of_dofs(e, load.start, context), load.field);
@@ -290,8 +305,8 @@ where
                     sums.kinetic += 0.5 * (v[a][i] * p_node[i] + rate[a][i] * p_edge[i]);
                 }
             }
-            if M == 3 && !coupled {
-                let turn = mass.rotations(kind == MassKind::Lumped);
+            if M == 3 {
+                let turn = if coupled { mass.rr } else { mass.rotations(kind == MassKind::Lumped) };
                 for a in 0..N {
                     for b in 0..N {
                         let spin = turn[a][b] * v[b][M - 1];

@@ -423,8 +423,8 @@ impl PyProblem {
     /// Add to ``force`` a body force at displacements ``u``, and ``share`` times its derivative
     /// to ``values`` (upper triangle) unless that is empty. Unless ``start`` is empty, it is the
     /// mean force of the conserving step from there, and the derivative that of its middle. ``kind`` is gravity with value
-    /// (bx, by), or centrifugal with (omega^2, x0, y0); ``mass`` is the mass that it acts on;
-    /// element masks by block.
+    /// (bx, by), or centrifugal with (omega^2, x0, y0); ``mass`` is the mass that it acts on, or
+    /// empty for a force per volume; element masks by block.
     #[allow(clippy::too_many_arguments)]
     fn body_force(
         &mut self,
@@ -445,7 +445,10 @@ impl PyProblem {
             _ => return Err(value_error(format!("no body force {kind:?} with {value:?}"))),
         };
         let start = start.as_slice()?;
-        let kind = MassKind::new(mass).map_err(value_error)?;
+        let kind = match mass {
+            "" => None,
+            name => Some(MassKind::new(name).map_err(value_error)?),
+        };
         let load = BodyLoad { field, start, kind, share };
         let masks: Vec<Vec<bool>> = masks.iter().map(|m| m.as_array().to_vec()).collect();
         let fits = masks.iter().zip(&self.inner.blocks).all(|(m, b)| m.len() == b.n_elements);

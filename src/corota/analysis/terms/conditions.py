@@ -193,7 +193,7 @@ class Conditions(Term):
     def _carry(self) -> None:
         """Continue the loads from the values that the step reached, or along their amplitudes."""
         end = self.end_time
-        self.distributed.carry(lambda load: self._scale(load, end), self.factors.runs_on)
+        self.distributed.carry(lambda load: self.scale(load, end), self.factors.runs_on)
         self.temperatures.carry(end)
         self.forces.carry(end)
 
@@ -260,7 +260,7 @@ class Conditions(Term):
             u = np.zeros_like(u)
         total = LoadSum(force.copy(), values, share, start)
         for load in following:
-            if (scale := self._scale(load, step_time)) != 0.0:
+            if (scale := self.scale(load, step_time)) != 0.0:
                 load.force.add(scale, u, total)
         return total.force, total.triplets
 
@@ -281,7 +281,7 @@ class Conditions(Term):
         follow = self._follow
         for load in self.distributed.loads:
             dead = not (follow and load.force.follows)
-            if dead and (scale := self._scale(load, step_time)) != 0.0:
+            if dead and (scale := self.scale(load, step_time)) != 0.0:
                 force += scale * load.force.unit()
         force.setflags(write=False)
         if len(self._known) >= KNOWN:
@@ -342,7 +342,7 @@ class Conditions(Term):
         return [
             (load.item, scale)
             for load in self.distributed.loads
-            if isinstance(load.item, BodyForce) and (scale := self._scale(load, end)) != 0.0
+            if isinstance(load.item, BodyForce) and (scale := self.scale(load, end)) != 0.0
         ]
 
     @contextmanager
@@ -354,7 +354,8 @@ class Conditions(Term):
         finally:
             self._starting, self._known = False, {}
 
-    def _scale(self, load: DistributedLoad, step_time: float) -> float:
+    def scale(self, load: DistributedLoad, step_time: float) -> float:
+        """Scale of a distributed load at a time of the step."""
         if self._starting:
             return load.begin
         if load.amplitude:
