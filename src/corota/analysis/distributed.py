@@ -350,6 +350,8 @@ def _same_body(old: Item, new: Item) -> bool:
         return False
     if old.kind == "centrifugal":
         return float(np.hypot(*np.subtract(old.value[1:3], new.value[1:3]))) <= SAME
+    if old.kind in ("volume", "line") and not (old.direction and new.direction):
+        return True  # both components of a load in Python; cards have one each
     one, other = old.axis, new.axis
     # Gravity of size zero ends gravity in every direction.
     return one is None or other is None or float(np.dot(one, other)) > 1.0 - SAME
@@ -357,9 +359,10 @@ def _same_body(old: Item, new: Item) -> bool:
 
 def _name(item: BodyForce) -> object:
     """The set that a body force acts on."""
+    masses = None if item.masses is None else item.masses.tobytes()
     if isinstance(item.cells, str):
-        return item.cells if item.cells != "all" else ""
-    return np.asarray(item.cells).tobytes()
+        return item.cells if item.cells != "all" else "", masses
+    return np.asarray(item.cells).tobytes(), masses
 
 
 __all__ = ["DistributedLoad", "DistributedLoads"]

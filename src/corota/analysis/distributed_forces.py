@@ -103,7 +103,8 @@ class BodyLoad:
         inside = np.ones(mesh.n_cells, bool)
         if not isinstance(item.cells, str):
             inside[:] = False
-            inside[selection.indices(item.cells, "cell", mesh.n_cells, item.where)] = True
+            if item.masses is None or len(item.cells):
+                inside[selection.indices(item.cells, "cell", mesh.n_cells, item.where)] = True
         elif item.cells not in ("", "all"):
             try:
                 name = mesh.set_name(item.cells, "cell")
@@ -112,21 +113,39 @@ class BodyLoad:
             inside[:] = False
             inside[mesh.cell_sets[name]] = True
         self.masks = [inside[b.cells] for b in system.own_blocks]
+        self.inertial = item.kind in ("gravity", "centrifugal")
         for block in system.blocks:
-            massless = elements.find(block.section.element).spring
-            if inside[block.cells].any() and block.section.material.rho <= 0.0 and not massless:
+            if not inside[block.cells].any() or elements.find(block.section.element).spring:
+                continue
+            if self.inertial and block.section.material.rho <= 0.0:
                 name = block.section.material.name or block.section.material.law
                 raise ModelError(
                     f"material {name!r} has no density for a body force; add one (*DENSITY)",
                     item.where,
                 )
+            if item.kind == "line" and not elements.find(block.section.element).line:
+                label = mesh.cell_labels[block.cells[inside[block.cells]][0]]
+                raise ModelError(
+                    "a force per length acts on beams and trusses; element "
+                    f"{label} is none: give a force per volume, or loads on edges",
+                    item.where,
+                )
         facts = [elements.find(b.section.element) for b in system.own_blocks]
-        drilling = [f.drilling and mask.any() for f, mask in zip(facts, self.masks, strict=True)]
-        #: Elements whose force follows their rotation: sides of drilling elements have mass.
+        drilling = [
+            f.dofs_per_node == 3 and not f.spring and mask.any()
+            for f, mask in zip(facts, self.masks, strict=True)
+        ]
+        #: Elements whose force follows their rotation: sides of drilling elements and beams
+        #: deflect by the rotations of their ends.
         self.nlgeom = [
             mask if turns else np.zeros_like(mask)
             for mask, turns in zip(self.masks, drilling, strict=True)
         ]
+        #: Mass of the point masses that the load acts on, by dof.
+        self.points = np.zeros(system.n_dofs)
+        for point, nodes in item.point_masses(mesh, system.model.point_masses):
+            for dof in (0, 1):
+                np.add.at(self.points, system.attached_dofs(nodes, dof, "point mass"), point.mass)
         self.turns = system.communicator.any(any(drilling))
         self.follows = item.kind == "centrifugal" or self.turns
         self._unit: Floats | None = None
@@ -163,7 +182,7 @@ class BodyLoad:
     @property
     def _couples(self) -> bool:
         """Whether the force on some elements is a nonlinear function of the displacement."""
-        return self.turns and self.mass == "consistent"
+        return self.turns and (self.mass == "consistent" or not self.inertial)
 
     def _where_linear(self) -> tuple[Floats, Floats]:
         """Unit force on the reference, and its derivative (upper triangle; (0,) for none).
@@ -176,16 +195,38 @@ class BodyLoad:
             if self._couples:
                 masks = [m & ~t for m, t in zip(masks, self.nlgeom, strict=True)]
             spins = self.system.communicator.any(
-                self.item.kind == "centrifugal" and any(m.any() for m in masks)
+                self.item.kind == "centrifugal"
+                and (any(m.any() for m in masks) or bool(self.points.any()))
             )
             stiffness = self.system.pattern.zeros() if spins else EMPTY
             self._linear = self._at_rest(masks, stiffness), stiffness
         return self._linear
 
+    def _by_area(
+        self, masks: list[NDArray[np.bool_]]
+    ) -> list[tuple[float, list[NDArray[np.bool_]]]]:
+        """Volume per length of lines, inverted, with the elements that have it."""
+        areas = np.array([block.section.profile[0] for block in self.system.own_blocks])
+        return [
+            (1.0 / area, [m & (a == area) for m, a in zip(masks, areas, strict=True)])
+            for area in np.unique(areas[areas > 0.0]).tolist()
+        ]
+
     def _at_rest(self, masks: list[NDArray[np.bool_]], values: Floats) -> Floats:
         """Unit force on the reference in global axes; adds its derivative to `values`."""
-        force = np.zeros(self.system.n_dofs)
+        system, item = self.system, self.item
+        force = np.zeros(system.n_dofs)
         self._evaluate(masks, 1.0, np.zeros_like(force), END_POINT, 1.0, force, values)
+        if self.points.any():
+            pull = np.zeros((system.model.mesh.n_nodes, 3))
+            if item.kind == "gravity":
+                pull[:, :2] = item.value[:2]
+            else:
+                square, *center = item.value
+                pull[:, :2] = square * (system.model.mesh.points - center)
+                if len(values):
+                    system.pattern.add_diagonal(values, square * self.points)
+            force += self.points * pull[system.node_of_dof, system.component]
         return force
 
     def _evaluate(
@@ -200,13 +241,15 @@ class BodyLoad:
     ) -> None:
         """Add force and derivative (times `share`) of the core; in global axes."""
         # Of a centrifugal force the scale is that of the square of the angular velocity.
-        item, first = self.item, 2 if self.item.kind == "gravity" else 1
+        item, first = self.item, 1 if self.item.kind == "centrifugal" else 2
         value = [scale * v for v in item.value[:first]] + list(item.value[first:])
+        kind = item.kind if self.inertial else "gravity"
+        mass = self.mass if self.inertial else ""
         communicator = self.system.communicator
         own = force if communicator.size == 1 else np.zeros_like(force)
-        self.system.core.body_force(
-            item.kind, value, self.mass, masks, u, start, share, own, values
-        )
+        for share_of, some in self._by_area(masks) if item.kind == "line" else ((1.0, masks),):
+            given = [share_of * v for v in value]
+            self.system.core.body_force(kind, given, mass, some, u, start, share, own, values)
         if own is not force:
             force += communicator.sum(own)
 

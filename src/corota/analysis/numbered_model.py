@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from corota.analysis.linear.solvers import LinearSolver
     from corota.analysis.parallel.communicator import Communicator
     from corota.analysis.timer import Timer
-    from corota.model.materials import Material
     from corota.model.model import Model
 
     Floats = NDArray[np.float64]
@@ -104,8 +103,8 @@ class NumberedModel:
         self.nlgeom = True
         #: Whether linear procedures look at the state of a geometrically linear step.
         self.about_linear = False
-        #: Largest local strain at the last recovery where it is linear, and the material there.
-        self.largest_linear_strain: tuple[float, Material | None] = (0.0, None)
+        #: Largest local strain at the last recovery, of sections where it is linear.
+        self.largest_linear_strain = 0.0
         self.constraints = constraints_of(model, self.start, carried, self.pattern)
         #: The constraints as they were linearized for the last correction.
         self.link = self.constraints.link(np.zeros(self.n_dofs))
@@ -130,6 +129,24 @@ class NumberedModel:
         """Dof numbers of nodes, -1 where a node has no such dof."""
         nodes = np.asarray(nodes, np.int64)
         return np.where(self.per_node[nodes] > dof, self.start[nodes] + dof, -1)
+
+    def attached_dofs(self, nodes: Ints, dof: int, what: str) -> Ints:
+        """Dofs of nodes at which something is attached.
+
+        Raises
+        ------
+        ModelError
+            If a node has no such dof.
+        """
+        dofs = self.dofs(nodes, dof)
+        if (dofs < 0).any():
+            node = self.model.mesh.node_labels[nodes[int(np.argmax(dofs < 0))]]
+            kind = "rotation" if dof == 2 else "displacement"
+            raise ModelError(
+                f"the {what} at node {node} needs a {kind}, which no element there has; put it "
+                "on a node of an element" + (" with drilling rotations" if dof == 2 else "")
+            )
+        return dofs
 
     def by_node(self, vector: Floats) -> Floats:
         """Values by node and global component, shape (n_nodes, 3), 0 where there is no dof."""

@@ -23,7 +23,8 @@ class PointMass(Brief):
     ----------
     nodes : str or array_like of int
     mass : float
-        [mass], >= 0. Gravity and spin do not act on it: add its weight as a force.
+        [mass], >= 0. Gravity and spin act on it where they act on all cells, or on a cell at its
+        node.
     inertia : float
         Of a drilling rotation [mass*length^2], >= 0.
     """

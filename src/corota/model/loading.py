@@ -177,6 +177,41 @@ class Loading:
         where = "" if isinstance(cells, str) and not cells else self._cells(cells)
         self.loads.append(BodyForce(where, "gravity", (x, y), amplitude))
 
+    def line_load(
+        self,
+        x: float = 0.0,
+        y: float = 0.0,
+        cells: str | ArrayLike = "",
+        amplitude: str = "",
+    ) -> None:
+        """Apply a dead force per undeformed length [force/length] to beams and trusses.
+
+        Beams take the consistent end moments, which turn with them in geometrically nonlinear
+        steps: one element is exact at its ends.
+
+        Parameters
+        ----------
+        x, y : float
+            Components in global axes.
+        cells : str or array_like of int
+            Cell set, cell indices, or a mask of cells; ("" for all, which must then be lines).
+        amplitude : str
+            Name in ``Model.amplitudes``; empty: a ramp in static steps.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.lines([(0.0, 0.0), (2.0, 0.0)], [(0, 1)]))
+        >>> model.beam("all", material=ct.Elastic(E=1000.0), area=0.1, inertia=0.001)
+        >>> model.fix([0], rotation=True)
+        >>> model.line_load(y=-0.01)
+        >>> tip = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1].U[1, 1]
+        >>> float(tip.round(6))  # q l^4 / (8 E I)
+        -0.02
+        """
+        where = "" if isinstance(cells, str) and not cells else self._cells(cells)
+        self.loads.append(BodyForce(where, "line", (x, y), amplitude))
+
     def centrifugal(
         self,
         omega: float,
@@ -188,7 +223,8 @@ class Loading:
 
         The frame of reference rotates with the model: the force grows with the current
         distance from the axis in geometrically nonlinear steps, with that of the undeformed body
-        in linear ones. Modes and buckling include its stiffness. Coriolis forces are omitted.
+        in linear ones. Modes and buckling include its stiffness. Complex modes, modal and harmonic
+        steps include Coriolis forces; transient steps do not, and say so.
 
         Parameters
         ----------

@@ -12,15 +12,17 @@ import numpy as np
 from corota.display import Brief
 from corota.errors import InputError, Location, number
 from corota.mesh import selection
+from corota.mesh.parts import cells_of, nodes_of_cells
 from corota.model.dofs import dof_index
 from corota.names import choose
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
     from corota.mesh import Mesh
+    from corota.model.attachments import PointMass
 
     Ints = NDArray[np.int64]
 
@@ -374,6 +376,10 @@ class EdgeLoad(Brief):
         self.amplitude = _amplitude(self.amplitude, self.where)
 
 
+#: Kinds of loads on cells.
+BODY_FORCES = ("gravity", "volume", "line", "centrifugal")
+
+
 @dataclass(repr=False)
 class BodyForce(Brief):
     """A load on the volume of cells.
@@ -382,31 +388,51 @@ class BodyForce(Brief):
     ----------
     cells : str or array_like of int
         Cell set ("" for all), or global cell indices.
-    kind : {"gravity", "centrifugal"}
+    kind : {"gravity", "volume", "line", "centrifugal"}
         ``gravity``: value ``(bx, by)`` [length/time^2];
+        ``volume``: dead force ``(fx, fy)`` per undeformed volume [force/length^3];
+        ``line``: dead force ``(qx, qy)`` per undeformed length of beams and trusses
+        [force/length];
         ``centrifugal``: value ``(omega^2, x0, y0)`` [1/time^2, length, length], at current
         positions in geometrically nonlinear steps.
     direction : tuple of float or None
-        Of gravity, as given: also kept for a negative or zero size.
+        Of uniform loads, as given: also kept for a negative or zero size.
         That of the value by default.
+    masses : ndarray of int, optional
+        Indices of the model's point masses that gravity and spin act on. By default those at
+        nodes of the cells, or all where the load acts on all cells.
     """
 
     cells: str | Ints
-    kind: Literal["gravity", "centrifugal"]
+    kind: Literal["gravity", "volume", "line", "centrifugal"]
     value: tuple[float, ...]
     amplitude: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
     direction: tuple[float, float] | None = None
+    masses: Ints | None = None
 
     def __post_init__(self) -> None:
-        self.cells = selected(self.cells, "cell", self.where)
-        choose(self.kind, ("gravity", "centrifugal"), "load on cells", self.where)
+        if self.masses is None or len(self.cells):
+            self.cells = selected(self.cells, "cell", self.where)
+        choose(self.kind, BODY_FORCES, "load on cells", self.where)
         self.value = tuple(number(v, self.kind, self.where) for v in self.value)
         self.amplitude = _amplitude(self.amplitude, self.where)
 
+    def point_masses(self, mesh: Mesh, masses: Sequence[PointMass]) -> list[tuple[PointMass, Ints]]:
+        """Point masses that the load acts on, each with the nodes where it does."""
+        if self.kind not in ("gravity", "centrifugal"):
+            return []
+        placed = [(mass, mesh.node_indices(mass.nodes)) for mass in masses]
+        if self.masses is not None:
+            return [placed[i] for i in self.masses.tolist()]
+        if isinstance(self.cells, str) and self.cells in ("", "all"):
+            return placed
+        at = nodes_of_cells(mesh, cells_of(mesh, self.cells))
+        return [(mass, nodes[np.isin(nodes, at)]) for mass, nodes in placed]
+
     @property
     def axis(self) -> NDArray[np.float64] | None:
-        """Unit vector along gravity, shape (2,); None without any direction."""
+        """Unit vector along a uniform load, shape (2,); None without any direction."""
         along = np.array(self.direction or self.value[:2])
         size = float(np.hypot(*along))
         return along / size if size > 0.0 else None

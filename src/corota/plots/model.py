@@ -246,7 +246,7 @@ def _loads(ax: Any, subject: Model, size: float) -> None:
                 _arrow(ax, at, direction * share * size, LOAD)
         elif isinstance(load, EdgeLoad):
             _edge_load(ax, subject, load, size)
-        elif isinstance(load, BodyForce) and load.kind == "gravity":
+        elif isinstance(load, BodyForce) and load.kind != "centrifugal":
             direction = np.array(load.value[:2])
             length = float(np.linalg.norm(direction))
             if length > 0.0:

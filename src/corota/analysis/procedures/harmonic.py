@@ -15,7 +15,7 @@ from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.modal import supported
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
 from corota.analysis.terms.conditions import Conditions
-from corota.analysis.terms.linearized import LinearMotion
+from corota.analysis.terms.linearized import LinearMotion, spin
 from corota.errors import ModelError, SingularError
 
 if TYPE_CHECKING:
@@ -85,7 +85,8 @@ class HarmonicStepper:
             lin = LinearMotion(system, state.u.copy(), step.mass)
             found = [m for m in state.modes if m.kind == "frequency"]
             if found and state.linear is not None:
-                own, lin.turns = found[-1].factors, state.linear.turns
+                own = found[-1].factors
+            lin.turns = spin(system) > 0.0
         else:
             modes, lin = last_modes(system, state, step, number)
             own = modes.factors

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.linear.eigen import shifted_factor
+from corota.analysis.terms.linearized import spin
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -133,6 +134,8 @@ class Reduced:
             basis = self._orthonormal(
                 np.hstack([basis, lin.pressed(lin.restrict(other))[lin.active]])
             )
+        # The response of a model that rotates has Coriolis forces, whatever its modes have.
+        lin.turns = spin(system) > 0.0
         c = lin.damping(step.rayleigh)
         self._factor, self._shift = shifted_factor(lin)
         constrained = lin.restrict(moves)

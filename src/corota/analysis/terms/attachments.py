@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.errors import ModelError
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -47,23 +45,10 @@ class Attachments:
             )
             for dof, value in enumerate((item.mass, item.mass, item.inertia)):
                 if value:
-                    np.add.at(self.mass, self._dofs(nodes, dof, "point mass"), value)
+                    np.add.at(self.mass, system.attached_dofs(nodes, dof, "point mass"), value)
         self.dampers = bool(system.model.dashpots)
         self._ground(system)
         self._pairs(system)
-
-    def _dofs(self, nodes: Ints, dof: int, what: str) -> Ints:
-        dofs = self.system.dofs(nodes, dof)
-        if (dofs < 0).any():
-            node = self.system.model.mesh.node_labels[nodes[int(np.argmax(dofs < 0))]]
-            kind = "rotation" if dof == 2 else "displacement"
-            raise ModelError(
-                f"the {what} at node {node} "
-                f"needs a {kind}, which no "
-                "element there has; put it on "
-                "a node of an element" + (" with drilling rotations" if dof == 2 else "")
-            )
-        return dofs
 
     def _ground(self, system: System) -> None:
         self.ground = np.zeros(system.n_dofs)
@@ -72,7 +57,7 @@ class Attachments:
                 nodes = np.array([item.first], np.int64)
                 for dof, value in enumerate(item.to_ground):
                     if value:
-                        self.ground[self._dofs(nodes, dof, "dashpot")] += value
+                        self.ground[system.attached_dofs(nodes, dof, "dashpot")] += value
 
     def _pairs(self, system: System) -> None:
         pairs = [d for d in system.model.dashpots if d.second is not None]
@@ -82,7 +67,7 @@ class Attachments:
         self.dofs = flat = np.zeros((len(pairs), 4), np.int64)
         if pairs:
             for column, (e, i) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
-                flat[:, column] = self._dofs(ends[:, e], i, "dashpot")
+                flat[:, column] = system.attached_dofs(ends[:, e], i, "dashpot")
         rows, columns = np.indices((4, 4)).reshape(2, -1)
         self.pair = (rows, columns)
         self.triplets = (flat[:, rows].ravel(), flat[:, columns].ravel())

@@ -281,7 +281,7 @@ class LinearMotion(Linearized):
         self.mass = self.padded(self.reduce(self.mass_values))
         self.turns = False
         system.conditions.reset_mass()
-        self._damping: dict[tuple[float, float], Any] = {}
+        self._damping: dict[tuple[float, float, bool], Any] = {}
 
     def damping(self, rayleigh: tuple[float, float] = (0.0, 0.0)) -> Any:
         """Dashpots, damping of materials and of the whole model, and Coriolis forces if it `turns`.
@@ -291,7 +291,8 @@ class LinearMotion(Linearized):
         rayleigh : tuple of float
             Of the whole model, per mass [1/time] and per stiffness [time].
         """
-        if rayleigh not in self._damping:
+        key = (*rayleigh, self.turns)
+        if key not in self._damping:
             system = self.system
             per_mass, per_stiffness = rayleigh
             values = damping_matrix(system, self.u, per_stiffness, self.kind)
@@ -299,8 +300,8 @@ class LinearMotion(Linearized):
             values += per_mass * self.mass_values
             _, triplets = Attachments(system).damp(self.u, np.zeros(system.n_dofs), values, 1.0)
             matrix = self.padded(self.reduce(values, triplets))
-            self._damping[rayleigh] = (matrix + self.coriolis()).tocsc() if self.turns else matrix
-        return self._damping[rayleigh]
+            self._damping[key] = (matrix + self.coriolis()).tocsc() if self.turns else matrix
+        return self._damping[key]
 
     def coriolis(self) -> Any:
         """Coriolis matrix, skew, of a model that rotates with the speed of its centrifugal load.
