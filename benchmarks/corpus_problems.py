@@ -100,6 +100,6 @@ PROBLEMS = [
     Problem("heated", "CPE8", clamped=True, expansion=1.2e-5, heat=80.0, nx=3, ny=1),
     Problem("flow", "CPS8R", clamped=False, plastic=((200.0, 0.0), (300.0, 0.1)), moved=0.02, ny=1),
     Problem(
-        "rotation", "CPS8", nlgeom=True, nx=6, ny=1, size=(10.0, 0.5), loads=[("TIP", 2, 40.0)]
+        "rotation", "CPE8R", nlgeom=True, nx=6, ny=1, size=(10.0, 0.5), loads=[("TIP", 2, 40.0)]
     ),
 ]

@@ -185,7 +185,8 @@ def test_one_text_says_which_local_strain_to_take() -> None:
         text = " ".join((ROOT / "docs" / page).read_text(encoding="utf-8").replace(">", "").split())
         assert local_strain.ADVICE in text, page
     flowing = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=4, ny=1))
-    flowing.section(element="Q4I", material=ct.Mises(E=1.0, nu=0.3, yield_stress=1.0))
+    law = ct.Mises(E=1.0, nu=0.3, yield_stress=1.0)
+    flowing.section(element="Q4I", material=law, local_strain="linear")
     flowing.fix("left")
     flowing.force("right", y=1e-6)
     flowing.steps = [ct.Static()]

@@ -20,6 +20,8 @@ DECKS = sorted(path.stem for path in FOLDER.glob("*.inp"))
 #: CalculiX makes solids of planar elements: their stress across vanishes in the mean only.
 SOLIDS = 1e-2
 EXACT = 2e-5
+#: CalculiX stops iterating a large rotation at this error.
+ITERATED = 1e-4
 
 
 def test_the_corpus_is_whole() -> None:
@@ -37,8 +39,11 @@ def test_a_deck_of_another_program_runs_and_is_right(name: str) -> None:
         frame = ct.solve(model, threads=1).frames[-1]
     rows = ANSWERS[name]
     size = max(float(np.hypot(*row[2:])) for row in rows)
-    uniform = not name.endswith(("_cantilever", "_weight", "_rotation"))
+    tolerance = SOLIDS if name.endswith(("_cantilever", "_weight")) else EXACT
+    if name.endswith("_rotation"):
+        # Decks of Abaqus take another strain, which differs at the 4 % of this deck.
+        same = model.sections[0].local_strain == "green_lagrange"
+        tolerance = ITERATED if same else SOLIDS
     for x, y, *moved in rows:
         node = int(np.argmin(np.hypot(*(model.mesh.points - [x, y]).T)))
-        tolerance = (EXACT if uniform else SOLIDS) * size
-        assert frame.U[node] == pytest.approx(moved, abs=tolerance)
+        assert frame.U[node] == pytest.approx(moved, abs=tolerance * size)

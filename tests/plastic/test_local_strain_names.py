@@ -74,12 +74,16 @@ def test_decks_take_the_names_and_keep_them(spelled, name, tmp_path):
     ("material", "advised"),
     [
         (ELASTIC, "green_lagrange"),
-        (FLOWING, "use local_strain='logarithmic' for materials that flow"),
+        (FLOWING, "use local_strain='logarithmic' to follow Abaqus and for materials that flow"),
     ],
 )
 def test_large_strain_under_the_linear_measure_is_said_once_with_the_remedy(material, advised):
+    model = strip(material, "linear", 0.1)
     with pytest.warns(UserWarning, match="local strain reaches") as caught:
-        ct.solve(strip(material, "linear", 0.1), ct.Static(increments=4), threads=1)
+        results = ct.solve(model, ct.Static(increments=4), threads=1)
     told = [str(w.message) for w in caught if "local strain reaches" in str(w.message)]
     assert len(told) == 1
     assert advised in told[0]
+    # The largest value of all increments, once, at the end.
+    assert f"step 1, increment {results.frames[-1].increment}, under" in told[0]
+    assert results.notes.count(told[0]) == 1

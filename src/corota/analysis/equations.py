@@ -114,6 +114,7 @@ class System(NumberedModel):
         """
         self.nlgeom = nlgeom and not about_linear
         self.about_linear = about_linear
+        self.free.set_kinematics(self.nlgeom)
         self.constraints.set_nlgeom(nlgeom or about_linear, about_linear)
 
     def borrow_tangent(self) -> Floats:

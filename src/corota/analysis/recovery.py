@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.user_material import UserBlocks
-    from corota.model.materials import Material
 
     Floats = NDArray[np.float64]
 
@@ -43,8 +42,7 @@ def recover(
         if (failure := communicator.agree(failure)) is not None:
             raise failure
         sums = communicator.sum(sums)
-        found = communicator.gather(largest)
-        largest = communicator.broadcast(max(found, key=lambda f: f[0], default=None))
+        largest = communicator.broadcast(max(communicator.gather(largest), default=0.0))
     system.largest_linear_strain = largest
     names = ("strain energy", "artificial energy", "plastic work", "thermal work")
     return fields, dict(zip(names, sums.tolist(), strict=True))
@@ -52,10 +50,9 @@ def recover(
 
 def _own(
     system: NumberedModel, user: UserBlocks, u: Floats
-) -> tuple[list[PointFields], Floats, tuple[float, Material | None]]:
-    """Fields, sums and largest local strain of the own elements."""
-    fields, energy = [], 0.0
-    largest: tuple[float, Material | None] = (0.0, None)
+) -> tuple[list[PointFields], Floats, float]:
+    """Fields, sums and largest linear local strain of the own elements."""
+    fields, energy, largest = [], 0.0, 0.0
     artificial = plastic = 0.0
     raw = system.core.recover(system.in_space(u), system.nlgeom)
     for index, (block, own) in enumerate(zip(system.own_blocks, raw, strict=True)):
@@ -81,9 +78,8 @@ def _own(
         plastic += own["dissipated_energy"]
         stored, lost = user.energies(index, own["values"]["ENER"], own["volume"])
         energy, plastic = energy + stored, plastic + lost
-        section, strain = block.section, float(own["largest_strain"])
-        if system.nlgeom and section.local_strain == "linear" and strain > largest[0]:
-            largest = strain, section.material
+        if system.nlgeom and block.section.local_strain == "linear":
+            largest = max(largest, float(own["largest_strain"]))
         found = PointFields(
             block.section.element,
             block.cells,

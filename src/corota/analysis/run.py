@@ -13,6 +13,7 @@ import numpy as np
 
 from corota.analysis.checkpoint import Begun, Resumption, replay, take
 from corota.analysis.constraints.none import IDENTITY
+from corota.analysis.end_moments import add_end_moments
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
@@ -112,25 +113,17 @@ def solve(
     return run.run()
 
 
-def keep_nlgeom(steps: Sequence[Step], finite: bool = False) -> tuple[list[Step], list[str]]:
+def keep_nlgeom(steps: Sequence[Step]) -> tuple[list[Step], list[str]]:
     """Steps that keep the large rotations of earlier ones, with notes.
 
     The linear theory has another displacement under the same loads: a linear step after a
-    nonlinear one would jump. With laws that are for finite strain (`finite`) all steps have large
-    rotations, as in CalculiX.
+    nonlinear one would jump.
     """
     kept: list[Step] = []
     notes: list[str] = []
     nonlinear = 0
     for number, step in enumerate(steps, start=1):
         if step.procedure in ("static", "dynamic"):
-            if finite and not (step.nlgeom or nonlinear):
-                step = copy(step)
-                step.nlgeom = True
-                notes.append(
-                    f"step {number} is computed with large rotations (nlgeom): a hyperelastic law "
-                    "is for finite strain"
-                )
             if step.nlgeom and not nonlinear:
                 nonlinear = number
             elif nonlinear and not step.nlgeom:
@@ -174,9 +167,7 @@ class Analysis:
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
-        self.steps, notes = keep_nlgeom(
-            listed_steps(steps), any(s.material.local_strain for s in model.sections)
-        )
+        self.steps, notes = keep_nlgeom(listed_steps(steps))
         self.results.steps = self.steps
         for note in notes:
             self.results.notes.append(note)
@@ -264,7 +255,11 @@ class Analysis:
             if hasattr(self, "system"):
                 info["profile"] = dict(self.system.profile)
             info["seconds"] = clock.perf_counter() - begin
+            note = self._large_strain(stands)
+            results.notes += note
             self.observers.end(results, error if isinstance(error, Exception) else None)
+        for text in note:
+            warnings.warn(text, stacklevel=3)
         return results
 
     def _step(
@@ -333,6 +328,19 @@ class Analysis:
         if kind != "static":
             state.at = system.evaluate(state.u, system.conditions.end_time)
 
+    def _large_strain(self, state: State | None) -> list[str]:
+        """Note on the local strain of sections with linear strain, if it was large."""
+        if state is None:
+            return []
+        (most, step, increment), (last, *end) = state.strains
+        if most <= LARGE_STRAIN:
+            return []
+        final = "" if end == [step, increment] else f" and is {last:.1%} at the end"
+        return [
+            f"local strain reaches {most:.1%} in step {step}, increment {increment}{final}, under "
+            f"local_strain='linear'. {ADVICE}"
+        ]
+
     def known(self) -> dict[str, Any]:
         """Objects stored by reference in checkpoints."""
         found: dict[str, Any] = {f"steps/{i}": step for i, step in enumerate(self.steps)}
@@ -356,6 +364,14 @@ class Analysis:
         system.begin(step, state.time, state.u, reaction)
         state.notes += system.conditions.supports.notes
         system.conditions.supports.notes = []
+        if step.procedure == "dynamic" and any(
+            item.kind == "centrifugal" for item, _ in system.conditions.body_forces()
+        ):
+            self._warn(
+                "coriolis",
+                f"step {number}: a motion in a rotating frame (centrifugal load) without Coriolis "
+                "forces; frequency steps with complex modes, modal and harmonic steps include them",
+            )
         if state.at is None or kinematics != (system.nlgeom, system.about_linear):
             state.at = system.evaluate(state.u, 0.0)
         assert state.energies is not None
@@ -421,19 +437,20 @@ class Analysis:
         elements: dict[str, float] | None = None
         if self.fields:
             with system.timed("recover"):
-                fields, sums = system.recover(state.u) if state.recover is None else state.recover()
-                elements = dict(sums)
                 step = self.steps[number - 1]
+                if state.recover is None:
+                    fields, sums = system.recover(state.u)
+                    along = getattr(step, "path", None) is not None
+                    when = factor * step.period if along else state.step_time
+                    add_end_moments(system, fields, state.u, when, state.a)
+                else:
+                    fields, sums = state.recover()
+                elements = dict(sums)
                 if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
                     add_kinetic(system, fields, state.u, state.v, step)
             scalars = {**scalars, "strain energy": sums["strain energy"]}
-            strain, material = system.largest_linear_strain
-            if material is not None and strain > LARGE_STRAIN:
-                self._warn(
-                    "strain",
-                    f"local strain reaches {strain:.1%} in step {number}, increment {increment}. "
-                    + ADVICE,
-                )
+            strain = system.largest_linear_strain, number, increment
+            state.strains[:] = max(state.strains[0], strain, key=lambda s: s[0]), strain
             if "flow" not in self.warned and (found := self._localised(fields)):
                 label = self.model.mesh.cell_labels[found[0]]
                 self._warn(

@@ -69,6 +69,9 @@ class State:
         Found so far.
     notes : list of str
         Remarks for the user.
+    strains : list of tuple (float, int, int)
+        Largest local strain under the linear measure so far, and that of the last frame, with
+        their step and increment.
     linear : LinearMotion or None
         Matrices that the last vibration modes belong to.
     recover : callable or None
@@ -96,6 +99,7 @@ class State:
     critical: list[CriticalPoint] = field(default_factory=list)
     modes: list[Modes] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    strains: list[tuple[float, int, int]] = field(default_factory=lambda: [(0.0, 0, 0)] * 2)
     linear: LinearMotion | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
     failed: Outcome[Evaluation] | None = None

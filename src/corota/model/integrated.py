@@ -94,4 +94,21 @@ class IntegratedAmplitude(Amplitude):
         return np.zeros(0)
 
 
-__all__ = ["IntegratedAmplitude"]
+class VibrationAmplitude(Amplitude):
+    """Displacement of a support that vibrates with an acceleration given over the frequency.
+
+    At the frequency f the acceleration a belongs to the displacement ``-a / (2 pi f)^2``.
+
+    Parameters
+    ----------
+    frequency, acceleration : ndarray, shape (n,)
+        Linear between the points, constant outside.
+    """
+
+    def __call__(self, time: float) -> float:
+        """Displacement per unit of the table at a frequency; 0 at rest."""
+        rate = 2.0 * np.pi * time
+        return -super().__call__(time) / rate**2 if rate > 0.0 else 0.0
+
+
+__all__ = ["IntegratedAmplitude", "VibrationAmplitude"]

@@ -22,13 +22,33 @@ LOCAL_STRAINS = ("linear", "logarithmic", "green_lagrange")
 ALIASES = {"simplified": "linear", "modified": "logarithmic"}
 #: Local strain above which the linear measure is no longer accurate.
 LARGE_STRAIN = 0.05
+#: Strain of elastic bodies in nonlinear steps by the dialect of a deck. CalculiX: linear law
+#: between Green-Lagrange strain and second Piola-Kirchhoff stress; Abaqus: logarithmic strain.
+ELASTIC_STRAINS: dict[str, LocalStrain] = {
+    "calculix": "green_lagrange",
+    "abaqus": "logarithmic",
+}
 #: Advice on the measure, for messages, the check and the documents.
 ADVICE = (
-    "Up to local strains of 5 % the default, local_strain='linear', is right. Beyond that, use "
-    "local_strain='logarithmic' for materials that flow; for elastic ones compare "
-    "'green_lagrange' with 'logarithmic'. In decks, use LOCAL STRAIN=LOGARITHMIC or GREEN "
-    "LAGRANGE."
+    "Up to local strains of 5 % all measures agree. Beyond that, the linear strain of elastic "
+    "bodies in Python is a law of its own: use local_strain='logarithmic' to follow Abaqus and "
+    "for materials that flow, 'green_lagrange' to follow CalculiX. In decks without LOCAL STRAIN "
+    "the dialect decides."
 )
+
+
+def dialect_strain(chosen: LocalStrain, dialect: str) -> LocalStrain:
+    """Measure in a deck that gives none.
+
+    Parameters
+    ----------
+    chosen : str
+        That of the material in Python. Laws that flow have the logarithmic strain in every
+        dialect: their yield stress is a true stress.
+    dialect : {"calculix", "abaqus"}
+        Program that the deck was written for.
+    """
+    return ELASTIC_STRAINS[dialect] if chosen == "linear" else chosen
 
 
 def local_strain(name: str, where: Location | None = None) -> str:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from corota.errors import Location
+    from corota.model.local_strain import LocalStrain
 
 
 def isotropic_compliance(E: ArrayLike, nu: ArrayLike) -> NDArray[np.float64]:
@@ -142,8 +143,6 @@ class Material(Brief):
     remembers = True
     #: Whether it has material axes.
     oriented = False
-    #: The only measure of the local strain that it is for; empty for any.
-    local_strain = ""
     #: Whether trusses and beams support it.
     for_lines = False
     #: Whether its constants follow the temperature.
@@ -153,9 +152,9 @@ class Material(Brief):
     elastic_constants = 0
 
     @property
-    def incompressible(self) -> bool:
-        """Whether the volume is constant; possible in plane stress only."""
-        return False
+    def default_strain(self) -> LocalStrain:
+        """Local strain of sections that name none: ``linear`` only for elastic laws."""
+        return "logarithmic" if self.flows else "linear"
 
     def compliance(self) -> NDArray[np.float64]:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).

@@ -179,7 +179,7 @@ class Model(Loading, LineSections, InitialFields):
         material: Material,
         thickness: float | ArrayLike = 1.0,
         plane: Literal["stress", "strain"] = "stress",
-        local_strain: LocalStrain | Literal[""] = "",
+        local_strain: LocalStrain | None = None,
         orientation: float = 0.0,
         mean_dilatation: bool = False,
         beta0: float | None = None,
@@ -199,9 +199,8 @@ class Model(Loading, LineSections, InitialFields):
             it follows the shape functions.
         plane : {"stress", "strain"}, optional
         local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
-            ``logarithmic`` for plastic flow or local strains above a few percent, and always for
-            hyperelastic laws; else ``linear`` by default. See
-            :class:`corota.model.sections.Section`.
+            By default ``logarithmic`` for materials that flow and ``linear`` for elastic ones;
+            see :class:`corota.model.sections.Section`.
         orientation : float, optional
             Angle of the material axes [rad].
         mean_dilatation : bool, optional

@@ -43,11 +43,11 @@ class Section(Brief):
         Out-of-plane thickness [length], > 0; or that of every node of the mesh, interpolated
         with the shape functions of the elements. The attribute is then the mean.
     plane : {"stress", "strain"}
-    local_strain : {"linear", "logarithmic", "green_lagrange"}
-        Measure of the local displacement gradient; by default that which the material is for, else
-        ``linear``. ``linear`` is the classical co-rotational one,
-        for local strains of a few percent; ``logarithmic`` is for large strain, with plasticity or
-        without; ``green_lagrange`` gives the St. Venant-Kirchhoff solid.
+    local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
+        Measure of the local displacement gradient. ``linear`` is the classical co-rotational one,
+        for local strains of a few percent and the default of elastic bodies; ``logarithmic`` is
+        for large strain, with plasticity or without, and the default of materials that flow;
+        ``green_lagrange`` gives the St. Venant-Kirchhoff solid.
         ``simplified`` and ``modified``, the names of Cho et al. (2017), stand for the first two.
     orientation : float
         Angle of the material axes from the global ones in the reference [rad].
@@ -69,7 +69,7 @@ class Section(Brief):
     material: Material
     thickness: float = 1.0
     plane: Literal["stress", "strain"] = "stress"
-    local_strain: LocalStrain | Literal[""] = ""
+    local_strain: LocalStrain | None = None
     orientation: float = 0.0
     where: Location | None = field(default=None, compare=False, repr=False)
     mean_dilatation: bool = field(default=False, kw_only=True)
@@ -88,31 +88,8 @@ class Section(Brief):
             )
         plane = choose(self.plane, ("stress", "strain"), "plane state", self.where)
         self.plane = cast("Literal['stress', 'strain']", plane)
-        needed = self.material.local_strain
-        measure = local_strain(self.local_strain or needed or "linear", self.where)
-        self.local_strain = cast("LocalStrain", measure)
-        if needed and measure != needed:
-            raise InputError(
-                f"{type(self.material).__name__} is for local_strain={needed!r}, not {measure!r}: "
-                "omit it",
-                self.where,
-            )
-        if self.material.local_strain and elements.find(self.element).weighted:
-            raise InputError(
-                f"{self.element} is for local strains of a few percent: in a strip that is "
-                "stretched to twice its length its strain is not uniform. For hyperelastic laws "
-                "use T6",
-                self.where,
-            )
-        if self.plane == "strain" and self.material.incompressible:
-            shear = float(1.0 / self.material.compliance()[3, 3])
-            raise InputError(
-                "constant volume (D = 0) is for plane stress; in plane strain give the "
-                f"compressibility: D1 = 2 / K, e.g. {0.002 / shear:.6g} for a bulk modulus K of "
-                "1000 times the shear modulus, and an element that does not lock (Q4 with "
-                "mean_dilatation, Q4S, Q8R)",
-                self.where,
-            )
+        chosen = self.local_strain or self.material.default_strain
+        self.local_strain = cast("LocalStrain", local_strain(chosen, self.where))
         if self.local_strain == "green_lagrange" and self.material.flows:
             raise InputError(
                 "the Green-Lagrange local strain is for elastic materials: with plastic flow it "

@@ -1,4 +1,4 @@
-"""Laws of the core at a single point: strain paths and uniaxial curves."""
+"""Plastic laws of the core at a single point: strain paths and uniaxial curves."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -16,8 +16,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-class SinglePoint(Material):
-    """A law of the core that can be evaluated at a single point."""
+class LawOfTheCore(Material, ABC):
+    """A plastic law that can be evaluated at a single point."""
+
+    E: float
+
+    flows = True
+
+    @property
+    @abstractmethod
+    def first_yield(self) -> float:
+        """Uniaxial stress where plastic strain begins or becomes noticeable [force/length^2]."""
 
     def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
         """Response of a single point to a strain path, one implicit step per row.
@@ -32,7 +41,7 @@ class SinglePoint(Material):
         -------
         dict of ndarray
             ``stress`` (n, 3), ``tangent`` (n, 3, 3), ``zz`` (n, 2; strain and stress through
-            the thickness), ``energy`` (n,), and the outputs of the law by name (n,).
+            the thickness), ``PEEQ``, ``YRATIO``, ``PWORK``, ``PDISS`` (n,).
         """
         import corota._core as _core
 
@@ -44,19 +53,6 @@ class SinglePoint(Material):
         shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
         shapes["state"] = (n, -1)
         return {key: values.reshape(shapes.get(key, (n,))) for key, values in raw.items()}
-
-
-class LawOfTheCore(SinglePoint, ABC):
-    """A plastic law."""
-
-    E: float
-
-    flows = True
-
-    @property
-    @abstractmethod
-    def first_yield(self) -> float:
-        """Uniaxial stress where plastic strain begins or becomes noticeable [force/length^2]."""
 
     def uniaxial(self, strain: ArrayLike) -> Floats:
         """Uniaxial stress along a path of axial strains.
@@ -116,4 +112,4 @@ class LawOfTheCore(SinglePoint, ABC):
         return ax
 
 
-__all__ = ["LawOfTheCore", "SinglePoint"]
+__all__ = ["LawOfTheCore"]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.model import elements
 from corota.model.constraints import Coupling
 from corota.model.material_table import MaterialTable
 
@@ -42,8 +43,10 @@ def model_lines(model: Model) -> list[str]:
             section.cells if isinstance(section.cells, str) else f"{len(section.cells)} elements"
         )
         material = section.material.name or type(section.material).__name__
+        solid = not elements.find(section.element).line
+        strain = f"{str(section.local_strain).replace('_', '-')} strain, " if solid else ""
         lines.append(
-            f"  {where or 'all'}: {section.element}, plane {section.plane}, {material}, "
+            f"  {where or 'all'}: {section.element}, plane {section.plane}, {material}, {strain}"
             f"thickness {_thickness(section)}"
         )
     lines += material_lines(model) + joint_lines(model) + support_lines(model, model.supports)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from corota.model.local_strain import LocalStrain
+
     Floats = NDArray[np.float64]
 
 
@@ -78,6 +80,11 @@ class UserMaterial(Material):
                 self.where,
             )
         self._check_motion()
+
+    @property
+    def default_strain(self) -> LocalStrain:
+        """Local strain of sections that name none: a law with history may flow."""
+        return "logarithmic" if self.members else "linear"
 
     def start(self, n: int, p: int) -> Floats:
         """History of n elements with p points at the start, shape (n, p, members)."""

@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.parallel.communicator import ALONE
-from corota.errors import InputError, ModelError
+from corota.errors import ModelError
 from corota.model import elements
 from corota.model.material_table import MaterialTable
 from corota.model.materials import Expansion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from typing import TypeGuard
 
     from numpy.typing import NDArray
@@ -38,6 +38,12 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
+#: Local strain that belongs to the stretch ``1 + e`` of free thermal expansion.
+MEASURES: dict[str, Callable[[Floats], Floats]] = {
+    "linear": lambda e: e,
+    "green_lagrange": lambda e: e + 0.5 * e * e,
+    "logarithmic": np.log1p,
+}
 #: Rows of a compliance in the plane, and through the thickness.
 IN, ZZ = [0, 1, 3], 2
 
@@ -56,6 +62,7 @@ class _Block:
     line: bool
     strain: bool  # plane strain
     spherical: bool
+    local_strain: str
     stress: Floats | None = None  # initial, (n, p, 4)
     start: Floats = field(init=False)  # temperatures at the points, (n, p), and now
     now: Floats = field(init=False)
@@ -117,6 +124,8 @@ class FreeStrains:
             self.communicator = communicator
         self.start = start_temperatures(model)
         self.offset: Floats | None = None
+        #: Whether displacements are finite.
+        self.finite = False
         #: Work of changing thermal strain so far [force*length].
         self.work = 0.0
         stresses = self._stresses(blocks)
@@ -208,6 +217,14 @@ class FreeStrains:
             if block.responds:
                 self._set(block, self.now)
 
+    def set_kinematics(self, nlgeom: bool) -> None:
+        """Let displacements be finite or infinitesimal from now on."""
+        if nlgeom != self.finite:
+            self.finite = nlgeom
+            for block in self._blocks:
+                if block.expansion and block.local_strain != "linear":
+                    self._set(block, self.now)
+
     def largest(self, heating: Floats) -> float:
         """Largest thermal strain of a change of temperature about those of the core."""
         found = [
@@ -229,7 +246,10 @@ class FreeStrains:
                 self.core.set_temperatures(block.index, block.now.ravel())
             except ValueError as error:
                 raise ModelError(str(error), block.table.where) from None
-        block.free = block.expansion.strain(block.now, block.start) @ block.turn[:, :3].T
+        thermal = block.expansion.strain(block.now, block.start)
+        if self.finite:
+            thermal = MEASURES[block.local_strain](thermal)
+        block.free = thermal @ block.turn[:, :3].T
         if block.stress is not None and block.at_start is not None:
             # The strain of the initial stress is kept.
             block.free -= np.einsum("...ij,...j->...i", block.at_start, block.stress)
@@ -361,12 +381,6 @@ def _block(
         ]
     )
     material, constant, table = section.material, None, None
-    if material.local_strain and (block.section.plane == "strain" or stress is not None):
-        raise InputError(
-            f"{type(material).__name__} has no initial stress, and no thermal strain in plane "
-            "strain: use Elastic there, or plane stress",
-            section.where,
-        )
     if _follows(material):
         table = material
     else:
@@ -382,6 +396,7 @@ def _block(
         facts.line,
         section.plane == "strain",
         section.material.flows and section.plane == "strain",
+        "linear" if facts.line else str(section.local_strain),
         stress,
     )
 

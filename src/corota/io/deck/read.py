@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from corota.errors import DeckError, Diagnostic, InputError
 from corota.io.deck.build.model import ModelBuilder
 from corota.io.deck.deck import Deck, nearest
+from corota.io.deck.dialect import find_dialect
 from corota.io.deck.elements import ELEMENTS, OWN
 from corota.io.deck.interpret import interpret
 from corota.io.deck.lexer import Lexer, key
@@ -70,6 +71,7 @@ def read_deck(
     saved = None
     if (reads := card_that_reads(cards)) is not None:
         cards, saved = with_earlier_steps(deck, lexer, cards, reads)
+    deck.dialect = find_dialect(cards)
     for card in cards:
         interpret(deck, card)
     if not cards and not deck.n_errors:

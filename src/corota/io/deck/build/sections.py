@@ -27,16 +27,19 @@ from corota.io.deck.elements import (
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import nodes_of_cells
-from corota.model.local_strain import LocalStrain
+from corota.model.local_strain import dialect_strain
 from corota.model.sections import Section
 
 if TYPE_CHECKING:
     from corota.io.deck.build.targets import Targets
     from corota.io.deck.drafts import SectionDraft
     from corota.mesh.data import Ints
+    from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
 
 
+#: Elements that are the same at small strain and stay stable at large strain.
+STABLE = {"Q4I": "Q4S"}
 #: Cards that give beams and springs their section.
 SECTION_CARDS = {"beam": "*BEAM SECTION", "spring": "*SPRING"}
 
@@ -55,6 +58,7 @@ class SectionBuilder:
     def __init__(self, targets: Targets) -> None:
         self.targets, self.deck, self.sets = targets, targets.deck, targets.sets
         self.meshes, self.model, self.mesh = targets.meshes, targets.model, targets.mesh
+        self.nonlinear = any(step.nlgeom for step in targets.deck.steps)
         #: Thickness of nodes, nan where none is given; computed on demand.
         self.nodal: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
 
@@ -145,6 +149,7 @@ class SectionBuilder:
                 angle = 0.0
             if view.instance is not None:
                 angle += view.instance.angle
+        strain = draft.local_strain or dialect_strain(material.default_strain, deck.dialect)
         groups: dict[tuple[str, str], list[Ints]] = {}
         types = self.meshes.cell_type[cells]
         for code in distinct(types):
@@ -179,7 +184,7 @@ class SectionBuilder:
                 )
                 return
             plane = draft.plane or info.plane or (mapped[1] if mapped else "") or "stress"
-            element = self._element(self.meshes.types[code])
+            element = self._element(name, strain != "linear" and self.nonlinear)
             groups.setdefault((element, plane), []).append(cells[types == code])
         full = self.sets.full_name(self.sets.elsets, view, draft.elset)
         thickness = self._thickness(draft, cells)
@@ -198,7 +203,7 @@ class SectionBuilder:
                         material,
                         cast("float", thickness),
                         cast("Literal['stress', 'strain']", plane),
-                        cast("LocalStrain", draft.local_strain),
+                        cast("LocalStrain", strain),
                         angle,
                         card.where,
                         mean_dilatation=draft.mean_dilatation,
@@ -242,9 +247,12 @@ class SectionBuilder:
         # One thickness for all nodes is passed as a scalar.
         return float(mine[0]) if len(mine) and (mine == mine[0]).all() else values
 
-    def _element(self, type_: str) -> str:
+    def _element(self, type_: str, finite: bool) -> str:
+        """Element for a name; `finite` if its local strain is nonlinear."""
         mapped = self.deck.element_map.get(type_)
         own, literal = ELEMENTS[type_].element, ELEMENTS[type_].literal
+        if finite and own != type_:
+            own = STABLE.get(own, own)
         if mapped or not literal:
             return mapped[0] if mapped else own
         if self.deck.literal:

@@ -117,7 +117,7 @@ def beam_section(deck: Deck, card: Card) -> None:
         return
     row = rows[0]
     names = SIZES[kind]
-    if kind == "CIRC" and not row.get(1) and _of_abaqus(deck, card):
+    if kind == "CIRC" and not row.get(1) and deck.dialect == "abaqus":
         deck.note(f"{row.where}: one number of a circle is its radius, as in Abaqus")
         radius = _numbers(deck, card, row, ("the radius",))
         if radius is None:
@@ -207,11 +207,6 @@ def _of_walls(
     # The walls that are higher than wide carry the shear force.
     shear = sum(w * h for w, h, _, _ in walls if h > w) or RECTANGLE * area
     return area, inertia, shear
-
-
-def _of_abaqus(deck: Deck, card: Card) -> bool:
-    """Whether the deck is for Abaqus: parts, or parameters that CalculiX does not have."""
-    return bool(deck.parts) or card.has("TEMPERATURE") or card.has("POISSON")
 
 
 def beam_general_section(deck: Deck, card: Card) -> None:

@@ -174,8 +174,7 @@ def solid_section(deck: Deck, card: Card) -> None:
     name = deck.required(card, "MATERIAL")
     plane = deck.choice(card, "PLANE", ("STRESS", "STRAIN"), "").lower()
     known = [name.replace("_", "").upper() for name in (*LOCAL_STRAINS, *ALIASES)]
-    given = deck.choice(card, "LOCALSTRAIN", known, "")
-    local = local_strain(given) if given else ""
+    local = deck.choice(card, "LOCALSTRAIN", known, "")
     mean = deck.choice(card, "DILATATION", ("POINT", "MEAN"), "POINT") == "MEAN"
     # The section refuses values that are not positive, and elements without this weight.
     beta0 = deck.parameter_number(card, "BETA0", 0.0, 0.0) if card.has("BETA0") else None
@@ -200,7 +199,7 @@ def solid_section(deck: Deck, card: Card) -> None:
                 name,
                 thickness,
                 plane,
-                local,
+                local_strain(local) if local else "",
                 card.value("ORIENTATION"),
                 mean,
                 beta0,
