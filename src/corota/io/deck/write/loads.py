@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.errors import UnsupportedError
 from corota.io.deck.write.text import DOFS, Writer, number, plain
 from corota.io.deck.write.thermal import temperatures
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature
@@ -61,6 +63,27 @@ def load_cards(writer: Writer, load: AppliedLoad, case: str = "") -> Iterator[st
         yield f"*DLOAD{option}\n{row}" if row else ""
 
 
+def ending(load: AppliedLoad, earlier: Sequence[AppliedLoad]) -> list[AppliedLoad]:
+    """A load as cards can express it: gravity of size zero ends that of every direction."""
+    if not (isinstance(load, BodyForce) and load.kind == "gravity" and load.axis is None):
+        return [load]
+    found: dict[tuple[float, ...], AppliedLoad] = {}
+    for old in earlier:
+        if not (isinstance(old, BodyForce) and old.kind == load.kind):
+            continue
+        if _same(old.cells, load.cells) and (axis := old.axis) is not None:
+            x, y = axis.tolist()
+            found[round(x, 9), round(y, 9)] = replace(load, direction=(x, y))
+    return list(found.values())
+
+
+def _same(one: str | Ints, other: str | Ints) -> bool:
+    """Whether two body forces name the same cells, as the analysis compares them."""
+    if isinstance(one, str) and isinstance(other, str):
+        return (one if one != "all" else "") == (other if other != "all" else "")
+    return not isinstance(one, str) and not isinstance(other, str) and np.array_equal(one, other)
+
+
 def _edges(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
     if load.kind == "shear":
         yield from _shear(writer, load, option)
@@ -72,8 +95,10 @@ def _edges(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
     x, y = load.value
     size = math.hypot(x, y)
     if size == 0.0:
-        return
-    force = size / _area(writer, load.edges) if load.total else size
+        # It ends an earlier one, in whatever direction.
+        size, x, y = 0.0, 1.0, 0.0
+    force = size / edge_area(writer, load.edges) if load.total else size
+    size = math.hypot(x, y)
     dead = "" if load.kind == "following traction" else ", FOLLOWER=NO"
     yield f"*DSLOAD{dead}{option}\n"
     yield f"{name}, TRVEC, {number(force)}, {number(x / size)}, {number(y / size)}\n"
@@ -100,10 +125,21 @@ def _shear(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
 
 
 def _body(writer: Writer, load: BodyForce) -> str:
-    where = writer.cell_set(load.cells)
+    targets = (
+        [writer.cell_set(load.cells)] if isinstance(load.cells, str) or len(load.cells) else []
+    )
+    targets += _mass_sets(writer, load)
     if load.kind == "centrifugal":
         square, x, y = load.value
-        return f"{where}, CENTRIF, {number(square)}, {number(x)}, {number(y)}, 0., 0., 0., 1.\n"
+        row = f"CENTRIF, {number(square)}, {number(x)}, {number(y)}, 0., 0., 0., 1.\n"
+        return "".join(f"{where}, {row}" for where in targets)
+    if load.kind != "gravity":
+        label = "P" if load.kind == "line" else "B"
+        # Without a direction of its own the load stands for both components.
+        used = load.direction or (1.0, 1.0)
+        axes = zip("XY", load.value, used, strict=True)
+        rows = [(f"{label}{a}", v) for a, v, n in axes if n != 0.0]
+        return "".join(f"{where}, {a}, {number(v)}\n" for a, v in rows for where in targets)
     along = load.axis
     if along is None:
         return ""
@@ -111,10 +147,27 @@ def _body(writer: Writer, load: BodyForce) -> str:
     if load.direction:
         size = math.copysign(size, float(along @ load.value))
     x, y = along.tolist()
-    return f"{where}, GRAV, {number(size)}, {number(x)}, {number(y)}, 0.\n"
+    row = f"GRAV, {number(size)}, {number(x)}, {number(y)}, 0.\n"
+    return "".join(f"{where}, {row}" for where in targets)
 
 
-def _area(writer: Writer, where: str | Ints) -> float:
+def _mass_sets(writer: Writer, load: BodyForce) -> list[str]:
+    """Sets of the point masses that a load acts on."""
+    masses = writer.model.point_masses
+    found = []
+    for mass, nodes in load.point_masses(writer.mesh, masses):
+        if not len(nodes):
+            continue
+        if len(nodes) < len(writer.mesh.node_indices(mass.nodes)):
+            raise UnsupportedError(
+                f"{load.kind} that acts on some of the nodes of a point mass cannot be written to "
+                "a deck: give each mass its own nodes, or load all cells"
+            )
+        found.append(f"MASS{next(i for i, m in enumerate(masses, start=1) if m is mass)}")
+    return found
+
+
+def edge_area(writer: Writer, where: str | Ints) -> float:
     """Area of edges times thickness [length^2], over which a resultant is distributed."""
     mesh = writer.mesh
     edges = mesh.edge_pairs(where)
@@ -133,4 +186,4 @@ def _area(writer: Writer, where: str | Ints) -> float:
     return area
 
 
-__all__ = ["boundary", "load_cards"]
+__all__ = ["boundary", "edge_area", "ending", "load_cards"]

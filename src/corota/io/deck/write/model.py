@@ -19,6 +19,7 @@ from corota.io.deck.write.attachments import (
     model_damping,
     velocity_cards,
 )
+from corota.io.deck.write.compare import Written, refuse_loss
 from corota.io.deck.write.constraints import constraint_cards
 from corota.io.deck.write.contact import contact_cards
 from corota.io.deck.write.lines import LINE_TYPES, line_cards
@@ -30,6 +31,7 @@ from corota.io.deck.write.text import number, plain, rows
 from corota.io.deck.write.thermal import expansion_cards, initial_cards
 from corota.mesh import EDGES
 from corota.mesh.parts import cells_of, nodes_of_cells
+from corota.model.local_strain import dialect_strain
 from corota.model.material_table import MaterialTable
 from corota.model.steps import Static, Step
 
@@ -63,13 +65,17 @@ def write_deck(
     Raises
     ------
     UnsupportedError
-        If a part of the model has no card; nothing is silently omitted.
+        If a part of the model has no card, or the deck reads back as another model; nothing is
+        silently omitted.
     FileError
         If writing fails.
     """
     target = Path(path)
     chosen = [steps] if isinstance(steps, Step) else list(model.steps if steps is None else steps)
-    replace_text(target, "".join(_Writer(model, chosen).cards()))
+    writer = _Writer(model, chosen)
+    text = "".join(writer.cards())
+    refuse_loss(writer, text)
+    replace_text(target, text)
     return target
 
 
@@ -83,6 +89,8 @@ class _Writer:
         self._invented = 0
         self._materials: dict[int, str] = {}
         self._edges: list[tuple[Ints, str]] = []  # generated surfaces
+        #: Loads and supports that the cards of each step stand for.
+        self.written: list[Written] = []
 
     def cards(self) -> Iterator[str]:
         model = self.model
@@ -99,7 +107,8 @@ class _Writer:
         tail += velocity_cards(self, self.steps)
         tail += initial_cards(self, model)
         tail += boundary(self, model.supports, False)
-        tail += step_cards(self, self.steps)
+        self.written = [Written(step, [], []) for step in self.steps]
+        tail += step_cards(self, self.written)
         yield f"*HEADING\n{model.title or model.name}\n"
         if model.unit_system:
             yield f"** UNITS: {model.unit_system}\n"
@@ -114,7 +123,7 @@ class _Writer:
             yield f"{label}, {number(x)}, {number(y)}\n"
         names = np.full(mesh.n_cells, "", dtype="U8")
         for section in self.model.sections:
-            names[cells_of(mesh, self._cells(section.cells))] = section.element
+            names[cells_of(mesh, self._planar(section))] = section.element
         for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
             mine = names[offset : offset + len(block)]
             nodes = mesh.node_labels[block.nodes].tolist()
@@ -143,14 +152,16 @@ class _Writer:
             if section.element in LINE_TYPES:
                 spring = section.element.startswith("SPRING")
                 name = "" if spring else self._material(section.material, lines)
-                lines.append(line_cards(section, self.cell_set(section.cells), name))
+                lines.append(line_cards(section, self.cell_set(self._planar(section)), name))
                 continue
             name = self._material(section.material, lines)
-            options = f"ELSET={self.cell_set(section.cells)}, MATERIAL={name}"
+            options = f"ELSET={self.cell_set(self._planar(section))}, MATERIAL={name}"
             if section.plane == "strain":
                 options += ", PLANE=STRAIN"
-            if section.local_strain != "linear":
-                options += f", LOCAL STRAIN={section.local_strain.replace('_', ' ').upper()}"
+            # Written decks have no parts: they are read as those of CalculiX.
+            strain = str(section.local_strain)
+            if strain != dialect_strain(section.material.default_strain, "calculix"):
+                options += f", LOCAL STRAIN={strain.replace('_', ' ').upper()}"
             if section.mean_dilatation:
                 options += ", DILATATION=MEAN"
             if section.beta0 is not None:
@@ -232,8 +243,9 @@ class _Writer:
             return plain(where)
         return self._invent("NSET", self.mesh.node_labels[self.mesh.node_indices(where)])
 
-    def _cells(self, where: str | Ints) -> str | Ints:
+    def _planar(self, section: Section) -> str | Ints:
         """Cells of a section: all are the planar ones, where there are lines too."""
+        where = section.cells
         blocks = list(zip(self.mesh.offsets, self.mesh.cells, strict=False))
         planar = [o + np.arange(len(c)) for o, c in blocks if EDGES[c.kind]]
         named = not isinstance(where, str) or (where or "all") in self.mesh.cell_sets
@@ -243,7 +255,6 @@ class _Writer:
 
     def cell_set(self, where: str | Ints) -> str:
         """Name of an element set, generated for an array."""
-        where = self._cells(where)
         if isinstance(where, str):
             return plain(where or "all")
         for name, cells in self.mesh.cell_sets.items():

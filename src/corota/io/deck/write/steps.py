@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import UnsupportedError
+from corota.io.deck.cards.dynamic import ANY_ERROR
 from corota.io.deck.write.contact import step_cards as contact_step_cards
 from corota.io.deck.write.contact import surfaces
-from corota.io.deck.write.loads import boundary, load_cards
+from corota.io.deck.write.loads import boundary, ending, load_cards
 from corota.io.deck.write.text import DOFS, Writer, number, numbers, plain
 from corota.model.dofs import dof_index
 from corota.model.loads import applied, kind_of
@@ -30,6 +31,7 @@ from corota.model.steps import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from corota.io.deck.write.compare import Written
     from corota.model.loads import AppliedLoad, LoadKind
 
 #: Cards that remove the loads of a kind.
@@ -40,8 +42,8 @@ _ARCS = 1.0
 _EVERY_MODE = 1_000_000
 
 
-def step_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
-    """Cards of all steps.
+def step_cards(writer: Writer, steps: Sequence[Written]) -> Iterator[str]:
+    """Cards of all steps; what they stand for is entered in `steps`.
 
     Raises
     ------
@@ -51,7 +53,9 @@ def step_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
     model = writer.model
     own = applied(model.loads, model.mesh)
     loaded, restart = False, 0
-    for index, step in enumerate(steps, start=1):
+    acting: list[AppliedLoad] = []
+    for index, written in enumerate(steps, start=1):
+        step = written.step
         cards = PROCEDURES.get(type(step))
         if cards is None:
             raise UnsupportedError(
@@ -79,10 +83,14 @@ def step_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:
         yield from contact_step_cards(writer, index)
         if step.new_supports:
             supports = [*model.supports, *supports]
+        written.supports += supports
         yield from boundary(writer, supports, step.new_supports)
         for kind, card in _NEW.items():
             if step.renews(kind):
                 yield f"*{card}, OP=NEW\n"
+        loads = [one for load in loads for one in ending(load, acting)]
+        acting += loads
+        written.loads += loads
         for load in loads:
             yield from load_cards(writer, load)
         if isinstance(step, SteadyState):
@@ -198,7 +206,9 @@ def _controls(step: Static) -> str:
 
 def _dynamic(says: _Says) -> tuple[str, str]:
     step: Dynamic = says.step
-    says.refuse("error_tolerance", "tolerance", "max_iterations", "redistribute")
+    says.refuse("tolerance", "max_iterations", "redistribute")
+    if step.error_tolerance < ANY_ERROR:
+        says.refuse("error_tolerance")
     options, explicit, slow = "", step.scheme == "central_difference", False
     if explicit:
         options = ", EXPLICIT"
@@ -216,6 +226,7 @@ def _dynamic(says: _Says) -> tuple[str, str]:
     # An explicit step is always lumped.
     if step.mass != "consistent" and not explicit:
         says.no(f"mass={step.mass!r} of an implicit step")
+    options += ", NOHAF" if step.error_tolerance >= ANY_ERROR else ""
     ramp = "RAMP" if step.ramp else "STEP" if slow else ""
     return says.head(ramp), f"*DYNAMIC{options}{says.direct()}\n{says.times()}"
 

@@ -55,7 +55,7 @@ def initial_cards(names: Writer, model: Model) -> Iterator[str]:
         yield "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
         yield temperatures(names, item.nodes, item.value)
     for stress in model.initial_stresses:
-        cells = np.arange(model.mesh.n_cells) if stress.cells == "" else stress.cells
+        cells = stress.cells if len(stress.cells) else np.arange(model.mesh.n_cells)
         values = [np.asarray(v, dtype=np.float64) for v in stress.value]
         if any(v.ndim > 1 and v.shape[1] > 1 for v in values):
             raise UnsupportedError(
