@@ -154,7 +154,7 @@ def test_hardly_decks(tmp_path: Path, text: bytes, message: str) -> None:
         ("*NSET, NSET=a, GENERATE\n1, 6, 2\n", "is not reached"),
         ("*NSET\n1\n", "NSET= is missing"),
         ("*ELSET, ELSET=a\n1, 2, 77\n", "element 77 in set a"),
-        ("*SURFACE, NAME=s\neall, S5\n", "has 4 faces"),
+        ("*SURFACE, NAME=s\neall, S5\n", "has 4 faces, and no face 5"),
         ("*SURFACE, NAME=s\neall, top\n", "unknown face 'TOP'"),
         ("*SURFACE, NAME=s\nnone, S1\n", "no element set named 'none'"),
         ("*SURFACE, NAME=s\n", "surface s is empty"),

@@ -9,8 +9,11 @@ import numpy as np
 
 from corota.errors import Diagnostic
 from corota.mesh.quality import STRAIGHT, aspect_ratio, corner_sines, jacobians
+from corota.model.joints import constrained_nodes, joined_nodes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.mesh.data import Ints, Mesh
     from corota.model.model import Model
 
@@ -55,12 +58,12 @@ def check_cells(model: Model) -> list[Diagnostic]:
                     f"width; the worst is element {block.labels[worst]} ({aspect[worst]:.0f})",
                 )
             )
-    lonely = mesh.node_labels[~used]
+    lonely = mesh.node_labels[~(used | constrained_nodes(model))]
     if len(lonely):
         found.append(
             Diagnostic("note", f"{len(lonely)} nodes belong to no cell, such as {lonely[0]}")
         )
-    return found + _same_place(mesh, np.flatnonzero(used))
+    return found + _same_place(mesh, np.flatnonzero(used), joined_nodes(model))
 
 
 def _many(severity: str, labels: Ints, text: str, hint: str) -> list[Diagnostic]:
@@ -70,13 +73,15 @@ def _many(severity: str, labels: Ints, text: str, hint: str) -> list[Diagnostic]
     return [Diagnostic(severity, f"element {labels[0]}{others} {text}", hint=hint)]
 
 
-def _same_place(mesh: Mesh, used: Ints) -> list[Diagnostic]:
+def _same_place(mesh: Mesh, used: Ints, joined: NDArray[np.bool_]) -> list[Diagnostic]:
+    """Pairs of nodes at one place of which neither is joined to anything."""
     if len(used) < 2:
         return []
     from scipy.spatial import cKDTree  # takes longer to import than a small job to solve
 
     size = float(np.ptp(mesh.points[used], axis=0).max())
     pairs = cKDTree(mesh.points[used]).query_pairs(TOUCHING * size, output_type="ndarray")
+    pairs = pairs[~joined[used[pairs]].any(axis=1)]
     if not len(pairs):
         return []
     a, b = mesh.node_labels[used[pairs[0]]]

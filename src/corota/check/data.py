@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.errors import Diagnostic
 from corota.mesh.parts import cells_of
+from corota.model.joints import constrained_nodes
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied
 from corota.model.rotations import reference_nodes, rotating_nodes, without_rotation
 
@@ -64,7 +65,7 @@ def _rotations(model: Model) -> list[Diagnostic]:
 def _effects(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:
     found = []
     mesh = model.mesh
-    bare = np.ones(mesh.n_nodes, bool)
+    bare = ~constrained_nodes(model)
     for block in mesh.cells:
         bare[block.nodes] = False
     light = np.zeros(mesh.n_cells, bool)
@@ -83,7 +84,7 @@ def _effects(model: Model, loads: list[AppliedLoad]) -> list[Diagnostic]:
                         load.where,
                     )
                 )
-        elif isinstance(load, BodyForce):
+        elif isinstance(load, BodyForce) and load.kind in ("gravity", "centrifugal"):
             cells = cells_of(mesh, load.cells)
             if len(cells) and light[cells].any():
                 label = mesh.cell_labels[cells[light[cells]][0]]

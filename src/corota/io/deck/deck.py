@@ -50,6 +50,8 @@ class Deck:
     """All data read so far, and all errors found."""
 
     lenient: bool = False
+    #: Program that the deck was written for: ``calculix`` or ``abaqus``.
+    dialect: str = "calculix"
     #: Element and plane (or "") by the deck's name of an element.
     element_map: dict[str, tuple[str, str]] = field(default_factory=dict)
     literal: bool = False
@@ -78,6 +80,8 @@ class Deck:
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)
     attached: list[AttachedDraft] = field(default_factory=list)
+    #: Index in the model's point masses by the number of the attached element, from 0.
+    masses: dict[int, int] = field(default_factory=dict)
     rotation_nodes: dict[str, str] = field(default_factory=dict)
     pairs: list[PairDraft] = field(default_factory=list)
     interactions: dict[str, InteractionDraft] = field(default_factory=dict)
@@ -85,6 +89,8 @@ class Deck:
     #: Reference nodes of distributing couplings, by the set of their elements.
     couplers: dict[str, Draft] = field(default_factory=dict)
     pretensions: list[PretensionDraft] = field(default_factory=list)
+    #: Node sets whose members keep their order in ``*EQUATION``.
+    unsorted: set[str] = field(default_factory=set)
     carriers: dict[str, tuple[Card, Draft | None]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)

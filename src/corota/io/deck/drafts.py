@@ -93,6 +93,7 @@ class SectionDraft:
     material: str
     thickness: float
     plane: str
+    #: Empty where the dialect and the material decide.
     local_strain: str
     orientation: str
     mean_dilatation: bool = False
@@ -144,9 +145,6 @@ class MaterialDraft:
     damping: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDraft | None = None
     expansion: float | Expansion = 0.0
-    #: Kind, number of terms and Poisson's ratio of a hyperelastic law that is fitted to `tests`.
-    fit: tuple[str, int, float] | None = None
-    tests: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
 
     @property
     def follows_temperature(self) -> bool:
@@ -206,6 +204,8 @@ class StepDraft:
     new_loads: set[LoadKind] = field(default_factory=set)
     #: Kinds of conditions that cards of the step gave so far.
     said: set[str] = field(default_factory=set)
+    #: Motions of all supports in a direction.
+    base_motions: list[Draft] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
     frequency: int = 1
     #: Increments between checkpoints that are kept, 0 for none.
@@ -268,6 +268,8 @@ class AttachedDraft:
     card : Card
     nodes : list of list of Draft
         For each element its nodes, not yet looked up.
+    labels : list of int
+        Numbers of the elements.
     value : float or None
         None until the card with the value is read.
     """
@@ -276,6 +278,7 @@ class AttachedDraft:
     name: str
     card: Card
     nodes: list[list[Draft]] = field(default_factory=list)
+    labels: list[int] = field(default_factory=list)
     value: float | None = None
 
 

@@ -64,6 +64,10 @@ SHELLS = {
 }
 MEMBRANES = {"3": "T3", "4": "Q4", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R", "9": "Q9"}
 
+#: Elements whose faces 1 and 2 are the sides of the plane, as in CalculiX; the edge from node 1 to
+#: node 2 is face 3.
+WITH_SIDES = frozenset((*SHELLS, *("M3D" + suffix for suffix in MEMBRANES)))
+
 #: Names that meshio writes for any triangle and quadrilateral.
 MESHIO = {"R3D3": "T3", "CAX4P": "Q4"}
 #: Names with a plane that meshio writes for any cell too; its heading says that it did.

@@ -101,19 +101,6 @@ _TABLE: dict[str, Keyword] = {
         for name, law in LAWS.items()
         if key(law.card) == name
     },
-    "HYPERELASTIC": Keyword(
-        card("hyperelastic.hyperelastic"),
-        "NEOHOOKE MOONEY-RIVLIN YEOH ARRUDA-BOYCE POLYNOMIAL REDUCEDPOLYNOMIAL OGDEN N "
-        "TESTDATAINPUT POISSON",
-        place="model",
-    ),
-    "HYPERFOAM": Keyword(card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON", place="model"),
-    **{
-        f"{test.upper()} TEST DATA": Keyword(
-            partial(card("hyperelastic.test_data"), test=test), place="model"
-        )
-        for test in ("uniaxial", "biaxial", "planar")
-    },
     "DENSITY": Keyword(card("material.density"), place="model"),
     "EXPANSION": Keyword(card("thermal.expansion"), "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(
@@ -176,8 +163,8 @@ _TABLE: dict[str, Keyword] = {
     "CONTROLS": Keyword(card("path.controls"), "PARAMETERS RESET", "ANALYSIS TYPE"),
     "DYNAMIC": Keyword(
         card("dynamic.dynamic"),
-        "ALPHA BETA GAMMA DIRECT EXPLICIT APPLICATION SCHEME",
-        "SOLVER RELATIVETOABSOLUTE NOHAF HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
+        "ALPHA BETA GAMMA DIRECT EXPLICIT APPLICATION SCHEME NOHAF",
+        "SOLVER RELATIVETOABSOLUTE HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
         "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD",
     ),
     "COMPLEX FREQUENCY": Keyword(card("dynamic.complex_frequency"), "CORIOLIS", "SOLVER STORAGE"),
@@ -271,6 +258,9 @@ _TABLE: dict[str, Keyword] = {
     ),
     "BOUNDARY": Keyword(
         card("supports.boundary"), "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"
+    ),
+    "BASE MOTION": Keyword(
+        card("dynamic.base_motion"), "DOF AMPLITUDE TYPE SCALE LOADCASE", "BASENAME"
     ),
     "CLOAD": Keyword(card("loads.cload"), "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
     "DLOAD": Keyword(

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.model.integrated import IntegratedAmplitude
-from corota.model.steps import Dynamic, ModalDynamic
+from corota.io.deck.lexer import key
+from corota.model.integrated import IntegratedAmplitude, VibrationAmplitude
+from corota.model.loads import Fixed
+from corota.model.steps import Dynamic, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -70,9 +72,53 @@ def base_motion(
     return name
 
 
+def base_supports(deck: Deck, model: Model, step: StepDraft, supports: list[Fixed]) -> list[Fixed]:
+    """Moves of ``*BASE MOTION``: all dofs of a direction that supports hold at zero.
+
+    Parameters
+    ----------
+    supports : list of Fixed
+        Of the step itself.
+    """
+    before = [] if step.new_supports else [s for m in model.steps for s in m.supports]
+    every = [*model.supports, *before, *supports]
+    found = []
+    for draft in step.base_motions:
+        card = draft.card
+        table = next(
+            (a for a in model.amplitudes.values() if key(a.name) == key(draft.amplitude)), None
+        )
+        if table is None:
+            text = f"no amplitude named {draft.amplitude!r}"
+            deck.error(card, card.at("AMPLITUDE"), text)
+            continue
+        held = [
+            s.nodes for s in every if s.dof == draft.index and s.value == 0.0 and not s.amplitude
+        ]
+        if not held:
+            text = f"no support holds dof {draft.index + 1}, which the base moves"
+            deck.error(card, card.at("DOF"), text, hint="fix the nodes at the base by *BOUNDARY")
+            continue
+        name: str | None = table.name
+        if draft.order and step.make is SteadyState:
+            if draft.order == 1:
+                text = "in a harmonic step give the displacement or the acceleration"
+                deck.error(card, card.at("TYPE"), text)
+                continue
+            name = f"vibration {table.name}"
+            model.amplitudes[name] = VibrationAmplitude(
+                table.time, table.value, False, name, card.where
+            )
+        elif draft.order:
+            name = base_motion(deck, model, draft, table.name, step)
+        if name is not None:
+            found += [Fixed(nodes, draft.index, draft.value[0], name, card.where) for nodes in held]
+    return found
+
+
 def _again(draft: Draft, step: StepDraft) -> bool:
     """Whether a step defines the same support again."""
     return any(d.target == draft.target and d.index == draft.index for d in step.supports)
 
 
-__all__ = ["base_motion"]
+__all__ = ["base_motion", "base_supports"]

@@ -11,10 +11,11 @@ import numpy as np
 from corota.arrays import distinct
 from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
+from corota.io.deck.elements import SHELLS
+from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.mesh.parts import cells_of
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, NodalForce
-from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -180,11 +181,22 @@ class LoadBuilder:
         found = self.sets.elements(root, draft.target, draft.row.at(0), draft.card, draft.row.text)
         if found is None or amplitude is None:
             return None
-        if not len(found.cells):
+        attached = len(found.attached) > 0 and draft.kind in ("gravity", "centrifugal")
+        if not len(found.cells) and not attached:
             # Lines of a meshing program are not elements here; a set of lines only is empty too.
             self.deck.row_error(draft.card, draft.row, 0, f"element set {draft.target} is empty")
             return None
         if draft.kind == "pressure":
+            codes = self.meshes.cell_type[found.cells]
+            if any(self.meshes.types[code] in SHELLS for code in distinct(codes).tolist()):
+                self.deck.row_error(
+                    draft.card,
+                    draft.row,
+                    1,
+                    "a pressure on a shell is normal to its plane, whatever its number",
+                    "load the edges: *DSLOAD on a *SURFACE of their faces S3 to S6",
+                )
+                return None
             edges = self.sets.faces(
                 found.cells, draft.index, draft.card, draft.row.at(1), draft.row.text
             )
@@ -193,10 +205,12 @@ class LoadBuilder:
             return EdgeLoad(edges, "pressure", draft.value, amplitude, where=where)
         full = self.sets.full_name(self.sets.elsets, root, draft.target)
         name = self.sets.spelled(self.sets.elsets, full) if full else ""
-        return self._body(draft, name or found.cells, amplitude)
+        masses = self.deck.masses
+        numbers = [masses[i] for i in found.attached.tolist() if i in masses]
+        return self._body(draft, name or found.cells, amplitude, np.array(numbers, np.int64))
 
     def _volume_force(self, draft: Draft) -> Iterator[Load]:
-        """A force per volume, or per length of lines, as gravity: the core has forces per mass."""
+        """A force per volume, or per length of beams and trusses."""
         amplitude, root = self.targets.amplitude(draft), self.meshes.views[0]
         cells = np.arange(self.mesh.n_cells)
         if draft.target:
@@ -209,28 +223,13 @@ class LoadBuilder:
             cells = found.cells
         if amplitude is None:
             return
-        rho = np.full(self.mesh.n_cells, -1.0)
-        area = np.zeros(self.mesh.n_cells)
-        for section in self.model.sections:
-            material = section.material
-            if section.element in ("TRUSS", "BEAM"):
-                area[cells_of(self.mesh, section.cells)] = section.profile[0]
-            if isinstance(material, MaterialTable) and material.density_varies:
-                mine = np.isin(cells, cells_of(self.mesh, section.cells))
-                if mine.any():
-                    self.deck.row_error(
-                        draft.card,
-                        draft.row,
-                        1,
-                        "a force per volume is taken per mass, and the density of a material here "
-                        "depends on the temperature",
-                        "give one *DENSITY, or the load as GRAV",
-                    )
-                    return
-            rho[cells_of(self.mesh, section.cells)] = section.material.rho
         if draft.kind == "line":
-            if (area[cells] == 0.0).any():
-                label = self.mesh.cell_labels[cells[np.argmin(area[cells])]]
+            lines = np.zeros(self.mesh.n_cells, bool)
+            for section in self.model.sections:
+                if section.element in ("TRUSS", "BEAM"):
+                    lines[cells_of(self.mesh, section.cells)] = True
+            if not lines[cells].all():
+                label = self.mesh.cell_labels[cells[np.argmin(lines[cells])]]
                 self.deck.row_error(
                     draft.card,
                     draft.row,
@@ -240,23 +239,10 @@ class LoadBuilder:
                     "give BX and BY, or pressures and tractions on its faces",
                 )
                 return
-            # Mass by length stands for mass by volume.
-            rho[cells] *= area[cells]
-        for density in distinct(rho[cells]).tolist():
-            if density == 0.0:
-                self.deck.row_error(
-                    draft.card,
-                    draft.row,
-                    1,
-                    "a force per volume is converted to a force per mass, and a material here "
-                    "has no density",
-                    "give *DENSITY; statics does not depend on its value",
-                )
-                return
-            if density > 0.0:
-                value = (draft.value[0] / density, draft.value[1] / density)
-                mine = cells[rho[cells] == density]
-                yield BodyForce(mine, "gravity", value, amplitude, draft.row.where)
+        kind = cast("Literal['volume', 'line']", draft.kind)
+        along = (1.0, 0.0) if key(draft.row.get(1)).endswith("X") else (0.0, 1.0)
+        where = draft.row.where
+        yield BodyForce(cells, kind, draft.value, amplitude, where, direction=along)
 
     def _edges_of(self, draft: Draft) -> str | Ints | None:
         """Name of a surface, or edges of one face of elements."""
@@ -271,14 +257,16 @@ class LoadBuilder:
         edges = self.sets.faces(found.cells, draft.index, draft.card, row.at(1), row.text)
         return edges if edges is not None and len(edges) else None
 
-    def _body(self, draft: Draft, cells: str | Ints, amplitude: str) -> BodyForce:
+    def _body(
+        self, draft: Draft, cells: str | Ints, amplitude: str, masses: Ints | None = None
+    ) -> BodyForce:
         kind = cast("Literal['gravity', 'centrifugal']", draft.kind)
+        value, along = draft.value, None
         if kind == "gravity":
-            along = (draft.value[2], draft.value[3]) if len(draft.value) > 2 else None
-            return BodyForce(
-                cells, kind, draft.value[:2], amplitude, draft.row.where, direction=along
-            )
-        return BodyForce(cells, kind, draft.value, amplitude, draft.row.where)
+            along = (value[2], value[3]) if len(value) > 2 else None
+            value = value[:2]
+        where = draft.row.where
+        return BodyForce(cells, kind, value, amplitude, where, direction=along, masses=masses)
 
     def _edge_set(self, draft: Draft) -> str | None:
         name = self.sets.mesh_name(self.mesh.edge_sets, self.targets.at, draft.target)

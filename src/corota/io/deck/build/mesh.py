@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,10 @@ LARGEST = 1e100
 LARGEST_OFFSET = 10**12
 #: Errors of one kind that are listed individually.
 MAX_LISTED = 20
+
+
+#: Messages on loads and supports out of the plane.
+OUT_OF_PLANE = r"\bdof [345]\b|out of (the|its) plane"
 
 
 class Lookup:
@@ -117,6 +122,7 @@ class MeshBuilder:
             self.views.append(View(scope, instance.name + ".", instance))
         self.types: list[str] = []
         self.cell_type: Ints = np.zeros(0, np.int64)
+        self.out_of_plane = False
         self.turned = np.zeros(0, bool)
         self.side: Ints = np.zeros(0, np.int64)
         self.line_nodes: list[Ints] = []
@@ -223,12 +229,21 @@ class MeshBuilder:
                 for b in blocks
                 if (b.labels == labels[at]).any()
             )
+            other = next((i for i in (0, 1) if np.ptp(xyz[:, i]) <= 1e-6 * np.ptp(xyz[:, 2])), None)
+            turn = "" if other is None else f": exchange {'xy'[other]} and z in the whole deck"
             self._fault(
                 place,
                 f"node {labels[at]} has z = {xyz[at, 2]:g}; the part must lie in the plane z = 0"
-                + (f" ({len(bad)} nodes in all)" if len(bad) > 1 else ""),
+                + (f" ({len(bad)} nodes in all)" if len(bad) > 1 else "")
+                + turn,
                 "*NODE",
             )
+            # Elements without area, and loads and supports out of the plane, have this cause.
+            self.out_of_plane = True
+            self.deck.refused_types.add("out of the plane")
+            self.deck.diagnostics = [
+                d for d in self.deck.diagnostics if not re.search(OUT_OF_PLANE, d.message)
+            ]
         return 0.0 if len(bad) else float(out.max(initial=0.0))
 
     def _cells(self, points: Floats) -> list[Placed]:
@@ -424,6 +439,8 @@ class MeshBuilder:
         return np.asarray(~twice.any(axis=1))
 
     def _bad_shapes(self, block: ElementBlock, shape: Ints) -> None:
+        if self.out_of_plane:
+            return
         for code, text in (
             (FLAT, "it has no area or a side of no length"),
             (FOLDED, "it is folded or inverted"),

@@ -18,7 +18,7 @@ from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.model.loads import InitialVelocity
 from corota.model.model import Model
-from corota.model.steps import Static, SteadyState
+from corota.model.steps import Buckle, Static, SteadyState
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
 
 # Parts that few decks have.
+base_supports = lazy("corota.io.deck.build.base_motion:base_supports")
 build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
 build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
 build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
@@ -115,7 +116,8 @@ class ModelBuilder:
         for name, material in deck.materials.items():
             if name not in used and self.model.sections:
                 deck.note(f"{material.card.where}: material {material.name} is not used")
-        drafts = deck.supports + [d for s in deck.steps for d in s.supports + s.loads]
+        steps = [d for s in deck.steps for d in s.supports + s.loads + s.base_motions]
+        drafts = deck.supports + steps
         named = {key(draft.amplitude) for draft in drafts}
         for name, amplitude in deck.amplitudes.items():
             if name not in named and deck.steps:
@@ -125,8 +127,12 @@ class ModelBuilder:
         deck = self.deck
         if draft.procedure is None:
             return None
+        if draft.make is Buckle:
+            self._drop_second_case(draft)
         behind = {id(d) for d in (*draft.supports, *draft.loads) if self._is_imaginary(d, draft)}
         supports = self.loads.supports([d for d in draft.supports if id(d) not in behind], draft)
+        if draft.base_motions:
+            supports += base_supports(deck, self.model, draft, supports)
         ahead = [d for d in draft.loads if id(d) not in behind]
         loads = [load for item in ahead for load in self.loads.loads(item)]
         for request in draft.outputs:
@@ -163,6 +169,32 @@ class ModelBuilder:
         except InputError as error:
             deck.error(draft.procedure, draft.procedure.where, error.message)
             return None
+
+    def _drop_second_case(self, draft: StepDraft) -> None:
+        """Supports of ``*BUCKLE`` for the modes (LOAD CASE=2), as CAE repeats them.
+
+        Those for the perturbation hold the modes too; other ones for the modes are refused.
+        """
+
+        def dofs(drafts: list[Draft]) -> set[tuple[int, int]]:
+            supports = self.loads.supports(drafts, draft)
+            return {(int(n), s.dof) for s in supports for n in self.mesh.node_indices(s.nodes)}
+
+        second = [d for d in draft.supports if d.card.value("LOADCASE") == "2"]
+        if not second:
+            return
+        draft.supports = [d for d in draft.supports if d.card.value("LOADCASE") != "2"]
+        before = [] if draft.new_supports else [*self.model.supports]
+        before += [] if draft.new_supports else [s for m in self.model.steps for s in m.supports]
+        held = {(int(n), s.dof) for s in before for n in self.mesh.node_indices(s.nodes)}
+        if dofs(second) | held != dofs(draft.supports) | held:
+            card = second[0].card
+            self.deck.error(
+                card,
+                card.at("LOADCASE"),
+                "the modes have other supports (LOAD CASE=2) than the perturbation (LOAD CASE=1)",
+                hint="buckle the whole structure instead of a half with antisymmetric modes",
+            )
 
     def _is_imaginary(self, item: Draft, draft: StepDraft) -> bool:
         """Whether ``LOAD CASE=2`` makes a load of a harmonic step act out of phase."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from corota.arrays import distinct
 from corota.io.deck import numerals
 from corota.io.deck.build.mesh import view_of
 from corota.io.deck.deck import nearest
+from corota.io.deck.elements import WITH_SIDES
 from corota.io.deck.lexer import key
 from corota.mesh.data import EDGES
 
@@ -25,16 +26,18 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
     from corota.mesh.data import Ints, Mesh
 
-_FACE = r"S(\d{1,9})\Z"
+_FACE = r"([SE])(\d{1,9})\Z"
+_SIDES = "a planar model takes no load out of its plane; the edges of shells are faces 3 to 6"
 _NONE: Ints = np.zeros(0, np.int64)
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Elements:
-    """Contents of an element set: cells, and line elements of curves."""
+    """Contents of an element set: cells, line elements of curves, and numbers of attached ones."""
 
     cells: Ints
     lines: Ints
+    attached: Ints = field(default_factory=lambda: _NONE)
 
 
 class Sets:
@@ -53,6 +56,9 @@ class Sets:
         self.turned, self.line_nodes = builder.turned, builder.line_nodes
         self.line_types = builder.line_types
         self.side = builder.side
+        sided = [name in WITH_SIDES for name in builder.types]
+        #: Whether a cell is a shell or membrane, whose edges are its faces from the third on.
+        self.sided = np.array([*sided, False])[builder.cell_type]
         self.twin = builder.twin
         self.nsets: dict[str, tuple[View, NamedSet]] = {}
         self.elsets: dict[str, tuple[View, NamedSet]] = {}
@@ -66,6 +72,14 @@ class Sets:
             ):
                 for name, found in theirs.items():
                     mine[prefix + name] = (view, found)  # type: ignore[assignment]
+        #: Numbers of point masses and dashpots, from 0, by label and by set.
+        self.attached: dict[int, int] = {}
+        self.attached_sets: dict[str, list[int]] = {}
+        for draft in self.deck.attached:
+            for label in draft.labels:
+                number = len(self.attached)
+                self.attached[label] = number
+                self.attached_sets.setdefault(key(draft.name), []).append(number)
         #: Labels without nodes, by set: name, labels, place.
         self.missing: list[tuple[str, Ints, Location]] = []
         self._nodes: dict[str, Ints | None] = {}
@@ -190,7 +204,7 @@ class Sets:
         return self._elements[full]
 
     def _resolve_elements(self, view: View, named: NamedSet) -> Elements:
-        cells, lines = [_NONE], [_NONE]
+        cells, lines, attached = [_NONE], [_NONE], [_NONE]
         lost: list[tuple[Ints, Location]] = []
         for entry in named.entries:
             if entry.name and not entry.name.startswith("@"):
@@ -198,20 +212,27 @@ class Sets:
                 if found is not None:
                     cells.append(found.cells)
                     lines.append(found.lines)
+                    attached.append(found.attached)
                 continue
             at = view_of(self.views, entry.name[1:] + "0") if entry.name else None
             place = at[0] if at else view
             rows, curves = place.cells(entry.labels), place.lines(entry.labels)
             known = np.where(rows >= 0, rows, curves)
-            if (known < 0).any():
-                lost.append((entry.labels[known < 0], entry.where))
+            other = entry.labels[known < 0]
+            if len(other):
+                numbers = np.array([self.attached.get(i, -1) for i in other.tolist()], np.int64)
+                attached.append(numbers[numbers >= 0])
+                other = other[numbers < 0]
+            if len(other):
+                lost.append((other, entry.where))
             cells.append(rows[rows >= 0])
             lines.append(curves[curves >= 0])
         if lost:
             bad = np.concatenate([labels for labels, _ in lost])
             self._say_undefined(bad, lost[0][1], "element", named.name, False)
         whole = self._with_halves(_unique(np.concatenate(cells)))
-        return Elements(whole, _unique(np.concatenate(lines)))
+        rest = _unique(np.concatenate(attached))
+        return Elements(whole, _unique(np.concatenate(lines)), rest)
 
     def _with_halves(self, cells: Ints) -> Ints:
         """Cells with the second halves of beams of three nodes."""
@@ -230,12 +251,16 @@ class Sets:
                 if full in self._elements and self._elements[full] is None:
                     self.deck.error(card, where, f"element set {target} contains itself")
                 return self.element_set(full)
+            if key(target) in self.attached_sets:
+                return Elements(_NONE, _NONE, np.array(self.attached_sets[key(target)]))
             found = view_of(self.views, target)
         if found and numerals.is_label(found[1]):
             label = np.array([int(found[1])])
             cells, lines = found[0].cells(label), found[0].lines(label)
             if cells[0] >= 0 or lines[0] >= 0:
                 return Elements(self._with_halves(cells[cells >= 0]), lines[lines >= 0])
+            if int(label[0]) in self.attached:
+                return Elements(_NONE, _NONE, np.array([self.attached[int(label[0])]]))
             self.deck.error(card, where, f"element {target} is not defined", text=text)
             return None
         hint = nearest(target, [self.spelled(self.elsets, n) for n in self.elsets])
@@ -351,23 +376,54 @@ class Sets:
             return free[np.isin(free[:, 0], cells)]
         match = re.match(_FACE, row.face, re.ASCII)
         if not match:
+            shells = bool(len(cells)) and self.sided[cells].all()
+            out_of_plane = shells and row.face in ("SPOS", "SNEG")
             self.deck.error(
                 surface.card,
                 row.where,
-                f"unknown face {row.face!r}; expected S1, S2, S3 or S4",
+                f"unknown face {row.face!r}; expected {'S3 to S6' if shells else 'S1 to S4'}",
                 text=row.text,
+                hint=_SIDES if out_of_plane else "",
             )
             return None
-        return self.faces(cells, int(match.group(1)) - 1, surface.card, row.where, row.text)
+        face = int(match.group(2)) - 1
+        if match.group(1) == "E":
+            # Edges of shells in Abaqus.
+            face += 2
+            if not self.sided[cells].all():
+                label = self.mesh.cell_labels[cells[np.argmin(self.sided[cells])]]
+                self.deck.error(
+                    surface.card,
+                    row.where,
+                    f"{row.face} is an edge of a shell; element {label} is none",
+                    text=row.text,
+                    hint="give its faces S1 to S4",
+                )
+                return None
+        return self.faces(cells, face, surface.card, row.where, row.text)
 
     def faces(self, cells: Ints, face: int, card: Card, where: Location, text: str) -> Ints | None:
         """Edges (n, 2) of one face number (from 0, as the deck counts) of cells."""
-        face_of = np.full(len(cells), face, np.int64)
+        sided = self.sided[cells]
+        if sided.any() and face < 2:
+            label = self.mesh.cell_labels[cells[np.argmax(sided)]]
+            self.deck.error(
+                card,
+                where,
+                f"face {face + 1} of the shell or membrane {label} is a side of its plane",
+                text=text,
+                hint=_SIDES,
+            )
+            return None
+        face_of = np.where(sided, face - 2, face)
         side = self.side[cells]
-        if 0 <= face < 4:
+        if (side >= 0).any():
             # Of a quadrilateral with a side of one node three faces are left.
             for missing in distinct(side[side >= 0]).tolist():
-                face_of[side == missing] = _face_of_triangle(face, missing)
+                for shift in (0, 2):
+                    if 0 <= face - shift < 4:
+                        hit = (side == missing) & (sided == (shift == 2))
+                        face_of[hit] = _face_of_triangle(face - shift, missing)
             cells, face_of = cells[face_of >= 0], face_of[face_of >= 0]
         edges = np.stack([cells, face_of], axis=1)
         offsets = self.mesh.offsets
@@ -387,7 +443,11 @@ class Sets:
                     )
                     return None
                 self.deck.error(
-                    card, where, f"element {label} has {count} faces, not {face + 1}", text=text
+                    card,
+                    where,
+                    f"element {label} has {count} {'edges' if sided.any() else 'faces'}, and no "
+                    f"face {face + 1}",
+                    text=text,
                 )
                 return None
             back = inside & self.turned[cells]

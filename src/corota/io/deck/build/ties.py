@@ -74,14 +74,13 @@ def _build(
     if tie.members:
         _weighted(deck, model, find, rotating, tie)
         return
+    if tie.kind == "equation":
+        _equations(deck, model, find, tie)
+        return
     single = [single_node(deck, find, term, model) for term in tie.terms]
     if None in single:
         return
     numbers = cast("list[int]", single)
-    if tie.kind == "equation":
-        terms = [(n, t.index, t.value[0]) for n, t in zip(numbers, tie.terms, strict=True)]
-        model.constraints.append(Equation(terms, 0.0, tie.where))
-        return
     reference = numbers[0]
     weights: Floats | None = None
     chosen: str | Ints | None
@@ -107,6 +106,37 @@ def _build(
     title = "rigid body" if not tie.surface else ""
     model.constraints.append(Coupling(chosen, reference, kind, tie.dofs, weights, title, tie.where))
     rotating[reference] = True
+
+
+def _equations(deck: Deck, model: Model, find: Find, tie: TieDraft) -> None:
+    """An equation; between sets as many, node by node in the order of their numbers.
+
+    Sets with ``UNSORTED`` keep their order, and a single node is in all equations, as in Abaqus.
+    """
+    labels = model.mesh.node_labels
+    columns: list[Ints] = []
+    for term in tie.terms:
+        found = find(term)
+        if found is None:
+            return
+        nodes = model.mesh.nodes_of(found) if isinstance(found, str) else found
+        if key(term.target) not in deck.unsorted:
+            nodes = nodes[np.argsort(labels[nodes])]
+        columns.append(nodes)
+    count = max(len(nodes) for nodes in columns)
+    for term, nodes in zip(tie.terms, columns, strict=True):
+        if len(nodes) not in (1, count):
+            deck.row_error(
+                term.card,
+                term.row,
+                0,
+                f"the sets of an equation have as many nodes or one; {term.target} has "
+                f"{len(nodes)}, another {count}",
+            )
+            return
+    for rows in zip(*(np.broadcast_to(nodes, count) for nodes in columns), strict=True):
+        terms = [(int(n), t.index, t.value[0]) for n, t in zip(rows, tie.terms, strict=True)]
+        model.constraints.append(Equation(terms, 0.0, tie.where))
 
 
 def _weighted(

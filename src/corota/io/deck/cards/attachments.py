@@ -41,6 +41,7 @@ def elements(deck: Deck, card: Card, type_: str) -> None:
         if len(set(numbers[1:])) < count:
             deck.row_error(card, row, 2, f"node {numbers[1]} occurs twice")
             continue
+        draft.labels.append(int(numbers[0] or 0))
         draft.nodes.append([Draft("node", card, row, row.get(i), ()) for i in range(1, count + 1)])
     if name:
         deck.attached.append(draft)
@@ -91,6 +92,7 @@ def _value(deck: Deck, card: Card, type_: str, what: str) -> None:
 
 def build_attachments(deck: Deck, model: Model, find: Find) -> None:
     """Add the deck's point masses and dashpots to the model."""
+    number = -1
     for draft in deck.attached:
         if draft.value is None:
             deck.error(
@@ -100,12 +102,14 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
             )
             continue
         for drafts in draft.nodes:
+            number += 1
             found = [find(d) for d in drafts]
             nodes = [int(n[0]) for n in found if n is not None and not isinstance(n, str)]
             if len(nodes) < len(drafts):
                 continue
             where = drafts[0].row.where
             if draft.type == "MASS":
+                deck.masses[number] = len(model.point_masses)
                 model.point_masses.append(PointMass(np.array(nodes), draft.value, 0.0, where))
             else:
                 model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value, where=where))

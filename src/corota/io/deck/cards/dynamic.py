@@ -3,10 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from corota.io.deck.cards.step import keeps_preload, open_step, step_times
+from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
+from corota.io.deck.cards.tie import parameter_row
 from corota.io.deck.drafts import Draft
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
@@ -26,6 +29,8 @@ APPLICATIONS = {
 SCHEMES = {"HHT": "hht", "ENERGYMOMENTUM": "energy_momentum"}
 #: Increments of an explicit step without INC.
 EXPLICIT_INCREMENTS = 10_000_000
+#: Largest tolerance of the local error: the displacement itself.
+ANY_ERROR = 1.0
 
 
 def _procedure(deck: Deck, card: Card) -> StepDraft | None:
@@ -99,6 +104,8 @@ def dynamic(deck: Deck, card: Card) -> None:
         if quasi_static
         else scheme,
         **({"rho_inf": 0.0} if quasi_static else {}),
+        # Without the residual at the half increment only the iterations limit the increments.
+        **({"error_tolerance": ANY_ERROR} if card.has("NOHAF") else {}),
         "mass": "lumped" if explicit else "consistent",
         # Loads act at once unless they have an amplitude.
         "ramp": _grows(now) or (quasi_static and not now.card.has("AMPLITUDE")),
@@ -177,6 +184,34 @@ def steady_state(deck: Deck, card: Card) -> None:
             "ramp": False,
             "direct": card.has("DIRECT"),
         }
+
+
+def base_motion(deck: Deck, card: Card) -> None:
+    """``*BASE MOTION, DOF=, AMPLITUDE=[, TYPE=][, SCALE=]``: all supports of a direction move."""
+    now = open_step(deck, card)
+    deck.no_rows(card)
+    text, amplitude = deck.required(card, "DOF"), deck.required(card, "AMPLITUDE")
+    order = RATES[deck.choice(card, "TYPE", RATES, "ACCELERATION")]
+    scale = deck.parameter_number(card, "SCALE", 1.0, -math.inf)
+    if now is None or not text or not amplitude:
+        return
+    if now.make not in (Dynamic, ModalDynamic, SteadyState):
+        deck.error(
+            card,
+            card.where,
+            "it belongs after *MODAL DYNAMIC or *STEADY STATE DYNAMICS in the same step",
+            hint="prescribe the motion of supports by *BOUNDARY in other steps",
+        )
+    elif card.value("LOADCASE") not in ("", "1"):
+        message = "a base moves in phase here: LOAD CASE=1"
+        deck.error(card, card.at("LOADCASE"), message, hint="shift the loads instead")
+    elif text not in ("1", "2"):
+        deck.error(card, card.at("DOF"), f"DOF must be 1 or 2 in the plane, not {text}")
+    else:
+        row = parameter_row(card, "DOF")
+        draft = Draft("fixed", card, row, "", (scale,), int(text) - 1, amplitude)
+        draft.order = order
+        now.base_motions.append(draft)
 
 
 def modal_damping(deck: Deck, card: Card) -> None:

@@ -28,6 +28,11 @@ _OTHER_LOADS = (
     (r"HP\d?\Z", "give each edge its mean pressure: P1 to P4, or P on surfaces"),
     (r"(P\d?|[BP][XY]|TRVEC\d?|TRSHR\d?)NU\Z", "no user subroutine is called: give values"),
     (r"(ROTA|CORIO)\Z", "rotate the base by *BOUNDARY, or give BX and BY"),
+    (
+        r"(EDNOR|EDLD)\d?\Z",
+        "give a *SURFACE of the edges (S3 to S6) and its pressure: the force per length divided by "
+        "the thickness",
+    ),
     (r"ROTDYNF\Z", "CENTRIF takes the square of the angular velocity"),
     (r"(F|VBF|SBF|SP)\d?\Z", "give springs by *SPRING, pressures by P1 to P4"),
 )
@@ -109,7 +114,7 @@ def _edge_traction(deck: Deck, card: Card, row: Row, label: str, face: int, now:
     """``TRVECn``, ``TRSHRn``: as those of ``*DSLOAD``, on one face of elements."""
     if not row.get(0):
         deck.row_error(card, row, 0, "an element number or a set is missing")
-    elif not 1 <= face <= 4:
+    elif not 1 <= face <= 6:
         deck.row_error(card, row, 1, f"face {face} does not exist; expected 1 to 4")
     else:
         draft = _traction(deck, card, row, label, now)

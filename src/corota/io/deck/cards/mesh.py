@@ -218,6 +218,8 @@ def _joined(rows: Iterator[Row], size: int) -> Iterator[Row]:
 
 def nset(deck: Deck, card: Card) -> None:
     """``*NSET, NSET=[, GENERATE][, ELSET=]``."""
+    if card.has("UNSORTED"):
+        deck.unsorted.add(key(card.value("NSET")))
     if card.has("ELSET"):
         _nodes_of_elset(deck, card)
     else:

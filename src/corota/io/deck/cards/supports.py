@@ -1,8 +1,6 @@
 """``*BOUNDARY``: fixed and moved nodes."""
 
 # SPDX-License-Identifier: BSD-3-Clause
-
-# SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
