@@ -38,8 +38,9 @@ REFERENCE = {
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
-    "Sweeps": "sweep sample grid Sweep",
-    "Results": "Results Frame PointFields History CriticalPoint Modes",
+    "Sweeps": "sweep sample grid Sweep seek Sought",
+    "Selections": "near on_line on_circle inside",
+    "Results": "Results BodyMotion Frame PointFields History CriticalPoint Modes",
     "Observers": "BaseObserver Observer Iteration",
     "Errors": "CorotaError InputError DeckError ModelError UnsupportedError SingularError "
     "ConvergenceError ResourceError FileError Interrupted Diagnostic",

@@ -29,9 +29,19 @@ if TYPE_CHECKING:
     from corota.io.result_reader import read_results
     from corota.io.resume import resume
     from corota.mesh import Cells, Mesh
+    from corota.mesh.geometric import inside, near, on_circle, on_line
     from corota.model.attachments import Dashpot, PointMass
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
     from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+    from corota.model.hyperelastic import (
+        ArrudaBoyce,
+        Hyperfoam,
+        MooneyRivlin,
+        NeoHooke,
+        Ogden,
+        Polynomial,
+        Yeoh,
+    )
     from corota.model.loads import (
         Amplitude,
         BodyForce,
@@ -62,18 +72,21 @@ if TYPE_CHECKING:
         SteadyState,
     )
     from corota.model.user_material import UserMaterial
+    from corota.results.body_motion import BodyMotion
     from corota.results.history import History
     from corota.results.observer import BaseObserver, Iteration, Observer
     from corota.results.results import Frame, PointFields, Results
     from corota.sweeps import Sweep, grid, sample, sweep
+    from corota.sweeps.seek import Sought, seek
 
 
 #: Module of each public name; a module is its own entry.
 _HOMES = {
-    "__version__": "_core",  # that of Cargo.toml
     "Amplitude": "model.loads",
     "ArcLength": "model.paths",
+    "ArrudaBoyce": "model.hyperelastic",
     "BaseObserver": "results.observer",
+    "BodyMotion": "results.body_motion",
     "BodyForce": "model.loads",
     "Buckle": "model.steps",
     "Cells": "mesh",
@@ -98,6 +111,7 @@ _HOMES = {
     "Frame": "results.results",
     "Frequency": "model.steps",
     "History": "results.history",
+    "Hyperfoam": "model.hyperelastic",
     "InitialStress": "model.loads",
     "InitialTemperature": "model.loads",
     "InitialVelocity": "model.loads",
@@ -107,26 +121,31 @@ _HOMES = {
     "JobFiles": "io.job",
     "LOCAL_STRAINS": "model.local_strain",
     "LocalAxes": "model.constraints",
+    "MaterialTable": "model.material_table",
     "Mesh": "mesh",
     "Mises": "model.plasticity",
     "ModalDynamic": "model.steps",
     "Model": "model.model",
     "ModelError": "errors",
     "Modes": "model.paths",
+    "MooneyRivlin": "model.hyperelastic",
+    "NeoHooke": "model.hyperelastic",
     "NodalForce": "model.loads",
     "Observer": "results.observer",
+    "Ogden": "model.hyperelastic",
     "Orthotropic": "model.materials",
     "Output": "model.steps",
     "PointFields": "results.results",
     "PointMass": "model.attachments",
+    "Polynomial": "model.hyperelastic",
     "PressureLaw": "model.contact",
-    "ResourceError": "errors",
-    "MaterialTable": "model.material_table",
     "RambergOsgood": "model.ramberg_osgood",
+    "ResourceError": "errors",
     "Results": "results.results",
     "RigidCurve": "model.contact",
     "Section": "model.sections",
     "SingularError": "errors",
+    "Sought": "sweeps.seek",
     "Static": "model.steps",
     "SteadyState": "model.steps",
     "StraightLine": "model.constraints",
@@ -136,14 +155,21 @@ _HOMES = {
     "UnsupportedError": "errors",
     "UserMaterial": "model.user_material",
     "Voce": "model.plasticity",
+    "Yeoh": "model.hyperelastic",
+    "__version__": "_core",  # that of Cargo.toml
     "examples": "",
     "grid": "sweeps",
+    "inside": "mesh.geometric",
     "mesh": "",
+    "near": "mesh.geometric",
+    "on_circle": "mesh.geometric",
+    "on_line": "mesh.geometric",
     "plots": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
     "resume": "io.resume",
     "sample": "sweeps",
+    "seek": "sweeps.seek",
     "solve": "analysis.run",
     "sweep": "sweeps",
     "write": "io.formats",
@@ -153,8 +179,10 @@ __all__ = [
     "LOCAL_STRAINS",
     "Amplitude",
     "ArcLength",
+    "ArrudaBoyce",
     "BaseObserver",
     "BodyForce",
+    "BodyMotion",
     "Buckle",
     "Cells",
     "ContactPair",
@@ -178,6 +206,7 @@ __all__ = [
     "Frame",
     "Frequency",
     "History",
+    "Hyperfoam",
     "InitialStress",
     "InitialTemperature",
     "InitialVelocity",
@@ -193,12 +222,16 @@ __all__ = [
     "Model",
     "ModelError",
     "Modes",
+    "MooneyRivlin",
+    "NeoHooke",
     "NodalForce",
     "Observer",
+    "Ogden",
     "Orthotropic",
     "Output",
     "PointFields",
     "PointMass",
+    "Polynomial",
     "PressureLaw",
     "RambergOsgood",
     "ResourceError",
@@ -206,6 +239,7 @@ __all__ = [
     "RigidCurve",
     "Section",
     "SingularError",
+    "Sought",
     "Static",
     "SteadyState",
     "StraightLine",
@@ -215,14 +249,20 @@ __all__ = [
     "UnsupportedError",
     "UserMaterial",
     "Voce",
+    "Yeoh",
     "examples",
     "grid",
+    "inside",
     "mesh",
+    "near",
+    "on_circle",
+    "on_line",
     "plots",
     "read",
     "read_results",
     "resume",
     "sample",
+    "seek",
     "solve",
     "sweep",
     "write",

@@ -16,10 +16,21 @@ SHAPES = {"quad4": 4, "quad8": 8, "quad9": 9}
 QUADS = ["Q4", "Q4D", "Q8", "Q8R", "Q9"]
 
 
-def element(name: str, measure: str, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force and tangent of one distorted plastic element in plane strain."""
+PLASTIC = ct.Mises(E=1000.0, nu=0.45, yield_stress=8.0, isotropic=40.0)
+#: Local strain, law, size of the displacements in an element of size 2.
+CASES: list[tuple[str, Any, float]] = [
+    ("linear", PLASTIC, 0.03),
+    ("logarithmic", PLASTIC, 0.03),
+    ("logarithmic", ct.NeoHooke(C10=0.5, D1=0.002), 0.25),
+    ("green_lagrange", ct.Elastic(E=1000.0, nu=0.45), 0.25),
+]
+
+
+def element(
+    name: str, measure: str, u: np.ndarray, law: Any = PLASTIC
+) -> tuple[np.ndarray, np.ndarray]:
+    """Force and tangent of one distorted element in plane strain."""
     mesh = ct.mesh.mapped([(0, 0), (2, 0.3), (2.2, 1.6), (-0.1, 1.2)], 1, 1, CELL[name])
-    law = ct.Mises(E=1000.0, nu=0.45, yield_stress=8.0, isotropic=40.0)
     block = {
         "element": name,
         "law": law.law,
@@ -41,17 +52,17 @@ def element(name: str, measure: str, u: np.ndarray) -> tuple[np.ndarray, np.ndar
     return force, upper + np.triu(upper, 1).T
 
 
-@pytest.mark.parametrize("measure", ["linear", "logarithmic"])
+@pytest.mark.parametrize(("measure", "law", "size"), CASES)
 @pytest.mark.parametrize("name", QUADS)
-def test_tangent(name: str, measure: str) -> None:
-    u = np.random.default_rng(2).uniform(-0.03, 0.03, 18)
-    force, tangent = element(name, measure, u)
+def test_tangent(name: str, measure: str, law: Any, size: float) -> None:
+    u = np.random.default_rng(2).uniform(-size, size, 18)
+    force, tangent = element(name, measure, u, law)
     n = len(force)
     difference = np.empty((n, n))
     for j in range(n):
         step = np.zeros(18)
         step[j] = 1e-6
-        plus, minus = (element(name, measure, u + s * step)[0] for s in (1, -1))
+        plus, minus = (element(name, measure, u + s * step, law)[0] for s in (1, -1))
         difference[:, j] = (plus - minus) / 2e-6
     assert np.abs(difference - tangent).max() < 1e-6 * np.abs(tangent).max()
 

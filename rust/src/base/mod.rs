@@ -3,6 +3,7 @@
 
 pub mod dual;
 pub mod hyper;
+pub mod jet;
 pub mod memory;
 pub mod pack;
 pub mod pool;

@@ -124,6 +124,17 @@ fn token<S: Simd>() -> S {
     unsafe { std::mem::zeroed() }
 }
 
+/// A function that is compiled for itself.
+struct Apart<F>(F);
+
+impl<R, F: FnOnce() -> R> WithSimd for Apart<F> {
+    type Output = R;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> R {
+        (self.0)()
+    }
+}
+
 impl<S: Simd> Add for Pack<S> {
     type Output = Self;
     #[inline(always)]
@@ -187,6 +198,10 @@ impl<S: Simd> Real for Pack<S> {
     type Mask = Mask<S>;
     const LANES: usize = S::F64_LANES;
 
+    #[inline(always)]
+    fn apart<R>(f: impl FnOnce() -> R) -> R {
+        token::<S>().vectorize(Apart(f))
+    }
     #[inline(always)]
     fn real(v: f64) -> Self {
         Self(token::<S>().splat_f64s(v))

@@ -51,6 +51,11 @@ pub trait Real:
     /// Write to the first `LANES` numbers of a slice.
     fn store(self, to: &mut [f64]);
 
+    /// Run a function out of line, compiled for the instructions of this number type.
+    #[inline(never)]
+    fn apart<R>(f: impl FnOnce() -> R) -> R {
+        f()
+    }
     #[inline(always)]
     fn zero() -> Self {
         Self::real(0.0)

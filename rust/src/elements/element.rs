@@ -79,6 +79,9 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     /// [`crate::kinematics::about_mean`].
     const ABOUT_MEAN: bool = false;
 
+    /// Whether it may have a mean dilatation: not with the constant volume strain of a triangle, nor
+    /// with incompatible modes, which would have no stiffness then.
+    const MEAN_DILATATION: bool = !Self::LINE && Self::MEMORY == 0 && N != 3 && N != 6 && A < 2;
     /// Numbers of history of the element as a whole, beside those of its points, where the law
     /// has a history.
     const MEMORY: usize = 0;

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::about_mean::AboutMean;
-use super::dilatation::Dilatation;
-use super::local_strain::LocalStrain;
+use super::dilatation::{Dilatation, by_modes};
+use super::local_strain::{LocalStrain, det};
 use super::modes::{condense, relax};
 use super::per_point::PerPoint;
 use crate::base::Real;
@@ -34,7 +34,7 @@ pub struct Section<const N: usize> {
     pub table: Vec<[f64; 2]>,
     /// [`Element::parameter`] of the law's moduli.
     pub parameter: f64,
-    /// Whether the trace of the gradient is its mean over the element.
+    /// Whether the volume strain is its mean over the element.
     pub mean_dilatation: bool,
     /// Whether displacements are finite, so that a cell may turn inside out; infinitesimal
     /// ones have no size of their own.
@@ -233,27 +233,24 @@ where
     let parameter = own.parameter::<T, N>(section);
     let stiff = if A > 0 { LEAST_PIVOT * own.law::<T, N>(0, section).moduli()[2][2] } else { 0.0 };
     let prepared = E::prepare(x, parameter);
-    let mut bar = section
-        .mean_dilatation
-        .then(|| Dilatation::<T, N, M>::new::<E, A>(x, q, &prepared, section));
+    let mut bar = Dilatation::<T, N, M>::new::<E, A>(x, q, alpha, &prepared, section);
     let mut about = AboutMean::<T, E::Op<T>, N, M>::new::<E, A>(x, q, &prepared, section);
     if section.finite && (A > 0 || M == 3 || E::MEMORY > 0) && (N == 3 || N == 4) {
         sums.failed = folded(x, q);
     }
-    // Coupling of the internal modes with the mean trace, and with the mean gradient.
-    let mut trace = [o; INTERNAL];
+    // Coupling of the internal modes with the mean gradient.
     let mut to_mean = [[o; 4]; INTERNAL];
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let w = s.weight * own.thickness::<T, N>(p, section);
-        let mut h = gradient(&s, q, alpha);
-        if let Some(bar) = &bar {
-            bar.apply(&mut h);
-        }
-        let strain = match &about {
+        let h = gradient(&s, q, alpha);
+        let mut strain = match &about {
             Some(about) => about.strain(&h),
             None => section.strain.strain(&h),
         };
+        if let Some(bar) = &bar {
+            bar.apply(&mut strain);
+        }
         let strain = history.elastic(p, strain);
         let law = own.law::<T, N>(p, section);
         let mut answer = law.update(strain, &mut history.point(p, members));
@@ -269,8 +266,10 @@ where
         sums.failed = T::or(sums.failed, answer.failed);
         if section.finite {
             let seen = if let Some(about) = &about { &about.h } else { &h };
-            let det = (seen[0] + T::one()) * (seen[3] + T::one()) - seen[1] * seen[2];
-            sums.failed = T::or(sums.failed, det.lt(o));
+            sums.failed = T::or(sums.failed, det(seen).lt(o));
+        }
+        if let Some(bar) = &mut bar {
+            bar.split_stress(&mut answer.stress, w);
         }
         let mut stress = match &about {
             Some(about) => about.pull(&answer.stress),
@@ -286,9 +285,6 @@ where
                 *v = *v * w;
             }
             about.keep(&h, &answer.stress, &stress);
-        }
-        if let Some(bar) = &mut bar {
-            bar.split_stress(&mut stress);
         }
         let gamma = if E::Op::<T>::DRILL { w.scale(parameter) } else { o };
         let mut drill = o;
@@ -306,6 +302,10 @@ where
         }
         if A == 0 && !tangent {
             continue;
+        }
+        if let Some(bar) = &mut bar {
+            let (mixed, square) = Dilatation::<T, N, M>::split_tangent(&mut answer.tangent);
+            bar.add(&s, &section.strain.pull(&h, &mixed).map(|v| v * w), square * w);
         }
         let mut a = match &about {
             Some(about) => about.tangent(&answer.tangent),
@@ -329,14 +329,6 @@ where
             about.add(&s.op, &part);
             by_mean = Some(part.mixed);
         }
-        let mut mixed = [o; 4];
-        if let Some(bar) = &mut bar {
-            let square;
-            (mixed, square) = Dilatation::<T, N, M>::split_tangent(&mut a);
-            if tangent && out.is_some() {
-                bar.add(&s.op, &mixed, square);
-            }
-        }
         if tangent && let Some(out) = out.as_deref_mut() {
             s.op.add_stiffness(&a, gamma, &mut out.stiffness);
         }
@@ -349,10 +341,6 @@ where
                 sums.least[r] += least;
                 for j in 0..2 {
                     sums.force[r] = mode[j].fma(stress[2 * i + j], sums.force[r]);
-                }
-                if section.mean_dilatation {
-                    trace[r] = mode[0].fma(mixed[2 * i], trace[r]);
-                    trace[r] = mode[1].fma(mixed[2 * i + 1], trace[r]);
                 }
                 if let Some(by_mean) = &by_mean {
                     for c in 0..4 {
@@ -397,18 +385,60 @@ where
             about.add_rows(&to_mean[r], &mut sums.coupling[r]);
         }
     }
-    if let Some(bar) = &bar
-        && let Some(out) = out
-    {
+    if let Some(bar) = &bar {
+        finish_dilatation::<E, T, N, M, A>(
+            bar, x, q, alpha, &prepared, section, &mut sums, out, tangent,
+        );
+    }
+    sums
+}
+
+/// Add what the mean dilatation gives once the stress of all points is known.
+#[inline(never)]
+#[allow(clippy::too_many_arguments)]
+fn finish_dilatation<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    bar: &Dilatation<T, N, M>,
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    alpha: &Nodal<T, A, 2>,
+    prepared: &E::Prepared<T>,
+    section: &Section<N>,
+    sums: &mut Internal<T, N, M>,
+    mut out: Option<&mut Local<T, N, M>>,
+    tangent: bool,
+) where
+    E: Element<N, M, A>,
+{
+    if let Some(out) = out.as_deref_mut() {
         bar.finish_force(&mut out.force);
         if tangent {
             bar.finish_stiffness(&mut out.stiffness);
         }
-        for r in 0..2 * A {
-            bar.add_rows(trace[r], &mut sums.coupling[r]);
+    }
+    bar.finish_modes::<A>(sums);
+    if section.strain.is_linear() || (A == 0 && !tangent) {
+        return;
+    }
+    for point in &section.points {
+        let s = E::sample(x, prepared, point);
+        let a = bar.curvature(&gradient(&s, q, alpha), s.weight);
+        if tangent && let Some(out) = out.as_deref_mut() {
+            s.op.add_stiffness(&a, T::zero(), &mut out.stiffness);
+        }
+        for m in 0..A {
+            for i in 0..2 {
+                let r = 2 * m + i;
+                let mut t = [T::zero(); 4];
+                for c in 0..4 {
+                    t[c] = s.modes[m][0].fma(a[2 * i][c], s.modes[m][1] * a[2 * i + 1][c]);
+                }
+                for (c, v) in by_modes(&s.modes, &t).into_iter().enumerate().take(r + 1) {
+                    sums.stiffness[r][c] += v;
+                }
+                s.op.add_force(&t, T::zero(), &mut sums.coupling[r]);
+            }
         }
     }
-    sums
 }
 
 /// Local force and stiffness of an element with local dofs `q`.
@@ -509,22 +539,20 @@ where
     let own = history.per_point;
     let parameter = own.parameter::<f64, N>(section);
     let prepared = E::prepare(x, parameter);
-    let bar = section
-        .mean_dilatation
-        .then(|| Dilatation::<f64, N, M>::new::<E, A>(x, q, &prepared, section));
+    let bar = Dilatation::<f64, N, M>::new::<E, A>(x, q, &alpha, &prepared, section);
     let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
     let mut energy = 0.0;
     for (p, point) in section.points.iter().enumerate() {
         let s = E::sample(x, &prepared, point);
         let w = s.weight * own.thickness::<f64, N>(p, section);
-        let mut h = gradient(&s, q, &alpha);
-        if let Some(bar) = &bar {
-            bar.apply(&mut h);
-        }
-        let strain = match &about {
+        let h = gradient(&s, q, &alpha);
+        let mut strain = match &about {
             Some(about) => about.strain(&h),
             None => section.strain.strain(&h),
         };
+        if let Some(bar) = &bar {
+            bar.apply(&mut strain);
+        }
         let strain = history.elastic(p, strain);
         let mut state = history.point(p, members);
         let law = own.law::<f64, N>(p, section);

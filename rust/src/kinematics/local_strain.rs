@@ -143,6 +143,49 @@ impl LocalStrain {
         }
     }
 
+    /// Volume strain (the trace in the plane) with its derivative by the gradient; of the
+    /// logarithmic strain `ln det F`.
+    #[inline(always)]
+    pub fn volume<T: Real>(self, h: &[T; 4]) -> (T, [T; 4]) {
+        let (o, one) = (T::zero(), T::one());
+        let e = self.strain(h);
+        let slope = match self {
+            Self::Linear | Self::Stressed(_) => [one, o, o, one],
+            Self::GreenLagrange => [h[0] + one, h[1], h[2], h[3] + one],
+            Self::Logarithmic => {
+                let r = det(h).recip();
+                [(h[3] + one) * r, -h[2] * r, -h[1] * r, (h[0] + one) * r]
+            }
+        };
+        (e[0] + e[1], slope)
+    }
+
+    /// Second derivative of the volume strain.
+    #[inline(always)]
+    pub fn volume_curvature<T: Real>(self, h: &[T; 4]) -> Mat<T, 4> {
+        let rest = [T::zero(); 4];
+        let h = if self.is_stressed() { &rest } else { h };
+        let mut a = [[T::zero(); 4]; 4];
+        match self.finite() {
+            Self::Linear | Self::Stressed(_) => {}
+            Self::GreenLagrange => {
+                for i in 0..4 {
+                    a[i][i] = T::one();
+                }
+            }
+            Self::Logarithmic => {
+                let (slope, r) = (Self::Logarithmic.volume(h).1, det(h).recip());
+                for i in 0..4 {
+                    for j in 0..4 {
+                        a[i][j] = -(slope[i] * slope[j]);
+                    }
+                    a[i][3 - i] += if i % 3 == 0 { r } else { -r };
+                }
+            }
+        }
+        a
+    }
+
     /// Stretch of the thickness that belongs to its strain.
     pub fn stretch(self, strain_zz: f64) -> f64 {
         match self {
@@ -161,7 +204,7 @@ impl LocalStrain {
             Self::Logarithmic => (hencky::second_piola(h, &s), zz),
         };
         let f = [[1.0 + h[0], h[1]], [h[2], 1.0 + h[3]]];
-        let det = (f[0][0] * f[1][1] - f[0][1] * f[1][0]) * stretch;
+        let det = det(h) * stretch;
         let m = [[second[0], second[2]], [second[2], second[1]]];
         let mut c = [[0.0; 2]; 2];
         for i in 0..2 {
@@ -175,4 +218,10 @@ impl LocalStrain {
         }
         [c[0][0], c[1][1], zz / det, c[0][1]]
     }
+}
+
+/// Determinant of the deformation gradient.
+#[inline(always)]
+pub fn det<T: Real>(h: &[T; 4]) -> T {
+    (h[0] + T::one()) * (h[3] + T::one()) - h[1] * h[2]
 }

@@ -46,6 +46,9 @@ impl Material for Elastic {
             failed: T::none(),
         }
     }
+    fn bulk(&self) -> Option<f64> {
+        Some(self.young / (3.0 * (1.0 - 2.0 * self.nu)))
+    }
     fn out_of_plane(&self, strain: [f64; 3], stress: [f64; 3], _: &[f64]) -> (f64, f64) {
         match self.plane {
             Plane::Stress => (-self.nu / (1.0 - self.nu) * (strain[0] + strain[1]), 0.0),

@@ -2,7 +2,7 @@
 //! the branch is uniform over the block.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::material::{Material, Plane, PointState, Response, TensorOutput};
+use super::material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -45,6 +45,14 @@ macro_rules! law {
             #[inline(always)]
             pub fn update<T: Real>(&self, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
                 match self { $(Law::$name(m) => m.update(e, state)),+ }
+            }
+            #[inline(always)]
+            pub fn update_solid<T: Real>(
+                &self,
+                e: [T; 4],
+                state: &mut PointState<'_>,
+            ) -> SolidResponse<T> {
+                match self { $(Law::$name(m) => m.update_solid(e, state)),+ }
             }
             pub fn out_of_plane(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
                 match self { $(Law::$name(m) => m.out_of_plane(e, s, state)),+ }

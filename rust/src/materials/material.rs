@@ -40,6 +40,16 @@ pub struct Response<T: Real> {
     pub failed: T::Mask,
 }
 
+/// Answer of a material with a strain through the thickness; rows xx, yy, xy, zz.
+#[derive(Clone, Copy)]
+pub struct SolidResponse<T: Real> {
+    pub stress: [T; 4],
+    /// Algorithmic tangent, symmetric.
+    pub tangent: Mat<T, 4>,
+    /// Lanes in which the update did not converge.
+    pub failed: T::Mask,
+}
+
 /// A symmetric tensor of the state, for output.
 #[derive(Clone, Copy, Debug)]
 pub struct TensorOutput {
@@ -68,6 +78,46 @@ pub trait Material: Sized {
     /// Elastic moduli in the plane.
     fn moduli(&self) -> Mat<f64, 3>;
     fn update<T: Real>(&self, strain: [T; 3], state: &mut PointState<'_>) -> Response<T>;
+    /// Bulk modulus of an isotropic law whose mean stress is that times the volume strain, whatever
+    /// its deviator.
+    fn bulk(&self) -> Option<f64> {
+        None
+    }
+    /// Answer of a law for plane strain that has a strain through the thickness as well: a
+    /// temperature there, or a hoop. Laws with a bulk modulus have it from [`Material::update`]:
+    /// the same deviator with no strain through the thickness, and the rest of the mean stress.
+    /// Others give it, or fail.
+    #[inline(always)]
+    fn update_solid<T: Real>(
+        &self,
+        strain: [T; 4],
+        state: &mut PointState<'_>,
+    ) -> SolidResponse<T> {
+        let Some(bulk) = self.bulk() else {
+            let o = T::zero();
+            let failed = o.lt(T::one());
+            return SolidResponse { stress: [o; 4], tangent: [[o; 4]; 4], failed };
+        };
+        let [x, y, xy, z] = strain;
+        let plane = self.update([x - z, y - z, xy], state);
+        let rest = z.scale(3.0 * bulk);
+        let (sx, sy) = (plane.stress[0] + rest, plane.stress[1] + rest);
+        let mean = (x + y + z).scale(bulk);
+        let mut tangent = [[T::zero(); 4]; 4];
+        for i in 0..3 {
+            let normal = T::real(if i < 2 { bulk } else { 0.0 });
+            for j in 0..3 {
+                tangent[i][j] = plane.tangent[i][j];
+            }
+            // Of the stress through the thickness, which is three times the mean less the others.
+            let v = normal.scale(3.0) - plane.tangent[0][i] - plane.tangent[1][i];
+            (tangent[3][i], tangent[i][3]) = (v, v);
+        }
+        let d = &plane.tangent;
+        tangent[3][3] = d[0][0] + d[1][1] + d[0][1].scale(2.0) - T::real(3.0 * bulk);
+        let stress = [sx, sy, plane.stress[2], mean.scale(3.0) - sx - sy];
+        SolidResponse { stress, tangent, failed: plane.failed }
+    }
     /// Strain and stress through the thickness (zz) of a state that [`Material::update`] wrote.
     fn out_of_plane(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> (f64, f64);
     /// Recoverable energy density.

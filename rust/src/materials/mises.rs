@@ -368,6 +368,9 @@ impl Material for Mises {
         let stress = [(sum + y[1]).scale(0.5), (sum - y[1]).scale(0.5), y[2]];
         Response { stress, tangent, failed }
     }
+    fn bulk(&self) -> Option<f64> {
+        Some(self.young / (3.0 * (1.0 - 2.0 * self.nu)))
+    }
     fn out_of_plane(&self, _: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
         match self.plane {
             Plane::Stress => (-self.nu / self.young * (s[0] + s[1]) - state[0], 0.0),

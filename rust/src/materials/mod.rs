@@ -1,18 +1,23 @@
 //! Material laws: one file each, values in and values out.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod arruda_boyce;
 pub mod by_temperature;
 pub mod elastic;
 pub mod hardening;
+pub mod hyperelastic;
+pub mod hyperfoam;
 pub mod law;
 pub mod material;
 pub mod mises;
+pub mod ogden;
 pub mod orthotropic;
+pub mod polynomial;
 pub mod ramberg_osgood;
 pub mod tabulated;
 
 pub use law::Law;
-pub use material::{Material, Plane, PointState, Response, TensorOutput};
+pub use material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
 
 /// The one list of materials: call `$then![file::Type, ...]`.
 macro_rules! laws {
@@ -22,6 +27,10 @@ macro_rules! laws {
             orthotropic::Orthotropic,
             mises::Mises,
             ramberg_osgood::RambergOsgood,
+            polynomial::Polynomial,
+            ogden::Ogden,
+            arruda_boyce::ArrudaBoyce,
+            hyperfoam::Hyperfoam,
             tabulated::Tabulated,
         ];
     };

@@ -3,7 +3,7 @@
 //! Materials, section 2.3). Axis 3 is normal to the plane.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::material::{Material, Plane, PointState, Response, broadcast, hooke};
+use super::material::{Material, Plane, PointState, Response, SolidResponse, broadcast, hooke};
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -84,6 +84,30 @@ impl Material for Orthotropic {
             tangent: broadcast(&self.moduli),
             failed: T::none(),
         }
+    }
+    #[inline(always)]
+    fn update_solid<T: Real>(&self, e: [T; 4], _: &mut PointState<'_>) -> SolidResponse<T> {
+        // A strain through the thickness acts as the strain that it gives an unloaded plane.
+        let mut rows = [[0.0; 4]; 3];
+        for i in 0..3 {
+            rows[i][i] = 1.0;
+            rows[i][3] = self.through[i];
+        }
+        let mut tangent = [[T::zero(); 4]; 4];
+        let mut stress = [T::zero(); 4];
+        for i in 0..4 {
+            for j in 0..4 {
+                let mut v = if i == 3 && j == 3 { 1.0 / self.normal } else { 0.0 };
+                for r in 0..3 {
+                    for q in 0..3 {
+                        v += rows[r][i] * self.moduli[r][q] * rows[q][j];
+                    }
+                }
+                tangent[i][j] = T::real(v);
+                stress[i] = e[j].fma(tangent[i][j], stress[i]);
+            }
+        }
+        SolidResponse { stress, tangent, failed: T::none() }
     }
     fn out_of_plane(&self, _: [f64; 3], s: [f64; 3], _: &[f64]) -> (f64, f64) {
         let t = &self.through;

@@ -190,6 +190,9 @@ impl Material for RambergOsgood {
         let stress = [(sum + s[1]).scale(0.5), (sum - s[1]).scale(0.5), s[2]];
         Response { stress, tangent: in_plane(&b), failed }
     }
+    fn bulk(&self) -> Option<f64> {
+        Some(self.bulk)
+    }
     fn out_of_plane(&self, e: [f64; 3], s: [f64; 3], _: &[f64]) -> (f64, f64) {
         let (mean, square) = self.invariants(e, s);
         match self.plane {

@@ -82,9 +82,7 @@ pub fn build(
         E: Element<N, M, A>,
     {
         let law = Law::new(&input.law, &input.parameters, input.plane)?;
-        if input.options.mean_dilatation
-            && (E::rule().len() < 4 || E::NAME == "Q4I" || input.plane == Plane::Stress)
-        {
+        if input.options.mean_dilatation && (!E::MEAN_DILATATION || input.plane == Plane::Stress) {
             return Err(format!(
                 "mean dilatation is for quadrilaterals without incompatible modes in plane strain, \
                  not for {} in plane {}",

@@ -217,9 +217,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         }
         let parameter = own.parameter::<f64, N>(section);
         let prepared = E::prepare(&x, parameter);
-        let bar = section
-            .mean_dilatation
-            .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
+        let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
         for (p, point) in section.points.iter().enumerate() {
@@ -227,10 +225,11 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 (own.law::<f64, N>(p, section), own.thickness::<f64, N>(p, section));
             let s = E::sample(&x, &prepared, point);
             let mut h = gradient(&s, &frame.q, &modes);
-            if let Some(bar) = &bar {
-                bar.apply(&mut h);
-            }
             let mut total = section.strain.strain(&h);
+            if let Some(bar) = &bar {
+                bar.apply(&mut total);
+                h = bar.gradient(&h);
+            }
             if let Some(about) = &about {
                 total = about.strain(&h);
                 h = about.h;
@@ -344,22 +343,20 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
             modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];
         }
         let prepared = E::prepare(&x, chunk.per_point(e).parameter::<f64, N>(section));
-        let bar = section
-            .mean_dilatation
-            .then(|| Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &prepared, section));
+        let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
         for (p, point) in section.points.iter().enumerate() {
             let s = E::sample(&x, &prepared, point);
-            let mut h = gradient(&s, &frame.q, &modes);
-            if let Some(bar) = &bar {
-                bar.apply(&mut h);
-            }
+            let h = gradient(&s, &frame.q, &modes);
             let at = 3 * (chunk.elements[e] as usize * n_points + p);
-            let strain = match &about {
+            let mut strain = match &about {
                 Some(about) => about.strain(&h),
                 None => section.strain.strain(&h),
             };
+            if let Some(bar) = &bar {
+                bar.apply(&mut strain);
+            }
             out[at..at + 3].copy_from_slice(&strain);
         }
     }

@@ -76,6 +76,49 @@ fn paths(name: &str, law: &Law, what: &str) {
     }
 }
 
+/// With a strain through the thickness: the tangent is the derivative, and without that strain the
+/// answer is the one of plane strain. The law from outside has none.
+#[test]
+fn a_strain_through_the_thickness_has_its_tangent() {
+    let mut random = Random::new(10);
+    for name in Law::NAMES.iter().filter(|name| **name != "given") {
+        for numbers in &Law::examples(name)[1..] {
+            let law = Law::new(name, numbers, Plane::Strain).expect("valid constants");
+            let moduli = law.moduli();
+            let top = moduli[0][0].max(moduli[1][1]);
+            let old = rest(name, &law);
+            for flat in [true, false] {
+                let e: [f64; 4] =
+                    std::array::from_fn(
+                        |i| {
+                            if flat && i == 3 { 0.0 } else { 0.02 * random.signed() }
+                        },
+                    );
+                let mut new = old.clone();
+                let mut state = PointState { old: &old, new: &mut new, stride: 1 };
+                let found = law.update_solid(e, &mut state);
+                assert!(!found.failed, "{name}");
+                let dual = std::array::from_fn(|i| Dual::<4>::variable(e[i], i));
+                let exact = law.update_solid(dual, &mut state);
+                for i in 0..4 {
+                    for j in 0..4 {
+                        let error = (found.tangent[i][j] - exact.stress[i].d[j]).abs() / top;
+                        assert!(error <= EXACT, "{name} {numbers:?}: {i} {j} off by {error:e}");
+                    }
+                }
+                if flat {
+                    let plane = [e[0], e[1], e[2]];
+                    let (s, _, state) = stress(&law, plane, &old);
+                    let zz = law.out_of_plane(plane, s, &state).1;
+                    for (a, b) in found.stress.into_iter().zip([s[0], s[1], s[2], zz]) {
+                        assert!((a - b).abs() <= 1e-13 * top, "{name}: {a} {b}");
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Compliance of an isotropic and an orthotropic solid in its own axes, by rows 11, 22, 33.
 fn compliance(name: &str) -> ([[f64; 3]; 3], f64, f64) {
     match *Law::examples(name)[1] {

@@ -113,17 +113,25 @@ def solve(
     return run.run()
 
 
-def keep_nlgeom(steps: Sequence[Step]) -> tuple[list[Step], list[str]]:
+def keep_nlgeom(steps: Sequence[Step], finite: bool = False) -> tuple[list[Step], list[str]]:
     """Steps that keep the large rotations of earlier ones, with notes.
 
     The linear theory has another displacement under the same loads: a linear step after a
-    nonlinear one would jump.
+    nonlinear one would jump. With laws that are for finite strain (`finite`) all steps have large
+    rotations, as in CalculiX.
     """
     kept: list[Step] = []
     notes: list[str] = []
     nonlinear = 0
     for number, step in enumerate(steps, start=1):
         if step.procedure in ("static", "dynamic"):
+            if finite and not (step.nlgeom or nonlinear):
+                step = copy(step)
+                step.nlgeom = True
+                notes.append(
+                    f"step {number} is computed with large rotations (nlgeom): a hyperelastic law "
+                    "is for finite strain"
+                )
             if step.nlgeom and not nonlinear:
                 nonlinear = number
             elif nonlinear and not step.nlgeom:
@@ -167,7 +175,9 @@ class Analysis:
         self.model, self.fields = model, fields
         self.observers = Observers(observers)
         self.results = Results(model, keep=keep)
-        self.steps, notes = keep_nlgeom(listed_steps(steps))
+        self.steps, notes = keep_nlgeom(
+            listed_steps(steps), any(s.material.local_strain for s in model.sections)
+        )
         self.results.steps = self.steps
         for note in notes:
             self.results.notes.append(note)

@@ -177,6 +177,32 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
     _reading(parser)
 
 
+def _seek(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("deck", help="input deck (.inp)")
+    parser.add_argument(
+        "-p",
+        dest="range",
+        metavar="NAME=FIRST:LAST",
+        required=True,
+        type=_values,
+        help="the parameter and its range, such as t=0.3:0.9",
+    )
+    parser.add_argument(
+        "-m", dest="measure", metavar="MEASURE", required=True, help="such as max(RF2@tip)"
+    )
+    parser.add_argument("--target", type=float, required=True, help="wanted value of the measure")
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=1e-4,
+        help="largest error relative to the target (default: 1e-4)",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="store of the runs; else DECK_seek.jsonl"
+    )
+    _reading(parser)
+
+
 def _demo(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
     parser.add_argument("--list", action="store_true", help="list the examples")
@@ -444,6 +470,7 @@ COMMANDS = {
     "run": ("Solve the steps of a deck and write the results.", _run),
     "resume": ("Resume a stopped run from its newest checkpoint.", _resume),
     "sweep": ("Run a deck for many values of its *PARAMETER names.", _sweep),
+    "seek": ("Find the value of a parameter for which a measure has a given value.", _seek),
     "demo": ("Run a built-in example; needs no file and no network.", _demo),
     "check": ("Check a deck or mesh without solving it.", _check),
     "plot": ("Draw results (.vtkhdf), or a model with --model.", _plot),

@@ -13,7 +13,7 @@ from corota.arrays import distinct
 from corota.display import CELLS_DRAWN, Brief, picture, table
 from corota.errors import InputError
 from corota.lazy import lazy
-from corota.mesh import selection
+from corota.mesh import geometric, selection
 from corota.names import choose, did_you_mean, listed, match
 
 if TYPE_CHECKING:
@@ -249,6 +249,9 @@ class Mesh(Brief):
         kinds = kinds or ("node", "edge", "cell")
         if any(name in getattr(self, f"{kind}_sets") for kind in kinds):
             return name
+        if isinstance(name, str) and geometric.is_selection(name) and name not in self.node_sets:
+            self._add_selection(name)
+            return self.set_name(name, *kinds)
         names = dict.fromkeys(n for kind in kinds for n in getattr(self, f"{kind}_sets"))
         found = match(str(name), names)
         if found is not None:
@@ -260,6 +263,23 @@ class Mesh(Brief):
             hint = f"; there is {'an' if kind == 'edge' else 'a'} {kind} set of that name"
         what = f"{kinds[0]} set" if len(kinds) == 1 else "set"
         raise InputError(f"no {what} named {name!r}; the mesh has: {listed(names)}{hint}")
+
+    def _add_selection(self, name: str) -> None:
+        """Add the sets of a selection by geometry, under its name."""
+        chosen = geometric.selected(name, self.points)
+        self.node_sets[name] = np.flatnonzero(chosen)
+        if geometric.is_point(name):
+            return
+        boundary = self.boundary_edges()
+        # A middle node of a straight-sided cell lies off a circle: the ends of an edge decide.
+        within = [bool(chosen[nodes[:2]].all()) for nodes in self.edge_nodes(boundary)]
+        if any(within):
+            self.edge_sets[name] = boundary[within]
+        if geometric.is_area(name):
+            full = [chosen[block.nodes].all(axis=1) for block in self.cells]
+            cells = np.flatnonzero(np.concatenate(full)) if full else np.zeros(0, np.int64)
+            if len(cells):
+                self.cell_sets[name] = cells
 
     def nodes_of(self, name: str) -> Ints:
         """Node indices of a node, edge or cell set (first found in that order), in any case."""

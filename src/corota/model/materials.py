@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -143,6 +143,8 @@ class Material(Brief):
     remembers = True
     #: Whether it has material axes.
     oriented = False
+    #: The only measure of the local strain that it is for; empty for any.
+    local_strain: ClassVar[LocalStrain | Literal[""]] = ""
     #: Whether trusses and beams support it.
     for_lines = False
     #: Whether its constants follow the temperature.
@@ -152,9 +154,14 @@ class Material(Brief):
     elastic_constants = 0
 
     @property
+    def incompressible(self) -> bool:
+        """Whether the volume is constant; possible in plane stress only."""
+        return False
+
+    @property
     def default_strain(self) -> LocalStrain:
-        """Local strain of sections that name none: ``linear`` only for elastic laws."""
-        return "logarithmic" if self.flows else "linear"
+        """Local strain of sections that name none: the law's own, else by whether it flows."""
+        return self.local_strain or ("logarithmic" if self.flows else "linear")
 
     def compliance(self) -> NDArray[np.float64]:
         """Elastic compliance along the material axes, rows 11, 22, 33, 12, shape (4, 4).

@@ -199,8 +199,9 @@ class Model(Loading, LineSections, InitialFields):
             it follows the shape functions.
         plane : {"stress", "strain"}, optional
         local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
-            By default ``logarithmic`` for materials that flow and ``linear`` for elastic ones;
-            see :class:`corota.model.sections.Section`.
+            By default that which the material is for: ``logarithmic`` for laws that flow and for
+            hyperelastic ones, ``linear`` for elastic ones; see
+            :class:`corota.model.sections.Section`.
         orientation : float, optional
             Angle of the material axes [rad].
         mean_dilatation : bool, optional

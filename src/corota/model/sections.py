@@ -88,8 +88,31 @@ class Section(Brief):
             )
         plane = choose(self.plane, ("stress", "strain"), "plane state", self.where)
         self.plane = cast("Literal['stress', 'strain']", plane)
-        chosen = self.local_strain or self.material.default_strain
-        self.local_strain = cast("LocalStrain", local_strain(chosen, self.where))
+        needed = self.material.local_strain
+        measure = local_strain(self.local_strain or self.material.default_strain, self.where)
+        self.local_strain = cast("LocalStrain", measure)
+        if needed and measure != needed:
+            raise InputError(
+                f"{type(self.material).__name__} is for local_strain={needed!r}, not {measure!r}: "
+                "omit it",
+                self.where,
+            )
+        if self.material.local_strain and elements.find(self.element).weighted:
+            raise InputError(
+                f"{self.element} is for local strains of a few percent: in a strip that is "
+                "stretched to twice its length its strain is not uniform. For hyperelastic laws "
+                "use T6",
+                self.where,
+            )
+        if self.plane == "strain" and self.material.incompressible:
+            shear = float(1.0 / self.material.compliance()[3, 3])
+            raise InputError(
+                "constant volume (D = 0) is for plane stress; in plane strain give the "
+                f"compressibility: D1 = 2 / K, e.g. {0.002 / shear:.6g} for a bulk modulus K of "
+                "1000 times the shear modulus, and an element that does not lock (Q4 with "
+                "mean_dilatation, Q4S, Q8R)",
+                self.where,
+            )
         if self.local_strain == "green_lagrange" and self.material.flows:
             raise InputError(
                 "the Green-Lagrange local strain is for elastic materials: with plastic flow it "

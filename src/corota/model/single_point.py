@@ -1,4 +1,4 @@
-"""Plastic laws of the core at a single point: strain paths and uniaxial curves."""
+"""Laws of the core at a single point: strain paths and uniaxial curves."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -16,17 +16,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-class LawOfTheCore(Material, ABC):
-    """A plastic law that can be evaluated at a single point."""
-
-    E: float
-
-    flows = True
-
-    @property
-    @abstractmethod
-    def first_yield(self) -> float:
-        """Uniaxial stress where plastic strain begins or becomes noticeable [force/length^2]."""
+class SinglePoint(Material):
+    """A law of the core that can be evaluated at a single point."""
 
     def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
         """Response of a single point to a strain path, one implicit step per row.
@@ -41,7 +32,7 @@ class LawOfTheCore(Material, ABC):
         -------
         dict of ndarray
             ``stress`` (n, 3), ``tangent`` (n, 3, 3), ``zz`` (n, 2; strain and stress through
-            the thickness), ``PEEQ``, ``YRATIO``, ``PWORK``, ``PDISS`` (n,).
+            the thickness), ``energy`` (n,), and the outputs of the law by name (n,).
         """
         import corota._core as _core
 
@@ -53,6 +44,19 @@ class LawOfTheCore(Material, ABC):
         shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
         shapes["state"] = (n, -1)
         return {key: values.reshape(shapes.get(key, (n,))) for key, values in raw.items()}
+
+
+class LawOfTheCore(SinglePoint, ABC):
+    """A plastic law."""
+
+    E: float
+
+    flows = True
+
+    @property
+    @abstractmethod
+    def first_yield(self) -> float:
+        """Uniaxial stress where plastic strain begins or becomes noticeable [force/length^2]."""
 
     def uniaxial(self, strain: ArrayLike) -> Floats:
         """Uniaxial stress along a path of axial strains.
@@ -112,4 +116,4 @@ class LawOfTheCore(Material, ABC):
         return ax
 
 
-__all__ = ["LawOfTheCore"]
+__all__ = ["LawOfTheCore", "SinglePoint"]

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from corota.model.paths import CriticalPoint, Modes
     from corota.model.steps import Step
     from corota.results.averaging import Averaging
+    from corota.results.body_motion import BodyMotion
     from corota.results.history import History
     from corota.results.members import Members
     from corota.results.probe import Line, Place
@@ -297,6 +298,43 @@ class Results(Brief):
         """
         written: Path = write_report(self, path, **options)
         return written
+
+    def body_motion(self, nodes: str | ArrayLike) -> BodyMotion:
+        """Motion of a stage: its rotation, the displacement of its points, centers of rotation.
+
+        Parameters
+        ----------
+        nodes : str or array_like of int
+            Set, selection, or node indices that move as a rigid body.
+
+        Returns
+        -------
+        BodyMotion
+
+        Raises
+        ------
+        InputError
+            If there are no such nodes, or they lie at one place and do not rotate.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+        >>> model.fix("left")
+        >>> model.force("right", y=0.01)
+        >>> motion = ct.solve(model, ct.Static(), threads=1).body_motion("right")
+        >>> bool(motion.rotation[-1] > 0.0)
+        True
+        """
+        import numpy as np
+
+        from corota.results.body_motion import fit_rigid_motion
+
+        rows = self.mesh.node_indices(nodes)
+        U = np.array([frame.U[rows] for frame in self.frames])
+        UR = np.array([frame.UR[rows] for frame in self.frames])
+        return fit_rigid_motion(self.mesh.points[rows], U, UR)
 
     def at(
         self,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.mesh.geometric import is_selection
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,9 +48,10 @@ class Measure:
     ----------
     text : str
         ``REDUCER(VARIABLE@PLACE)`` with ``last``, ``first``, ``max``, ``min``, ``absmax`` or
-        ``mean``; a variable as in :meth:`Results.history`; a place is a set or a node number and
-        may be omitted. Names that are not identifiers are quoted. A history without a
-        reducer is its last value. ``+ - * / **`` and ``abs`` combine measures.
+        ``mean``; a variable as in :meth:`Results.history`; a place is a set, a selection such as
+        ``near(10, 0.5)``, or a node number, and may be omitted. Names that are not identifiers
+        are quoted. A history without a reducer is its last value. ``+ - * / **`` and ``abs``
+        combine measures.
 
     Raises
     ------
@@ -147,7 +149,8 @@ def total_moment(results: Results, at: Any) -> Floats:
 def _history(node: ast.AST) -> tuple[str, str] | None:
     """Variable and place of ``NAME`` or ``NAME@PLACE``; nothing for other expressions."""
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
-        name, place = _word(node.left), _word(node.right) or _number(node.right)
+        name = _word(node.left)
+        place = _word(node.right) or _number(node.right) or _selection(node.right)
         return (name, place) if name and place else None
     name = _word(node)
     return (name, "") if name else None
@@ -158,6 +161,12 @@ def _word(node: ast.AST) -> str:
         return node.id
     text = node.value if isinstance(node, ast.Constant) else ""
     return text if isinstance(text, str) else ""
+
+
+def _selection(node: ast.AST) -> str:
+    """Name of a selection by geometry, such as ``near(10, 0.5)``."""
+    text = ast.unparse(node) if isinstance(node, ast.Call) else ""
+    return text if is_selection(text) else ""
 
 
 def _number(node: ast.AST) -> str:

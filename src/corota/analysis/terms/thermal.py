@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.parallel.communicator import ALONE
-from corota.errors import ModelError
+from corota.errors import InputError, ModelError
 from corota.model import elements
 from corota.model.material_table import MaterialTable
 from corota.model.materials import Expansion
@@ -381,6 +381,12 @@ def _block(
         ]
     )
     material, constant, table = section.material, None, None
+    if material.local_strain and (block.section.plane == "strain" or stress is not None):
+        raise InputError(
+            f"{type(material).__name__} has no initial stress, and no thermal strain in plane "
+            "strain: use Elastic there, or plane stress",
+            section.where,
+        )
     if _follows(material):
         table = material
     else:

@@ -145,6 +145,9 @@ class MaterialDraft:
     damping: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDraft | None = None
     expansion: float | Expansion = 0.0
+    #: Kind, number of terms and Poisson's ratio of a hyperelastic law that is fitted to `tests`.
+    fit: tuple[str, int, float] | None = None
+    tests: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
 
     @property
     def follows_temperature(self) -> bool:

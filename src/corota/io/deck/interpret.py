@@ -13,7 +13,6 @@ from corota.io.deck.refused import (
     PLASTIC,
     PROCEDURE,
     REFUSED_PARAMETERS,
-    RUBBER,
     UNSUPPORTED,
 )
 
@@ -88,7 +87,7 @@ def _unknown(deck: Deck, card: Card) -> None:
 
 def _answered(deck: Deck, card: Card, why: str) -> None:
     """Mark the data of a refused card: it is not reported as missing again."""
-    if deck.material is not None and why in (PLASTIC, RUBBER) and not deck.material.law:
+    if deck.material is not None and why == PLASTIC and not deck.material.law:
         deck.material.law = "REFUSED"
     if deck.step is not None and why in (PROCEDURE, HEAT) and deck.step.procedure is None:
         deck.step.procedure = card

@@ -101,6 +101,19 @@ _TABLE: dict[str, Keyword] = {
         for name, law in LAWS.items()
         if key(law.card) == name
     },
+    "HYPERELASTIC": Keyword(
+        card("hyperelastic.hyperelastic"),
+        "NEOHOOKE MOONEY-RIVLIN YEOH ARRUDA-BOYCE POLYNOMIAL REDUCEDPOLYNOMIAL OGDEN N "
+        "TESTDATAINPUT POISSON",
+        place="model",
+    ),
+    "HYPERFOAM": Keyword(card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON", place="model"),
+    **{
+        f"{test.upper()} TEST DATA": Keyword(
+            partial(card("hyperelastic.test_data"), test=test), place="model"
+        )
+        for test in ("uniaxial", "biaxial", "planar")
+    },
     "DENSITY": Keyword(card("material.density"), place="model"),
     "EXPANSION": Keyword(card("thermal.expansion"), "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(

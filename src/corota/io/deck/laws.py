@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.errors import InputError
+from corota.model import hyperelastic as rubber
 from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic, Orthotropic
 from corota.model.plasticity import Mises
@@ -76,6 +78,93 @@ def _stiffness(*constants: float, **common: Any) -> Material:
     return Orthotropic(*constants, **common)
 
 
+#: Coefficients of the polynomial of each degree.
+_POLYNOMIAL = {n: [f"C{i}{j}" for i, j in rubber.POWERS if i + j <= n] for n in (1, 2, 3)}
+_REDUCED = {n: [name for name in names if name.endswith("0")] for n, names in _POLYNOMIAL.items()}
+
+
+def _polynomial(kind: Any, names: list[str], *constants: float, **common: Any) -> Material:
+    names = [*names, *(f"D{i}" for i in range(1, len(constants) - len(names) + 1))]
+    return kind(**dict(zip(names, constants, strict=True)), **common)  # type: ignore[no-any-return]
+
+
+def _stretches(kind: Any, *constants: float, **common: Any) -> Material:
+    """From mu and alpha of all terms, then the third constants."""
+    count = len(constants) // 3
+    pairs = constants[: 2 * count]
+    return kind(pairs[::2], pairs[1::2], constants[2 * count :], **common)  # type: ignore[no-any-return]
+
+
+def _by_column(material: Any) -> list[float]:
+    """The reverse of :func:`_stretches`."""
+    rows = np.reshape(material.parameters(), (-1, 3))
+    return [*rows[:, :2].ravel(), *rows[:, 2]]
+
+
+def _invariants(
+    card: str, kind: type[Material], names: list[str], volumes: int, writes: bool = True
+) -> DeckLaw:
+    """A law of the invariants, with some compressibilities."""
+    every = (*names, *(f"D{i}" for i in range(1, volumes + 1)))
+    return DeckLaw(
+        f"HYPERELASTIC, {card}",
+        every,
+        partial(_polynomial, kind, names),
+        optional=volumes,
+        writes=(kind,) if writes else (),
+        values=lambda m: [getattr(m, name) for name in every],
+    )
+
+
+def _terms(card: str, kind: type[Material], third: str, count: int) -> DeckLaw:
+    """A law of the stretches with `count` terms."""
+    numbers = range(1, count + 1)
+    return DeckLaw(
+        f"{card}, N={count}",
+        (
+            *(f"{name}{i}" for i in numbers for name in ("mu", "alpha")),
+            *(f"{third}{i}" for i in numbers),
+        ),
+        partial(_stretches, kind),
+        optional=count,
+        writes=(kind,),
+        values=_by_column,
+    )
+
+
+#: Hyperelastic laws, by name and number of terms.
+_HYPERELASTIC = {
+    "NEOHOOKE": _invariants("NEO HOOKE", rubber.NeoHooke, ["C10"], 1),
+    "MOONEY-RIVLIN": _invariants("MOONEY-RIVLIN", rubber.MooneyRivlin, ["C10", "C01"], 1),
+    "YEOH": _invariants("YEOH", rubber.Yeoh, _REDUCED[3], 3),
+    **{
+        f"POLYNOMIAL{n}": _invariants(f"POLYNOMIAL, N={n}", rubber.Polynomial, names, n, n == 3)
+        for n, names in _POLYNOMIAL.items()
+    },
+    **{
+        f"REDUCEDPOLYNOMIAL{n}": _invariants(
+            f"REDUCED POLYNOMIAL, N={n}", rubber.Polynomial, names, n, False
+        )
+        for n, names in _REDUCED.items()
+    },
+    **{
+        f"OGDEN{n}": _terms("HYPERELASTIC, OGDEN", rubber.Ogden, "D", n)
+        for n in range(1, rubber.MAX_TERMS + 1)
+    },
+    "ARRUDA-BOYCE": DeckLaw(
+        "HYPERELASTIC, ARRUDA-BOYCE",
+        ("mu", "the limit stretch", "D"),
+        rubber.ArrudaBoyce,
+        optional=1,
+        writes=(rubber.ArrudaBoyce,),
+        values=rubber.ArrudaBoyce.parameters,
+    ),
+    **{
+        f"HYPERFOAM{n}": _terms("HYPERFOAM", rubber.Hyperfoam, "nu", n)
+        for n in range(1, rubber.MAX_TERMS + 1)
+    },
+}
+
 #: Laws by the keyword of their card without blanks, which `KEYWORDS` takes from here; those of
 #: ``*ELASTIC`` by its ``TYPE=``.
 LAWS: dict[str, DeckLaw] = {
@@ -114,6 +203,7 @@ LAWS: dict[str, DeckLaw] = {
         writes=(RambergOsgood,),
         values=RambergOsgood.parameters,
     ),
+    **_HYPERELASTIC,
 }
 
 
@@ -122,7 +212,17 @@ def law_cards(material: Material, number: Callable[[float], str]) -> str | None:
     table: Sequence[tuple[float | None, Material]] = [(None, material)]
     if isinstance(material, MaterialTable):
         table = material.table
-    law = next((law for law in LAWS.values() if type(table[0][1]) in law.writes), None)
+    first = table[0][1]
+    law = next(
+        (
+            law
+            for law in LAWS.values()
+            if type(first) in law.writes
+            and law.values is not None
+            and len(law.values(first)) == len(law.constants)
+        ),
+        None,
+    )
     if law is None:
         return None
     assert law.values is not None

@@ -61,12 +61,8 @@ _CHANGE = "contact pairs and their interactions apply to all steps"
 _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTING"
 HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _OWN_CARDS = ", ".join(f"*{law.card}" for name, law in LAWS.items() if key(law.card) == name)
-PLASTIC = f"the material laws are *ELASTIC, *PLASTIC, {_OWN_CARDS}; use these"
-RUBBER = (
-    "use *ELASTIC with E = 3 G, G the initial shear modulus (Neo-Hooke: G = 2 C10, Mooney-Rivlin: "
-    "G = 2 (C10 + C01)), a Poisson's ratio of 0.45 to 0.499, PLANE=STRAIN and LOCAL "
-    "STRAIN=LOGARITHMIC in *SOLID SECTION, and elements Q4S; that is good up to moderate strains. "
-    "In Python a law of your own is a UserMaterial"
+PLASTIC = (
+    f"the material laws are *ELASTIC, *PLASTIC, *HYPERELASTIC, *HYPERFOAM, {_OWN_CARDS}; use these"
 )
 PROCEDURE = "this procedure is not part of this version"
 _LINE = "only planar solids, trusses, beams and springs are part of this version"
@@ -112,7 +108,6 @@ UNSUPPORTED: dict[str, str] = {
         ),
         HEAT,
     ),
-    **dict.fromkeys(("HYPERELASTIC", "HYPERFOAM"), RUBBER),
     **dict.fromkeys(
         (
             "CREEP",
@@ -233,6 +228,5 @@ __all__ = [
     "PLASTIC",
     "PROCEDURE",
     "REFUSED_PARAMETERS",
-    "RUBBER",
     "UNSUPPORTED",
 ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.io.deck.cards.hyperelastic import fitted
 from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
@@ -59,6 +60,8 @@ def _by_temperature(draft: MaterialDraft) -> Material | None:
         "where": draft.law_where,
         "expansion": draft.expansion,
     }
+    if draft.fit is not None:
+        return fitted(draft, common | {"rho": draft.rho})
     law = LAWS[draft.law]
     sets = sorted(draft.constants)
     given = [t for t, _ in sets]

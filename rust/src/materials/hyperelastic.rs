@@ -1,0 +1,326 @@
+//! Hyperelastic laws: a law gives its energy density, and has stress and tangent from there.
+//!
+//! With mean `m`, half difference `d` and half shear `s` of the logarithmic strain in the plane and
+//! `z` through the thickness, the energy of an isotropic body is a function of
+//! `mu = (m - z) / 3`, `rho = d^2 + s^2` and `theta = 2 m + z = ln J`: the principal stretches
+//! without their volume part are `exp(mu +- sqrt rho)` and `exp(-2 mu)`. Symmetric functions of the
+//! first two are analytic in `rho`, so that coincident stretches are no case of their own.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::material::{Material, Plane, PointState, Response, SolidResponse};
+use crate::base::Real;
+use crate::base::jet::{Jet, PAIRS};
+use crate::base::small::Mat;
+use std::fmt::Debug;
+
+/// Iterations for the thickness strain in plane stress.
+const MAX_ITERATIONS: usize = 50;
+/// Longest step of that strain: a factor of 1.65 of the thickness.
+const LONGEST_STEP: f64 = 0.5;
+/// Step after which one linear correction is exact to round-off.
+const TOLERANCE: f64 = 1e-9;
+
+/// Local deformation that an energy is a function of.
+pub struct Stretches<T> {
+    mu: Jet<T>,
+    rho: Jet<T>,
+    /// Logarithm of the volume ratio.
+    pub theta: Jet<T>,
+}
+
+impl<T: Real> Stretches<T> {
+    /// Sum of the powers of the principal stretches, from which the volume part is taken out.
+    #[inline(always)]
+    pub fn powers(&self, alpha: f64) -> Jet<T> {
+        let root = self.mu.v.scale(alpha).exp();
+        let (p, q) = (root.scale(2.0), (root * root).recip());
+        let a2 = alpha * alpha;
+        let [c, c1, c2] = cosh_root(self.rho.v.scale(a2));
+        let (plane, slope) = (p * c, p * c1.scale(a2));
+        let mut y = Jet::constant(plane + q);
+        y.d[0] = (plane - q.scale(2.0)).scale(alpha);
+        y.d[1] = slope;
+        y.h[0] = (plane + q.scale(4.0)).scale(a2);
+        y.h[1] = slope.scale(alpha);
+        y.h[3] = p * c2.scale(a2 * a2);
+        y
+    }
+
+    /// The first invariant of the isochoric `C`, less 3.
+    #[inline(always)]
+    pub fn first(&self) -> Jet<T> {
+        self.powers(2.0).plus(-3.0)
+    }
+
+    /// The second invariant of the isochoric `C`, less 3.
+    #[inline(always)]
+    pub fn second(&self) -> Jet<T> {
+        self.powers(-2.0).plus(-3.0)
+    }
+
+    /// `sum (J - 1)^(2 i) / D_i`; a zero adds nothing.
+    #[inline(always)]
+    pub fn volume(&self, d: &[f64]) -> Jet<T> {
+        let mut w = Jet::zero();
+        if d.iter().all(|&d| d == 0.0) {
+            return w;
+        }
+        let grown = self.theta.exp(1.0).plus(-1.0);
+        let square = grown * grown;
+        let mut power = square;
+        for (i, &d) in d.iter().enumerate() {
+            if i > 0 {
+                power = power * square;
+            }
+            if d != 0.0 {
+                w += power.scale(1.0 / d);
+            }
+        }
+        w
+    }
+}
+
+/// `cosh(sqrt z)` with its first and second derivatives.
+#[inline(always)]
+fn cosh_root<T: Real>(z: T) -> [T; 3] {
+    // Terms that reach round-off at one.
+    const TERMS: usize = 11;
+    let mut factors = [1.0; TERMS];
+    for k in 1..TERMS {
+        factors[k] = factors[k - 1] / ((2 * k) * (2 * k - 1)) as f64;
+    }
+    let mut p = [T::zero(); 3];
+    let near = z.min(T::one());
+    for k in (0..TERMS).rev() {
+        p[2] = p[2].fma(near, p[1].scale(2.0));
+        p[1] = p[1].fma(near, p[0]);
+        p[0] = p[0].fma(near, T::real(factors[k]));
+    }
+    let far = T::one().lt(z);
+    if T::any(far) {
+        let z = z.max(T::one());
+        let root = z.sqrt();
+        let e = root.exp();
+        let i = e.recip();
+        let value = (e + i).scale(0.5);
+        let first = (e - i).scale(0.25) / root;
+        let second = (value - first.scale(2.0)).scale(0.25) / z;
+        p = [
+            T::select(far, value, p[0]),
+            T::select(far, first, p[1]),
+            T::select(far, second, p[2]),
+        ];
+    }
+    p
+}
+
+/// Energy density of an isotropic law.
+pub trait Energy: Clone + Debug + Sized {
+    const NAME: &'static str;
+    /// See [`Material::EXAMPLES`].
+    const EXAMPLES: &'static [&'static [f64]];
+    fn new(parameters: &[f64]) -> Result<Self, String>;
+    /// Whether the volume is constant.
+    fn is_incompressible(&self) -> bool {
+        false
+    }
+    /// Energy per reference volume.
+    fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T>;
+}
+
+/// The law of an energy.
+#[derive(Clone, Debug)]
+pub struct Hyperelastic<W> {
+    energy: W,
+    plane: Plane,
+    moduli: Mat<f64, 3>,
+    /// Thickness strain over the sum of the strains in the plane, at small strain.
+    contraction: f64,
+}
+
+/// In-plane strain by mean, half difference and half shear.
+#[inline(always)]
+fn parts<T: Real>(e: &[T; 3]) -> [T; 3] {
+    [(e[0] + e[1]).scale(0.5), (e[0] - e[1]).scale(0.5), e[2].scale(0.5)]
+}
+
+/// Energy, stress and tangent, rows xx, yy, xy, zz, where the first variable has the slopes `mu`
+/// and the third the slopes `theta`.
+#[inline(always)]
+fn derivatives<T: Real>(
+    w: &Jet<T>,
+    [_, d, s]: [T; 3],
+    mu: [f64; 4],
+    theta: [f64; 4],
+) -> SolidResponse<T> {
+    let slopes = [mu.map(T::real), [d, -d, s, T::zero()], theta.map(T::real)];
+    let mut stress = [T::zero(); 4];
+    let mut tangent = [[T::zero(); 4]; 4];
+    for i in 0..4 {
+        for (slope, by) in slopes.iter().zip(w.d) {
+            stress[i] = slope[i].fma(by, stress[i]);
+        }
+    }
+    for ((a, b), h) in PAIRS.into_iter().zip(w.h) {
+        for i in 0..4 {
+            for j in 0..4 {
+                let mut both = slopes[a][i] * slopes[b][j];
+                if a != b {
+                    both = slopes[b][i].fma(slopes[a][j], both);
+                }
+                tangent[i][j] = h.fma(both, tangent[i][j]);
+            }
+        }
+    }
+    // Second derivatives of the squared radius.
+    let half = w.d[1].scale(0.5);
+    tangent[0][0] += half;
+    tangent[1][1] += half;
+    tangent[2][2] += half;
+    tangent[0][1] -= half;
+    tangent[1][0] -= half;
+    SolidResponse { stress, tangent, failed: T::none() }
+}
+
+impl<W: Energy> Hyperelastic<W> {
+    #[inline(always)]
+    fn density<T: Real>(&self, [m, d, s]: [T; 3], z: T) -> Jet<T> {
+        let radius = d.fma(d, s * s);
+        self.energy.density(&Stretches {
+            mu: Jet::variable((m - z).scale(1.0 / 3.0), 0),
+            rho: Jet::variable(radius, 1),
+            theta: Jet::variable(m.scale(2.0) + z, 2),
+        })
+    }
+
+    #[inline(always)]
+    fn solid<T: Real>(&self, e: &[T; 4]) -> SolidResponse<T> {
+        const SIXTH: f64 = 1.0 / 6.0;
+        let parts = parts(&[e[0], e[1], e[2]]);
+        let w = self.density(parts, e[3]);
+        derivatives(&w, parts, [SIXTH, SIXTH, 0.0, -2.0 * SIXTH], [1.0, 1.0, 0.0, 1.0])
+    }
+
+    /// Plane stress at constant volume.
+    #[inline(always)]
+    fn flat<T: Real>(&self, e: &[T; 3]) -> SolidResponse<T> {
+        let parts = parts(e);
+        let w = self.density(parts, parts[0].scale(-2.0));
+        derivatives(&w, parts, [0.5, 0.5, 0.0, 0.0], [0.0; 4])
+    }
+
+    /// Strain through the thickness that leaves no stress there, and the lanes without one.
+    #[inline(always)]
+    fn thickness<T: Real>(&self, e: &[T; 3]) -> (T, T::Mask) {
+        let parts = parts(e);
+        if self.energy.is_incompressible() {
+            return (parts[0].scale(-2.0), T::none());
+        }
+        let mut z = (e[0] + e[1]).scale(self.contraction);
+        let mut open = T::one();
+        for _ in 0..MAX_ITERATIONS {
+            let w = self.density(parts, z);
+            let stress = w.d[2] - w.d[0].scale(1.0 / 3.0);
+            let slope = w.h[5] - w.h[2].scale(2.0 / 3.0) + w.h[0].scale(1.0 / 9.0);
+            // Against the stress even where the slope is negative.
+            let step = (stress / slope.abs()).min(T::real(LONGEST_STEP));
+            let step = step.max(T::real(-LONGEST_STEP));
+            z -= step;
+            open = T::select(step.abs().lt(T::real(TOLERANCE)), T::zero(), T::one());
+            if !T::any(T::real(0.5).lt(open)) {
+                break;
+            }
+        }
+        (z, T::real(0.5).lt(open))
+    }
+
+    #[inline(always)]
+    fn answer<T: Real>(&self, e: &[T; 3]) -> Response<T> {
+        let in_plane = |m: &Mat<T, 4>| [0, 1, 2].map(|i| [m[i][0], m[i][1], m[i][2]]);
+        if self.plane == Plane::Strain {
+            let SolidResponse { stress: [x, y, xy, _], tangent, failed } =
+                self.solid(&[e[0], e[1], e[2], T::zero()]);
+            return Response { stress: [x, y, xy], tangent: in_plane(&tangent), failed };
+        }
+        if self.energy.is_incompressible() {
+            let SolidResponse { stress: [x, y, xy, _], tangent, failed } = self.flat(e);
+            return Response { stress: [x, y, xy], tangent: in_plane(&tangent), failed };
+        }
+        let (z, failed) = self.thickness(e);
+        let all = self.solid(&[e[0], e[1], e[2], z]);
+        // What is left of the stress through the thickness is removed by its linear part.
+        let softness = all.tangent[3][3].recip();
+        let mut stress = [all.stress[0], all.stress[1], all.stress[2]];
+        let mut tangent = in_plane(&all.tangent);
+        for i in 0..3 {
+            let share = all.tangent[i][3] * softness;
+            stress[i] -= share * all.stress[3];
+            for j in 0..3 {
+                tangent[i][j] -= share * all.tangent[3][j];
+            }
+        }
+        Response { stress, tangent, failed }
+    }
+
+    fn normal(&self, e: [f64; 3]) -> f64 {
+        match self.plane {
+            Plane::Stress => self.thickness(&e).0,
+            Plane::Strain => 0.0,
+        }
+    }
+}
+
+impl<W: Energy> Material for Hyperelastic<W> {
+    const NAME: &'static str = W::NAME;
+    const EXAMPLES: &'static [&'static [f64]] = W::EXAMPLES;
+
+    fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
+        let energy = W::new(parameters)?;
+        let incompressible = energy.is_incompressible();
+        if incompressible && plane == Plane::Strain {
+            return Err(format!(
+                "{}: a constant volume (D = 0) is for plane stress; in plane strain give D1 = 2 / K, \
+                 with a bulk modulus K of 1000 times the shear modulus or what was measured",
+                W::NAME
+            ));
+        }
+        let mut law = Self { energy, plane, moduli: [[0.0; 3]; 3], contraction: -1.0 };
+        let shear = if incompressible {
+            law.flat(&[0.0; 3]).tangent[2][2]
+        } else {
+            let m = law.solid(&[0.0; 4]).tangent;
+            law.contraction = -m[3][0] / m[3][3];
+            let bulk = (m[3][3] + 2.0 * m[3][0]) / 3.0;
+            if !(bulk > 0.0 && bulk.is_finite()) {
+                return Err(format!("{}: the bulk modulus {bulk} must be > 0", W::NAME));
+            }
+            m[2][2]
+        };
+        if !(shear > 0.0 && shear.is_finite()) {
+            return Err(format!("{}: the initial shear modulus {shear} must be > 0", W::NAME));
+        }
+        law.moduli = law.answer(&[0.0; 3]).tangent;
+        Ok(law)
+    }
+    fn moduli(&self) -> Mat<f64, 3> {
+        self.moduli
+    }
+    #[inline(always)]
+    fn update<T: Real>(&self, strain: [T; 3], _: &mut PointState<'_>) -> Response<T> {
+        T::apart(move || self.answer(&strain))
+    }
+    #[inline(always)]
+    fn update_solid<T: Real>(&self, strain: [T; 4], _: &mut PointState<'_>) -> SolidResponse<T> {
+        T::apart(move || self.solid(&strain))
+    }
+    fn out_of_plane(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> (f64, f64) {
+        let z = self.normal(e);
+        match self.plane {
+            Plane::Stress => (z, 0.0),
+            Plane::Strain => (0.0, self.solid(&[e[0], e[1], e[2], z]).stress[3]),
+        }
+    }
+    fn energy(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> f64 {
+        self.density(parts(&e), self.normal(e)).v
+    }
+}
