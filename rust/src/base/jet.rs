@@ -39,7 +39,10 @@ impl<T: Real> Jet<T> {
     /// A function of this number with value `v`, first and second derivative.
     #[inline(always)]
     pub fn chain(self, v: T, first: T, second: T) -> Self {
-        let mut y = Self { v, d: self.d.map(|d| first * d), h: [T::zero(); 6] };
+        let mut y = Self::constant(v);
+        for i in 0..3 {
+            y.d[i] = first * self.d[i];
+        }
         for (k, (i, j)) in PAIRS.into_iter().enumerate() {
             y.h[k] = first.fma(self.h[k], second * self.d[i] * self.d[j]);
         }
@@ -48,8 +51,15 @@ impl<T: Real> Jet<T> {
 
     /// Times a plain number.
     #[inline(always)]
-    pub fn scale(self, k: f64) -> Self {
-        Self { v: self.v.scale(k), d: self.d.map(|d| d.scale(k)), h: self.h.map(|h| h.scale(k)) }
+    pub fn scale(mut self, k: f64) -> Self {
+        self.v = self.v.scale(k);
+        for i in 0..3 {
+            self.d[i] = self.d[i].scale(k);
+        }
+        for h in &mut self.h {
+            *h = h.scale(k);
+        }
+        self
     }
 
     /// Plus a plain number.

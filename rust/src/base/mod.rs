@@ -14,4 +14,4 @@ pub mod thread_autotuner;
 pub use dual::Dual;
 pub use hyper::{Hyper, Smooth};
 pub use pack::{Kernel, Lanes, MAX_LANES, dispatch};
-pub use real::Real;
+pub use real::{Job, Real};

@@ -7,7 +7,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #![allow(unsafe_code)]
 
-use super::real::Real;
+use super::real::{Job, Real};
 use pulp::{Simd, WithSimd, bytemuck};
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -124,14 +124,14 @@ fn token<S: Simd>() -> S {
     unsafe { std::mem::zeroed() }
 }
 
-/// A function that is compiled for itself.
-struct Apart<F>(F);
+/// A job that is compiled by itself.
+struct Apart<J>(J);
 
-impl<R, F: FnOnce() -> R> WithSimd for Apart<F> {
-    type Output = R;
+impl<J: Job> WithSimd for Apart<J> {
+    type Output = J::Output;
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> R {
-        (self.0)()
+    fn with_simd<S: Simd>(self, _: S) -> J::Output {
+        self.0.run()
     }
 }
 
@@ -199,8 +199,8 @@ impl<S: Simd> Real for Pack<S> {
     const LANES: usize = S::F64_LANES;
 
     #[inline(always)]
-    fn apart<R>(f: impl FnOnce() -> R) -> R {
-        token::<S>().vectorize(Apart(f))
+    fn apart<J: Job>(job: J) -> J::Output {
+        token::<S>().vectorize(Apart(job))
     }
     #[inline(always)]
     fn real(v: f64) -> Self {

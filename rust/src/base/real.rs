@@ -3,6 +3,14 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+/// Work that is compiled by itself, see [`Real::apart`].
+pub trait Job {
+    type Output;
+    /// Must be `#[inline(always)]`: a closure need not be inlined, and what is not has no vector
+    /// instructions.
+    fn run(self) -> Self::Output;
+}
+
 /// A real number, or several at once (lanes), or one with its derivatives.
 ///
 /// Kernels branch only through [`Real::select`], so that all lanes take the same way.
@@ -51,10 +59,10 @@ pub trait Real:
     /// Write to the first `LANES` numbers of a slice.
     fn store(self, to: &mut [f64]);
 
-    /// Run a function out of line, compiled for the instructions of this number type.
+    /// Run a job out of line, compiled for the instructions of this number type.
     #[inline(never)]
-    fn apart<R>(f: impl FnOnce() -> R) -> R {
-        f()
+    fn apart<J: Job>(job: J) -> J::Output {
+        job.run()
     }
     #[inline(always)]
     fn zero() -> Self {

@@ -76,7 +76,7 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
             let s = E::sample(x, prepared, point);
             let h = gradient(&s, q, alpha);
             let (value, slope) = bar.kind.volume(&h);
-            let slope = slope.map(|v| v * s.weight);
+            let slope = times(&slope, s.weight);
             bar.mean = s.weight.fma(value, bar.mean);
             s.op.add_force(&slope, o, &mut bar.rows);
             for (sum, v) in bar.modes.iter_mut().zip(by_modes(&s.modes, &slope)) {
@@ -218,6 +218,12 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
             add_multiple(coupling, self.mixed.as_flattened(), mode);
         }
     }
+}
+
+/// Gradient components times a number.
+#[inline(always)]
+pub(super) fn times<T: Real>(p: &[T; 4], factor: T) -> [T; 4] {
+    [p[0] * factor, p[1] * factor, p[2] * factor, p[3] * factor]
 }
 
 /// `y += factor x`.

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::about_mean::AboutMean;
-use super::dilatation::{Dilatation, by_modes};
+use super::dilatation::{Dilatation, by_modes, times};
 use super::local_strain::{LocalStrain, det};
 use super::modes::{condense, relax};
 use super::per_point::PerPoint;
@@ -305,7 +305,7 @@ where
         }
         if let Some(bar) = &mut bar {
             let (mixed, square) = Dilatation::<T, N, M>::split_tangent(&mut answer.tangent);
-            bar.add(&s, &section.strain.pull(&h, &mixed).map(|v| v * w), square * w);
+            bar.add(&s, &times(&section.strain.pull(&h, &mixed), w), square * w);
         }
         let mut a = match &about {
             Some(about) => about.tangent(&answer.tangent),

@@ -8,9 +8,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
-use crate::base::Real;
 use crate::base::jet::{Jet, PAIRS};
 use crate::base::small::Mat;
+use crate::base::{Job, Real};
 use std::fmt::Debug;
 
 /// Iterations for the thickness strain in plane stress.
@@ -144,7 +144,19 @@ fn parts<T: Real>(e: &[T; 3]) -> [T; 3] {
     [(e[0] + e[1]).scale(0.5), (e[0] - e[1]).scale(0.5), e[2].scale(0.5)]
 }
 
-/// Energy, stress and tangent, rows xx, yy, xy, zz, where the first variable has the slopes `mu`
+/// Rows xx, yy, xy of a matrix.
+#[inline(always)]
+fn in_plane<T: Real>(m: &Mat<T, 4>) -> Mat<T, 3> {
+    let mut d = [[T::zero(); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            d[i][j] = m[i][j];
+        }
+    }
+    d
+}
+
+/// Stress and tangent, rows xx, yy, xy, zz, where the first variable has the slopes `mu`
 /// and the third the slopes `theta`.
 #[inline(always)]
 fn derivatives<T: Real>(
@@ -153,7 +165,11 @@ fn derivatives<T: Real>(
     mu: [f64; 4],
     theta: [f64; 4],
 ) -> SolidResponse<T> {
-    let slopes = [mu.map(T::real), [d, -d, s, T::zero()], theta.map(T::real)];
+    let mut slopes = [[T::zero(); 4], [d, -d, s, T::zero()], [T::zero(); 4]];
+    for i in 0..4 {
+        slopes[0][i] = T::real(mu[i]);
+        slopes[2][i] = T::real(theta[i]);
+    }
     let mut stress = [T::zero(); 4];
     let mut tangent = [[T::zero(); 4]; 4];
     for i in 0..4 {
@@ -236,7 +252,6 @@ impl<W: Energy> Hyperelastic<W> {
 
     #[inline(always)]
     fn answer<T: Real>(&self, e: &[T; 3]) -> Response<T> {
-        let in_plane = |m: &Mat<T, 4>| [0, 1, 2].map(|i| [m[i][0], m[i][1], m[i][2]]);
         if self.plane == Plane::Strain {
             let SolidResponse { stress: [x, y, xy, _], tangent, failed } =
                 self.solid(&[e[0], e[1], e[2], T::zero()]);
@@ -267,6 +282,33 @@ impl<W: Energy> Hyperelastic<W> {
             Plane::Stress => self.thickness(&e).0,
             Plane::Strain => 0.0,
         }
+    }
+}
+
+/// Answers that are compiled once for each law and number type.
+struct Update<'a, W, T> {
+    law: &'a Hyperelastic<W>,
+    strain: [T; 3],
+}
+
+impl<W: Energy, T: Real> Job for Update<'_, W, T> {
+    type Output = Response<T>;
+    #[inline(always)]
+    fn run(self) -> Response<T> {
+        self.law.answer(&self.strain)
+    }
+}
+
+struct UpdateSolid<'a, W, T> {
+    law: &'a Hyperelastic<W>,
+    strain: [T; 4],
+}
+
+impl<W: Energy, T: Real> Job for UpdateSolid<'_, W, T> {
+    type Output = SolidResponse<T>;
+    #[inline(always)]
+    fn run(self) -> SolidResponse<T> {
+        self.law.solid(&self.strain)
     }
 }
 
@@ -307,11 +349,11 @@ impl<W: Energy> Material for Hyperelastic<W> {
     }
     #[inline(always)]
     fn update<T: Real>(&self, strain: [T; 3], _: &mut PointState<'_>) -> Response<T> {
-        T::apart(move || self.answer(&strain))
+        T::apart(Update { law: self, strain })
     }
     #[inline(always)]
     fn update_solid<T: Real>(&self, strain: [T; 4], _: &mut PointState<'_>) -> SolidResponse<T> {
-        T::apart(move || self.solid(&strain))
+        T::apart(UpdateSolid { law: self, strain })
     }
     fn out_of_plane(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> (f64, f64) {
         let z = self.normal(e);

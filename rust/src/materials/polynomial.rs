@@ -53,11 +53,11 @@ impl Energy for PolynomialEnergy {
             if c == 0.0 {
                 continue;
             }
-            let mut factors =
-                powers.iter().zip(&invariants).flat_map(|(&n, &i)| std::iter::repeat_n(i, n));
-            let mut term = factors.next().unwrap_or(Jet::zero());
-            for factor in factors {
-                term = term * factor;
+            let mut term = Jet::constant(T::one());
+            for (n, invariant) in powers.into_iter().zip(&invariants) {
+                for _ in 0..n {
+                    term = term * *invariant;
+                }
             }
             w += term.scale(c);
         }

@@ -39,13 +39,13 @@ fn tangent_is_the_derivative_of_the_stress() {
 }
 
 /// Random strain paths; the first stays so small that every law is linear to round-off, also one
-/// whose moduli change with the square of the strain.
+/// whose moduli change with the strain.
 fn paths(name: &str, law: &Law, what: &str) {
     let mut random = Random::new(8);
     let moduli = law.moduli();
     let top = moduli[0][0].max(moduli[1][1]);
     for path in 0..40 {
-        let size = if path == 0 { 1e-12 } else { 0.02 };
+        let size = if path == 0 { 1e-15 } else { 0.02 };
         let mut old = rest(name, law);
         let mut strain = [0.0; 3];
         for step in 0..6 {
