@@ -22,7 +22,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python test-slow test-view test-petsc lint lint-python clippy format bench docs \
+.PHONY: help setup demo test test-rust test-python test-slow test-view test-mesh test-petsc lint lint-python clippy format bench docs \
 	wheel try-wheel meshes lock clean
 
 help: ## Say what the targets do
@@ -65,6 +65,10 @@ $(VIEW): $(CORE) requirements-view.txt
 
 test-view: $(VIEW) ## Run the tests against VTK, PyVista, xarray, pandas, meshio and ccx2paraview
 	$(BIN)/python -m pytest -n $(JOBS) tests/output tests/interface
+
+test-mesh: $(CORE) ## Install Gmsh and ezdxf, and run the tests of outlines
+	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-mesh.txt -c requirements.txt
+	$(BIN)/python -m pytest tests/outline
 
 test-petsc: $(CORE) ## Install PETSc (Debian 12, as root) and test runs on two processes
 	scripts/install_petsc.sh $(abspath $(BIN)/python)

@@ -203,6 +203,24 @@ def _seek(parser: argparse.ArgumentParser) -> None:
     _reading(parser)
 
 
+def _mesh(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("outline", help="drawing (.dxf) or planar face (.step, .iges, .brep)")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="mesh (.inp, .msh); else OUTLINE.inp"
+    )
+    parser.add_argument("--size", type=float, default=0.0, help="largest side of a cell")
+    parser.add_argument(
+        "--through", type=_count, default=4, metavar="N", help="cells across a member (default: 4)"
+    )
+    parser.add_argument("--quadratic", action="store_true", help="cells with middle nodes")
+    parser.add_argument("--triangles", action="store_true", help="triangles only")
+    parser.add_argument("--gap", type=float, default=0.0, help="largest gap that is closed")
+    parser.add_argument(
+        "--layer", dest="layers", action="append", default=[], help="layer to take, repeatable"
+    )
+    parser.add_argument("--plot", metavar="FILE", help="picture of the mesh with its sets")
+
+
 def _demo(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", default="gripper", help="example; else gripper")
     parser.add_argument("--list", action="store_true", help="list the examples")
@@ -471,6 +489,7 @@ COMMANDS = {
     "resume": ("Resume a stopped run from its newest checkpoint.", _resume),
     "sweep": ("Run a deck for many values of its *PARAMETER names.", _sweep),
     "seek": ("Find the value of a parameter for which a measure has a given value.", _seek),
+    "mesh": ("Mesh the outline of a drawing (.dxf) or of a planar face (.step).", _mesh),
     "demo": ("Run a built-in example; needs no file and no network.", _demo),
     "check": ("Check a deck or mesh without solving it.", _check),
     "plot": ("Draw results (.vtkhdf), or a model with --model.", _plot),

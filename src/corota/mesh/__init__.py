@@ -7,6 +7,7 @@ Names are imported at first use: a mesh that is read from a deck needs no genera
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from corota.lazy import lazy
 from corota.mesh.assembly import add_node, assembly  # the module has the name of its function
 
 if TYPE_CHECKING:
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     from corota.mesh.data import EDGES, N_NODES, Cells, Mesh
     from corota.mesh.files import read
     from corota.mesh.generate import annulus, distort, mapped, rectangle
+
+# A convenience: a function of a higher layer, which loads at its first call.
+outline = lazy("corota.outline.mesher:outline")
 
 #: Module of each name.
 _HOMES = {
@@ -45,6 +49,7 @@ __all__ = [
     "mapped",
     "merge",
     "move",
+    "outline",
     "read",
     "rectangle",
     "renumber",

@@ -1,0 +1,169 @@
+"""Curves of a DXF drawing, by ezdxf: lines, arcs, circles, polylines, splines, ellipses, blocks."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from corota.errors import FileError, ResourceError
+from corota.io.regular_file import require_regular
+from corota.outline.curves import Curve, arc, bulge, circle, line, spline
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+    from pathlib import Path
+
+#: Unit of each number of ``$INSUNITS`` that has a name here.
+UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 13: "um"}
+#: Distance of a spline or an ellipse from the points it is replaced by, relative to its size.
+FLATTEN = 1e-5
+#: Blocks within blocks.
+MOST_DEPTH = 16
+#: Layers of dimensions and hidden lines, which are no outline.
+IGNORED = ("defpoints",)
+
+
+def read_dxf(
+    path: Path, layers: Collection[str] = ()
+) -> tuple[list[Curve], list[tuple[str, tuple[float, float]]], str, list[str]]:
+    """Curves, texts and unit of a drawing.
+
+    Parameters
+    ----------
+    path : Path
+    layers : collection of str
+        Layers to take; all but ``Defpoints`` if empty.
+
+    Returns
+    -------
+    curves : list of Curve
+        Named by their layer, or by their color where the layer is ``0``.
+    texts : list of (str, (x, y))
+    unit : str
+        Of length; empty if the drawing does not say.
+    notes : list of str
+        What was left out.
+
+    Raises
+    ------
+    ResourceError
+        If ezdxf is not installed.
+    FileError
+        If it is not a drawing.
+    """
+    try:
+        import ezdxf
+    except ImportError:
+        raise ResourceError(
+            "drawings need ezdxf, which is not installed: pip install corota[mesh]"
+        ) from None
+    require_regular(path)
+    try:
+        drawing = ezdxf.readfile(path)
+    except (OSError, ezdxf.DXFError, UnicodeDecodeError, ValueError) as error:
+        raise FileError(f"{path}: not a readable DXF drawing: {error}") from None
+    wanted = {name.lower() for name in layers}
+    curves: list[Curve] = []
+    texts: list[tuple[str, tuple[float, float]]] = []
+    left: dict[str, int] = {}
+    for entity in _entities(drawing.modelspace(), 0):
+        layer = str(entity.dxf.layer)
+        if (wanted and layer.lower() not in wanted) or layer.lower() in IGNORED:
+            continue
+        kind = entity.dxftype()
+        if kind in ("TEXT", "MTEXT"):
+            text = entity.plain_text() if kind == "MTEXT" else entity.dxf.text
+            at = entity.dxf.insert
+            texts.append((str(text).strip(), (float(at.x), float(at.y))))
+            continue
+        found = _curves_of(entity, kind, _name(entity, layer))
+        if found is None:
+            left[kind] = left.get(kind, 0) + 1
+        else:
+            curves += found
+    notes = [f"{count} entities {kind} are no outline" for kind, count in sorted(left.items())]
+    return curves, texts, UNITS.get(int(drawing.header.get("$INSUNITS", 0)), ""), notes
+
+
+def _entities(space: Any, depth: int) -> Iterator[Any]:
+    """Entities, blocks resolved."""
+    for entity in space:
+        if entity.dxftype() == "INSERT" and depth < MOST_DEPTH:
+            yield from _entities(entity.virtual_entities(), depth + 1)
+        else:
+            yield entity
+
+
+def _name(entity: Any, layer: str) -> str:
+    color = int(entity.dxf.get("color", 256))
+    if layer != "0":
+        return layer
+    return "" if color in (0, 7, 256) else f"color_{color}"
+
+
+def _curves_of(entity: Any, kind: str, name: str) -> list[Curve] | None:
+    """Curves of an entity; None if it is none."""
+    data, source = entity.dxf, f"{kind} #{entity.dxf.handle}"
+    mirrored = data.hasattr("extrusion") and data.extrusion.z < 0.0
+    if kind == "LINE":
+        return [line(_xy(data.start), _xy(data.end), name, source)]
+    if kind in ("ARC", "CIRCLE", "LWPOLYLINE", "POLYLINE") and mirrored:
+        # Object coordinates of a mirrored plane: the outline is that of its points.
+        from ezdxf import path as paths
+
+        whole = paths.make_path(entity)
+        return spline([_xy(p) for p in whole.flattening(_tolerance(whole))], name, source)
+    if kind == "CIRCLE":
+        return circle(_xy(data.center), float(data.radius), name, source)
+    if kind == "ARC":
+        start = math.radians(float(data.start_angle))
+        turn = math.radians(float(data.end_angle)) - start
+        return arc(
+            _xy(data.center),
+            float(data.radius),
+            start,
+            start + turn % (2.0 * math.pi),
+            name,
+            source,
+        )
+    if kind == "LWPOLYLINE":
+        points = [(float(x), float(y), float(b)) for x, y, b in entity.get_points("xyb")]
+        return _bulged(points, bool(entity.closed), name, source)
+    if kind == "POLYLINE" and entity.is_2d_polyline:
+        points = [
+            (float(v.dxf.location.x), float(v.dxf.location.y), float(v.dxf.get("bulge", 0.0)))
+            for v in entity.vertices
+        ]
+        return _bulged(points, bool(entity.is_closed), name, source)
+    if kind in ("SPLINE", "ELLIPSE"):
+        from ezdxf import path as paths
+
+        whole = paths.make_path(entity)
+        return spline([_xy(p) for p in whole.flattening(_tolerance(whole))], name, source)
+    return None
+
+
+def _bulged(
+    points: list[tuple[float, float, float]], closed: bool, name: str, source: str
+) -> list[Curve]:
+    after = points[1:] + points[:1] if closed else points[1:]
+    found: list[Curve] = []
+    for (x, y, b), (nx, ny, _) in zip(points, after, strict=False):
+        if (x, y) != (nx, ny):
+            found += bulge((x, y), (nx, ny), b, name, source)
+    return found
+
+
+def _tolerance(path: Any) -> float:
+    box = np.array([[p.x, p.y] for p in path.control_vertices()])
+    return max(FLATTEN * float(np.ptp(box, axis=0).max()), 1e-12)
+
+
+def _xy(point: Any) -> tuple[float, float]:
+    return float(point[0]), float(point[1])
+
+
+__all__ = ["read_dxf"]

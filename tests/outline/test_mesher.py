@@ -1,0 +1,138 @@
+"""Outlines meshed by Gmsh: areas, lengths, sets, loops; `make test-mesh` installs what it needs."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.errors import FileError, InputError
+from corota.outline import circle, outline, polyline
+
+pytest.importorskip("gmsh", reason="the extra mesh: make test-mesh", exc_type=ImportError)
+ezdxf = pytest.importorskip("ezdxf", reason="the extra mesh: make test-mesh")
+
+
+def covered(mesh):
+    """Area of the cells of a mesh."""
+    total = 0.0
+    for block in mesh.cells:
+        corners = mesh.points[block.nodes[:, : 3 if block.kind.startswith("tri") else 4]]
+        x, y = corners[..., 0], corners[..., 1]
+        total += 0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum()
+    return total
+
+
+def length(mesh, name):
+    ends = np.array([nodes[:2] for nodes in mesh.edge_nodes(mesh.edge_sets[name])])
+    return np.hypot(*(mesh.points[ends[:, 1]] - mesh.points[ends[:, 0]]).T).sum()
+
+
+def lever(path, *, gap=0.0, color=1, block=False):
+    """A lever of 35 x 15 with a rounded corner, a hole of radius 3 and a slot."""
+    drawing = ezdxf.new()
+    drawing.header["$INSUNITS"] = 4
+    space = drawing.modelspace()
+    body = drawing.blocks.new("BODY") if block else space
+    corner = math.tan(math.pi / 8.0)
+    points = [(0, 0, 0), (30, 0, corner), (35, 5, 0), (35, 15, 0), (gap, 15, 0)]
+    body.add_lwpolyline(points, format="xyb", dxfattribs={"layer": "body"})
+    body.add_line((0.0, 15.0), (0.0, 0.0), dxfattribs={"layer": "clamp"})
+    if block:
+        space.add_blockref("BODY", (0.0, 0.0))
+    space.add_circle((10.0, 7.0), 3.0, dxfattribs={"color": color})
+    space.add_ellipse((24.0, 9.0), major_axis=(4.0, 0.0), ratio=0.5, dxfattribs={"layer": "slot"})
+    space.add_text("lever", dxfattribs={"insert": (16.0, 2.0)})
+    space.add_line((-5.0, -5.0), (50.0, 20.0), dxfattribs={"layer": "Defpoints"})
+    space.add_point((1.0, 1.0))
+    drawing.saveas(path)
+    return path
+
+
+@pytest.mark.parametrize("block", [False, True])
+@pytest.mark.parametrize("gap", [0.0, 1e-4])
+def test_a_drawing(tmp_path, block, gap):
+    mesh = ct.mesh.outline(lever(tmp_path / "lever.dxf", gap=gap, block=block))
+    area = 35.0 * 15.0 - 25.0 * (1.0 - math.pi / 4.0) - math.pi * 9.0 - math.pi * 8.0
+    assert covered(mesh) == pytest.approx(area, rel=5e-3)
+    assert set(mesh.edge_sets) == {"body", "clamp", "color_1", "slot"}
+    assert list(mesh.cell_sets) == ["lever"]
+    assert length(mesh, "clamp") == pytest.approx(15.0, rel=1e-4)
+    assert length(mesh, "color_1") == pytest.approx(6.0 * math.pi, rel=1e-2)
+    assert any("unit of the drawing: mm" in note for note in mesh.notes)
+    assert any("POINT" in note for note in mesh.notes)
+    assert any("gaps" in note for note in mesh.notes) == bool(gap)
+
+
+def test_layers_are_chosen(tmp_path):
+    mesh = ct.mesh.outline(lever(tmp_path / "a.dxf"), layers=["body", "clamp"])
+    assert covered(mesh) == pytest.approx(525.0 - 25.0 * (1.0 - math.pi / 4.0), rel=1e-3)
+
+
+def test_a_leaf_has_cells_through_its_thickness():
+    leaf = [(0, 0), (30, 0), (30, 0.5), (15, 0.5), (15, 8), (0, 8)]
+    mesh = outline(polyline(leaf, closed=True), through=4)
+    across = mesh.nodes_of(ct.on_line((30.0, 0.0), (30.0, 0.5)))
+    assert len(across) == 5
+    assert mesh.n_cells < 1500
+
+
+@pytest.mark.parametrize(
+    ("options", "kinds"),
+    [({}, {"quad4"}), ({"triangles": True}, {"tri3"}), ({"quadratic": True}, {"quad8"})],
+)
+def test_kinds_of_cells(options, kinds):
+    mesh = outline([*polyline([(0, 0), (4, 0), (4, 2), (0, 2)], closed=True)], **options)
+    assert {c.kind for c in mesh.cells} <= kinds | {"tri3", "tri6"}
+    assert covered(mesh) == pytest.approx(8.0, rel=1e-9)
+
+
+def test_two_parts_and_a_hole():
+    squares = [
+        polyline(np.array([(0, 0), (4, 0), (4, 4), (0, 4)]) + s, "side", True) for s in (0, 9)
+    ]
+    mesh = outline([*squares, *circle((2.0, 2.0), 1.0, "hole")])
+    assert set(mesh.cell_sets) == {"part_1", "part_2"}
+    assert covered(mesh) == pytest.approx(32.0 - math.pi, rel=5e-3)
+
+
+def test_a_meshed_drawing_is_solved(tmp_path):
+    model = ct.Model(ct.mesh.outline(lever(tmp_path / "lever.dxf")))
+    for block, element in (("quad4", "Q4I"), ("tri3", "T3")):
+        cells = np.flatnonzero(np.repeat([c.kind == block for c in model.mesh.cells],
+                                         [len(c) for c in model.mesh.cells]))  # fmt: skip
+        if len(cells):
+            model.section(cells, element=element, material=ct.Elastic(E=2e3, nu=0.35))
+    model.fix("clamp")
+    model.force(ct.on_line((35.0, 5.0), (35.0, 15.0)), y=-1.0)
+    results = ct.solve(model)
+    assert results.history("RF2", at="clamp")[-1] == pytest.approx(1.0, rel=1e-8)
+
+
+@pytest.mark.parametrize("ending", ["inp", "msh"])
+def test_the_command(tmp_path, ending):
+    lever(tmp_path / "lever.dxf")
+    done = subprocess.run(
+        [sys.executable, "-m", "corota", "mesh", "lever.dxf", "-o", f"lever.{ending}"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "sets of edges: " in done.stdout
+    again = ct.mesh.read(tmp_path / f"lever.{ending}")
+    assert {"body", "clamp", "slot"} <= {name.lower() for name in again.edge_sets}
+
+
+def test_what_is_no_drawing_is_refused(tmp_path):
+    (tmp_path / "a.dxf").write_text("no drawing")
+    with pytest.raises(FileError, match="not a readable DXF drawing"):
+        outline(tmp_path / "a.dxf")
+    (tmp_path / "a.pdf").write_text("")
+    with pytest.raises(InputError, match="outlines are read from"):
+        outline(tmp_path / "a.pdf")
+    with pytest.raises(InputError, match="size must be"):
+        outline([], size=-1.0)
