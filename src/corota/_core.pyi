@@ -79,6 +79,20 @@ class Contact:
 
 _Constraints = tuple[_Floats, _Floats, _Floats, _Floats, _Floats, _Floats, _Floats | None]
 
+def line_contact(
+    reference: _Floats,
+    slave: tuple[_Integers, _Floats, _Floats],
+    thickness: _Floats,
+    points: _Integers,
+    master: tuple[_Integers, _Floats, _Floats],
+    rigid: tuple[_Floats, int, tuple[float, float]] | None = ...,
+    *,
+    method: str = ...,
+    reach: float,
+    margin: float,
+    depth: float = ...,
+) -> Contact: ...
+
 class ContactLaw:
     def __init__(
         self,

@@ -218,8 +218,8 @@ FAULTS = [
     (BODY.replace("Die", "Low"), "ANALYTICAL", "not a rigid profile"),
     ("*TIE, NAME=T\nLow\n", "Low\n", "master surface is missing"),
     (
-        INTERACTION + "*SURFACE, NAME=One, TYPE=NODE\n5\n" + PAIR.replace("Low", "One"),
-        "One, High",
+        INTERACTION + "*SURFACE, NAME=One, TYPE=NODE\n5\n" + PAIR.replace("High", "One"),
+        "Low, One",
         "no outer element edge",
     ),
     ("*CONTACT\n", "*CONTACT", "no *CONTACT INCLUSIONS"),

@@ -136,7 +136,7 @@ impl Corners {
     pub fn nodes(&self) -> Vec<i64> {
         let node = |c: &Corner| match &self.own {
             Surface::Edges(edges) => edges[c.before].nodes[1].into(),
-            Surface::Rigid(_) => -1,
+            _ => -1,
         };
         self.list.iter().map(node).collect()
     }
@@ -184,7 +184,7 @@ impl Corners {
                 let node = 3 * i64::from(edges[before].nodes[1]);
                 vec![node, node + 1]
             }
-            rigid @ Surface::Rigid(_) => rigid.variables(before),
+            rigid => rigid.variables(before),
         }
     }
 
@@ -266,7 +266,7 @@ impl Corners {
         let [at, from_other] = if self.of_slave { [0, own] } else { [other, 0] };
         let p = match &self.own {
             Surface::Edges(_) => [v[at], v[at + 1]],
-            rigid @ Surface::Rigid(_) => rigid.shape(corner.before, &v[at..at + own]).end(1),
+            rigid => rigid.shape(corner.before, &v[at..at + own]).end(1),
         };
         let face = self.faces.shape(i, &v[from_other..from_other + other]);
         let before = old.map(|o| (point(&self.own, corner, o), self.faces.place(i, o)));
@@ -384,7 +384,7 @@ fn sharp(master: &Surface, x: &[[f64; 3]], least: f64) -> Vec<Corner> {
             };
             ends.filter_map(next).collect()
         }
-        Surface::Rigid(_) => {
+        _ => {
             let met = |before: usize| {
                 let end = members[before].end(1);
                 let size = dist(members[before].end(0), end);

@@ -185,6 +185,8 @@ pub struct Edge {
     pub alpha_b: f64,
     /// Undeformed length of the chord.
     pub length: f64,
+    /// Of a line the distance to its surfaces, which are on both sides.
+    pub half: Option<f64>,
 }
 
 impl Edge {

@@ -108,6 +108,25 @@ pub struct Arc<T> {
     frame: Frame<T>,
 }
 
+impl<T: Smooth> Arc<T> {
+    /// Negative for a hollow arc, whose body is outside.
+    pub fn signed_radius(&self) -> f64 {
+        self.radius * self.half.signum()
+    }
+
+    /// Angle between the ends, counter-clockwise positive.
+    pub fn sweep(&self) -> f64 {
+        2.0 * self.half
+    }
+
+    /// Whether another arc is of the same circle, on the same side.
+    pub fn same_circle(&self, other: &Self) -> bool {
+        let d = sub(values(self.center), values(other.center));
+        let same = 1e-9 * self.radius;
+        dot(d, d).sqrt() <= same && (self.signed_radius() - other.signed_radius()).abs() <= same
+    }
+}
+
 /// A master edge or piece in space.
 #[derive(Clone, Copy, Debug)]
 pub enum Master<T> {
@@ -131,6 +150,14 @@ impl<T: Smooth> Master<T> {
         match self {
             Self::Curve(c) => c.at(T::real(if which == 0 { -1.0 } else { 1.0 })),
             Self::Arc(a) => a.ends[which],
+        }
+    }
+
+    /// Center of an arc; the middle of a curve.
+    pub fn center(&self) -> Vec2<T> {
+        match self {
+            Self::Curve(c) => c.m,
+            Self::Arc(a) => a.center,
         }
     }
 
@@ -261,6 +288,8 @@ impl<T: Smooth> Arc<T> {
 pub enum Surface {
     Edges(Vec<Edge>),
     Rigid(Rigid),
+    /// A surface, then more edges.
+    Both(Box<Surface>, Vec<Edge>),
 }
 
 impl Surface {
@@ -268,6 +297,17 @@ impl Surface {
         match self {
             Self::Edges(edges) => edges.len(),
             Self::Rigid(rigid) => rigid.pieces.len(),
+            Self::Both(first, edges) => first.len() + edges.len(),
+        }
+    }
+
+    /// Member `j`, if it is an edge of the mesh.
+    pub fn edge(&self, j: usize) -> Option<&Edge> {
+        match self {
+            Self::Edges(edges) => edges.get(j),
+            Self::Rigid(_) => None,
+            Self::Both(first, _) if j < first.len() => first.edge(j),
+            Self::Both(first, edges) => edges.get(j - first.len()),
         }
     }
 
@@ -278,6 +318,8 @@ impl Surface {
     pub fn variables(&self, j: usize) -> Vec<i64> {
         match self {
             Self::Edges(edges) => edges[j].variables(),
+            Self::Both(first, _) if j < first.len() => first.variables(j),
+            Self::Both(first, edges) => edges[j - first.len()].variables(),
             Self::Rigid(Rigid { node: Some(n), .. }) => {
                 (0..3).map(|c| 3 * i64::from(*n) + c).collect()
             }
@@ -289,6 +331,8 @@ impl Surface {
     pub fn shape<T: Smooth>(&self, j: usize, v: &[T]) -> Master<T> {
         match self {
             Self::Edges(edges) => Master::Curve(edges[j].curve(v)),
+            Self::Both(first, _) if j < first.len() => first.shape(j, v),
+            Self::Both(first, edges) => Master::Curve(edges[j - first.len()].curve(v)),
             Self::Rigid(rigid) => {
                 let frame = rigid.frame(v);
                 match rigid.pieces[j] {
@@ -329,6 +373,8 @@ impl Surface {
     pub fn place(&self, j: usize, x: &[[f64; 3]]) -> Master<f64> {
         match self {
             Self::Edges(edges) => Master::Curve(edges[j].place(x)),
+            Self::Both(first, _) if j < first.len() => first.place(j, x),
+            Self::Both(first, edges) => Master::Curve(edges[j - first.len()].place(x)),
             Self::Rigid(rigid) => match rigid.node {
                 Some(n) => self.shape(j, &x[n as usize]),
                 None => self.shape(j, &[]),

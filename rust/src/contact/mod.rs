@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 pub mod active_set;
+pub mod chains;
 pub mod corners;
 pub mod curve;
 pub mod discretization;

@@ -33,6 +33,18 @@ impl Contact {
         corners: bool,
     ) -> Self {
         let slave = Slave::new(x, slave.0, slave.1, entry.middles);
+        Self::with(x, slave, master, entry, distances, corners)
+    }
+
+    /// The same with constraints at given nodes.
+    pub fn with(
+        x: &[[f64; 3]],
+        slave: Slave,
+        master: Option<Surface>,
+        entry: &Entry,
+        distances: Distances,
+        corners: bool,
+    ) -> Self {
         let mut sides = Sides::new(x, slave, master, distances);
         let method = (entry.new)(&sides, x);
         sides.set_depth(x, entry.joins, &method.owners(&sides.slave));
@@ -84,7 +96,11 @@ impl Contact {
 
     /// Mesh nodes of the corners that have constraints, -1 for those of a rigid body.
     pub fn corner_nodes(&self) -> Vec<i64> {
-        self.corners.iter().flat_map(Corners::nodes).collect()
+        self.method
+            .corners()
+            .into_iter()
+            .chain(self.corners.iter().flat_map(Corners::nodes))
+            .collect()
     }
 
     /// Candidates: items of the slave with members of the master, then corners, which are numbered
@@ -122,7 +138,10 @@ impl Contact {
         let items = self.method.items(slave, x);
         let count = items.len();
         let owners = itself.then(|| self.method.owners(slave));
-        let allowed = |i: usize, j: usize| owners.as_ref().is_none_or(|o| slave.apart(&o[i], j));
+        let method = &self.method;
+        let allowed = |i: usize, j: usize| {
+            method.allows(i, j) && owners.as_ref().is_none_or(|o| slave.apart(&o[i], j))
+        };
         let changed = search.update(items, master, x, distances.reach, distances.margin, allowed);
         if changed {
             self.sides.index(count);

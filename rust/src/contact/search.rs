@@ -7,7 +7,7 @@ use super::slave::Slave;
 use super::tree::{Box2, Tree, grown};
 use rayon::prelude::*;
 
-/// Box and outward normal of a slave edge or node.
+/// Box and outward normal of a slave edge or node; zero if it may meet masters in any direction.
 pub type Item = (Box2, Vec2<f64>);
 
 /// A slave edge (or slave node) and a master that may meet.
@@ -99,7 +99,7 @@ impl Search {
 fn still(old: &[Item], new: &[Item], near: f64) -> bool {
     old.iter().zip(new).all(|(a, b)| {
         let mut sides = a.0.iter().zip(&b.0);
-        sides.all(|(p, q)| (p - q).abs() <= near) && dot(a.1, b.1) >= STEADY
+        sides.all(|(p, q)| (p - q).abs() <= near) && dot(a.1, b.1) >= STEADY * dot(a.1, a.1)
     })
 }
 

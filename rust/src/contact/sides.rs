@@ -62,7 +62,8 @@ impl Sides {
     /// Sets how deep each item may lie in the master: what lies deeper is behind the body, and of
     /// a boundary with itself beyond its middle. Surfaces that are joined may be anywhere.
     pub(super) fn set_depth(&mut self, x: &[[f64; 3]], joins: bool, owners: &[Vec<usize>]) {
-        let of_edges: Vec<f64> = if joins {
+        let unbounded = joins || owners.iter().all(Vec::is_empty);
+        let of_edges: Vec<f64> = if unbounded {
             vec![f64::INFINITY; self.slave.edges.len()]
         } else {
             let part = if self.itself { 1.0 } else { 2.0 };

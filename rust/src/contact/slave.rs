@@ -52,6 +52,12 @@ impl Slave {
         Self { edges, thickness, nodes, constraints, area }
     }
 
+    /// Single nodes, of the area 1.
+    pub fn of_nodes(nodes: Vec<u32>) -> Self {
+        let area = vec![1.0; nodes.len()];
+        Self { edges: Vec::new(), thickness: Vec::new(), nodes, constraints: Vec::new(), area }
+    }
+
     /// Edges of each constraint, or each edge alone.
     pub fn owners(&self, of_nodes: bool) -> Vec<Vec<usize>> {
         if !of_nodes {

@@ -31,7 +31,12 @@ pub(super) fn rows<'a, const N: usize, T: numpy::Element>(
 }
 
 /// Edges from their arrays; every fault is one the driver should have reported by name.
-fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResult<Vec<Edge>> {
+pub(super) fn edges(
+    x: &[[f64; 3]],
+    nodes: &Numbers,
+    alpha: &Floats,
+    side: &str,
+) -> PyResult<Vec<Edge>> {
     let nodes = rows::<3, i64>(nodes, side)?;
     let alpha = alpha.as_slice()?;
     if alpha.len() != nodes.len() || nodes.is_empty() {
@@ -40,7 +45,7 @@ fn edges(x: &[[f64; 3]], nodes: &Numbers, alpha: &Floats, side: &str) -> PyResul
     let edge = |(row, &alpha_b): (&[i64; 3], &f64)| {
         let n_nodes = if row[2] < 0 { 2 } else { 3 };
         let shape = Shape::Element;
-        let mut edge = Edge { nodes: [0; 3], shape, n_nodes, alpha_b, length: 0.0 };
+        let mut edge = Edge { nodes: [0; 3], shape, n_nodes, alpha_b, length: 0.0, half: None };
         for a in 0..n_nodes {
             edge.nodes[a] = u32::try_from(row[a])
                 .ok()
@@ -132,8 +137,11 @@ impl Contact {
         if entry.joins && !matches!(master, Some(Surface::Edges(_))) {
             return Err(bad(format!("{method} joins two boundaries of the mesh")));
         }
-        let pair = Pair::new(x, slave, master, entry, distances, corners);
-        Ok(Self { pair, n_nodes: x.len(), terms: Vec::new(), threads: 1 })
+        Ok(Self::of(Pair::new(x, slave, master, entry, distances, corners), x.len()))
+    }
+
+    pub(super) fn of(pair: Pair, n_nodes: usize) -> Self {
+        Self { pair, n_nodes, terms: Vec::new(), threads: 1 }
     }
 
     fn configuration<'a>(&self, x: &'a Rows<'_>, name: &str) -> PyResult<&'a [[f64; 3]]> {

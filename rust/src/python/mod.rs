@@ -4,6 +4,7 @@
 mod blocks;
 mod contact;
 mod contact_law;
+mod contact_line;
 mod edges;
 mod io;
 mod linear;
@@ -18,6 +19,7 @@ use pyo3::prelude::*;
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     contact::register(m)?;
+    contact_line::register(m)?;
     contact_law::register(m)?;
     edges::register(m)?;
     io::register(m)?;

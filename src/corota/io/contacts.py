@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.io.datasets import store
-from corota.model.contact import ContactPair, RigidCurve
+from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
     from corota.model.model import Model
@@ -19,16 +19,14 @@ def store_contacts(group: Any, model: Model) -> None:
     for number, pair in enumerate(model.contacts):
         own = group.create_group(str(number))
         own.attrs["name"] = pair.name
-        sets = model.mesh.edge_sets
-        slave = sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
-        store(own, "slave", slave)
+        edges, nodes = edges_or_nodes(model.mesh, pair.slave)
+        store(own, "slave", nodes if len(nodes) else edges)
         if isinstance(pair.master, RigidCurve):
             store(own, "segments", pair.master.segments)
             if isinstance(pair.master.reference, int | np.integer):
                 own.attrs["reference"] = int(pair.master.reference)
         else:
-            master = sets[pair.master] if isinstance(pair.master, str) else pair.master
-            store(own, "master", master)
+            store(own, "master", edges_or_nodes(model.mesh, pair.master)[0])
 
 
 def contacts_of_results(file: Any) -> list[ContactPair]:

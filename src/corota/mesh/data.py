@@ -41,6 +41,10 @@ EDGES: dict[str, tuple[tuple[int, ...], ...]] = {
     "point1": (),
 }
 
+#: The same with lines, whose two sides are the line forwards and backwards: sets of edges may name
+#: them.
+SIDES = {**EDGES, "line2": ((0, 1), (1, 0))}
+
 #: Number of nodes of each cell kind.
 N_NODES = {
     "tri3": 3,
@@ -179,8 +183,36 @@ class Mesh(Brief):
         for cell, side in np.asarray(edges, dtype=np.int64):
             block, row = self.locate(int(cell))
             cells = self.cells[block]
-            found.append(cells.nodes[row, list(EDGES[cells.kind][int(side)])])
+            found.append(cells.nodes[row, list(SIDES[cells.kind][int(side)])])
         return found
+
+    def are_lines(self, cells: Ints) -> NDArray[np.bool_]:
+        """Which of some cells are lines of two nodes."""
+        kinds = np.repeat([c.kind == "line2" for c in self.cells], [len(c) for c in self.cells])
+        return np.asarray(kinds[cells], bool)
+
+    def line_sides(self, cells: Ints) -> Ints:
+        """Lines as edges that follow each other where they can, shape (n, 2)."""
+        cells = np.unique(cells)
+        ends = np.array([n[:2] for n in self.edge_nodes(np.stack([cells, 0 * cells], axis=1))])
+        at: dict[int, list[int]] = {}
+        for k, pair in enumerate(ends.tolist()):
+            for node in pair:
+                at.setdefault(node, []).append(k)
+        side = np.full(len(cells), -1, np.int64)
+        # From free ends first, then round what is closed.
+        for start in sorted(range(len(cells)), key=lambda k: min(len(at[n]) for n in ends[k])):
+            if side[start] >= 0:
+                continue
+            side[start] = 0 if len(at[int(ends[start, 0])]) != 2 else 1
+            k, node = start, int(ends[start, 1 - side[start]])
+            while len(at[node]) == 2:
+                k = at[node][0] if at[node][1] == k else at[node][1]
+                if side[k] >= 0:
+                    break
+                side[k] = 0 if ends[k, 0] == node else 1
+                node = int(ends[k, 1 - side[k]])
+        return np.stack([cells, side], axis=1)
 
     def boundary_edges(self) -> Ints:
         """Edges that belong to one cell only, shape (n, 2)."""
@@ -361,7 +393,7 @@ class Mesh(Brief):
         """Node indices of edges (n, 2), each once, in ascending order."""
         parts, offsets = [np.zeros(0, np.int64)], self.offsets
         for number, cells in enumerate(self.cells):
-            for side, local in enumerate(EDGES[cells.kind]):
+            for side, local in enumerate(SIDES[cells.kind]):
                 here = edges[:, 1] == side
                 here &= (edges[:, 0] >= offsets[number]) & (edges[:, 0] < offsets[number + 1])
                 rows = edges[here, 0] - offsets[number]

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
+    from corota.mesh.data import Mesh
+
     Reference = int | tuple[float, float] | None
 
 #: Largest friction coefficient: no pressure lets surfaces slip with it.
@@ -255,11 +257,13 @@ class ContactPair(Brief):
     ----------
     slave : str or array_like of int, shape (n, 2)
         Edge set, or pairs of cell index and local edge: the side that carries the pressures;
-        the finer or softer one.
+        the finer or softer one. Lines (trusses, beams) are edges, too: 0 forwards, 1 backwards.
+        Or a node set, or indices of nodes, shape (n,).
     master : str, array_like of int or RigidCurve
         The opposite surface; the slave again for self-contact.
     method : {"mortar", "node_to_segment"}
-        Gaps weighted and integrated over slave edges, or measured at slave nodes.
+        Gaps weighted and integrated over slave edges, or measured at slave nodes. Where a line or
+        single nodes take part, they are always measured at nodes, ends and corners.
     friction : float
         Coulomb coefficient from 0 to 1e6; surfaces stick with the largest.
     law : PressureLaw, optional
@@ -345,6 +349,20 @@ class ContactPair(Brief):
         if isinstance(self.slave, str):
             return self.slave == self.master
         return np.array_equal(self.slave, np.asarray(self.master))
+
+
+def edges_or_nodes(mesh: Mesh, where: str | Ints) -> tuple[Ints, Ints]:
+    """Edges of a surface, shape (n, 2), or the nodes of one of single nodes, shape (m,).
+
+    One of both is empty.
+    """
+    none: Ints = np.zeros(0, np.int64)
+    if isinstance(where, str):
+        if where not in mesh.edge_sets and where in mesh.node_sets:
+            return none.reshape(0, 2), mesh.node_sets[where]
+        return mesh.edge_sets[where], none
+    found = np.asarray(where, np.int64)
+    return (found, none) if found.ndim == 2 else (none.reshape(0, 2), found)
 
 
 @dataclass(repr=False)

@@ -118,6 +118,8 @@ def _section(section: Section, material: int, model: Model) -> dict[str, Any]:
         found["mean dilatation"] = True
     if any(section.profile):
         found["profile"] = [float(p) for p in section.profile]
+    if section.height:
+        found["height"] = section.height
     if section.table:
         found["curve"] = {
             "x": "elongation",

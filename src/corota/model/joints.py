@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.model.constraints import Coupling, Equation
-from corota.model.contact import RigidCurve
+from corota.model.contact import RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,9 @@ def joined_nodes(model: Model) -> NDArray[np.bool_]:
     sides += [side for pair in model.contacts for side in (pair.slave, pair.master)]
     for side in sides:
         if not isinstance(side, RigidCurve):
-            has[mesh.edge_set_nodes(mesh.edge_pairs(side))] = True  # type: ignore[arg-type]
+            edges, nodes = edges_or_nodes(mesh, side)  # type: ignore[arg-type]
+            has[nodes] = True
+            has[mesh.edge_set_nodes(edges)] = True
     return has
 
 

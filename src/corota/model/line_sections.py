@@ -30,7 +30,9 @@ class LineSections:
 
         def _cells(self, cells: str | ArrayLike) -> str | Ints: ...
 
-    def truss(self, cells: str | ArrayLike, *, material: Material, area: float) -> None:
+    def truss(
+        self, cells: str | ArrayLike, *, material: Material, area: float, height: float = 0.0
+    ) -> None:
         """Make two-node lines bars that carry an axial force only.
 
         Parameters
@@ -39,8 +41,10 @@ class LineSections:
         material : Elastic
         area : float
             Cross-section [length^2].
+        height : float, optional
+            Height of the cross-section in the plane [length]: where its surfaces come into contact.
         """
-        self._line(cells, "TRUSS", material, (area, 0.0, 0.0))
+        self._line(cells, "TRUSS", material, (area, 0.0, 0.0), height)
 
     def beam(
         self,
@@ -50,6 +54,7 @@ class LineSections:
         area: float,
         inertia: float,
         shear_area: float = 0.0,
+        height: float = 0.0,
     ) -> None:
         """Make two-node lines straight beams; their nodes get a rotation.
 
@@ -63,12 +68,15 @@ class LineSections:
             Second moment of the cross-section [length^4].
         shear_area : float, optional
             Shear area [length^2]; 0 for no shear deformation.
+        height : float, optional
+            Height of the cross-section in the plane [length]: where its surfaces come into contact.
+            By default that of the rectangle with this area and second moment.
         """
         if not (np.isfinite(inertia) and inertia > 0.0 and 0.0 <= shear_area < np.inf):
             raise InputError(
                 f"a beam needs inertia > 0 and shear_area >= 0, not {inertia} and {shear_area}"
             )
-        self._line(cells, "BEAM", material, (area, inertia, shear_area))
+        self._line(cells, "BEAM", material, (area, inertia, shear_area), height)
 
     def spring(self, cells: str | ArrayLike, stiffness: ArrayLike, dofs: str | None = None) -> None:
         """Make lines or points springs.
@@ -115,6 +123,7 @@ class LineSections:
         element: str,
         material: Material,
         profile: tuple[float, float, float],
+        height: float,
     ) -> None:
         from copy import deepcopy
 
@@ -122,6 +131,8 @@ class LineSections:
 
         if not (np.isfinite(profile[0]) and profile[0] > 0.0):
             raise InputError(f"the area must be > 0, not {profile[0]}")
-        self.sections.append(
-            Section(self._cells(cells), element, deepcopy(material), profile[0], profile=profile)
-        )
+        if not (np.isfinite(height) and height >= 0.0):
+            raise InputError(f"the height of a section must be >= 0, not {height}")
+        where, law = self._cells(cells), deepcopy(material)
+        found = Section(where, element, law, profile[0], profile=profile, height=height)
+        self.sections.append(found)

@@ -375,16 +375,18 @@ class Model(Loading, LineSections, InitialFields):
         smooth: bool = False,
         name: str = "",
     ) -> None:
-        """Define contact of two edge sets, or of one and a rigid curve; see ``docs/contact.md``.
+        """Define contact of two surfaces, or of one and a rigid curve; see ``docs/contact.md``.
+
+        A surface is an edge set, a cell set of beams or trusses, or, as slave, a node set.
 
         The parameters are those of :class:`corota.model.contact.ContactPair`; the same set twice
         gives
         self-contact.
         """
-        other = master if isinstance(master, RigidCurve) else self._edges(master)
+        other = master if isinstance(master, RigidCurve) else self._surface(master)
         self.contacts.append(
             ContactPair(
-                self._edges(slave),
+                self._surface(slave),
                 other,
                 method,
                 friction,
@@ -407,8 +409,11 @@ class Model(Loading, LineSections, InitialFields):
         tolerance: float = 0.0,
         name: str = "",
     ) -> None:
-        """Join two edge sets whose nodes need not match (:class:`corota.model.contact.Tie`)."""
-        self.ties.append(Tie(self._edges(slave), self._edges(master), tolerance, name))
+        """Join two surfaces whose nodes need not match (:class:`corota.model.contact.Tie`).
+
+        Surfaces are those of :meth:`contact`.
+        """
+        self.ties.append(Tie(self._surface(slave), self._surface(master), tolerance, name))
 
     def copy(self) -> Model:
         """An independent copy: for a variant, or the next run of a sweep.
@@ -518,6 +523,20 @@ class Model(Loading, LineSections, InitialFields):
                 raise InputError(f"cell set {name!r} is empty")
             return name
         return self.mesh.cell_indices(cells)
+
+    def _surface(self, where: str | ArrayLike) -> str | Ints:
+        """An edge set, lines as one of the same name, or nodes."""
+        mesh = self.mesh
+        if isinstance(where, str):
+            if where not in mesh.edge_sets and where in mesh.cell_sets:
+                cells = mesh.cell_sets[where]
+                if len(cells) and mesh.are_lines(cells).all():
+                    mesh.edge_sets[where] = mesh.line_sides(cells)
+            if where not in mesh.edge_sets and where in mesh.node_sets:
+                return where
+        elif np.ndim(where) == 1 and len(np.asarray(where)) and not isinstance(where[0], str):  # type: ignore[index]
+            return self._nodes(where)
+        return self._edges(where)
 
     def _edges(self, where: str | ArrayLike) -> str | Ints:
         if isinstance(where, str):

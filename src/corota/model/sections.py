@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -56,6 +57,9 @@ class Section(Brief):
         the dofs of both ends.
     table : tuple of pairs of float
         Elongation (or angle) and force of nonlinear springs, rising; empty for linear ones.
+    height : float
+        Height of the cross-section of a beam or truss in the plane [length], for contact; 0 for
+        that of the rectangle with the same area and second moment.
     mean_dilatation : bool
         Replace the volume strain by its mean over each element: no volumetric locking in plastic
         or nearly incompressible plane strain. Quadrilaterals in plane strain only.
@@ -76,8 +80,17 @@ class Section(Brief):
     beta0: float | None = field(default=None, kw_only=True)
     profile: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), kw_only=True)
     table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
+    height: float = field(default=0.0, kw_only=True)
     #: Thickness of the nodes, where it is given for each.
     nodal_thickness: Floats | None = field(default=None, kw_only=True, compare=False, repr=False)
+
+    @property
+    def line_height(self) -> float:
+        """Height of the cross-section of a beam or truss [length]; 0 where nothing tells it."""
+        area, inertia, _ = self.profile
+        if self.height or not area:
+            return self.height
+        return math.sqrt(12.0 * inertia / area)
 
     def __post_init__(self) -> None:
         self.element = elements.find(self.element, self.where).name

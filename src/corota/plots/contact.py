@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.model.contact import edges_or_nodes
 from corota.plots.contour import frame_title
 from corota.plots.figure import COLORS, INK, PALE, extent_size, figure_of, finish, label_axes, look
 from corota.plots.rigid import draw_rigid
@@ -147,7 +148,9 @@ def status(
 
         width, height, _ = extent_size(low, high)
         figure, ax = figure_of(ax, width, height, shown=path is None)
-        ax.add_collection(LineCollection(outline(mesh, positions), colors=INK, linewidths=0.8))
+        drawn = outline(mesh, positions)
+        drawn += [ends for c in mesh.cells if c.kind == "line2" for ends in positions[c.nodes]]
+        ax.add_collection(LineCollection(drawn, colors=INK, linewidths=0.8))
         draw_rigid(ax, results.model, state, scale)
         every = [n for p in results.model.contacts for n, _ in _contours(results, p)]
         nodes = np.unique(np.concatenate(every))
@@ -194,7 +197,13 @@ def _pair(results: Results, name: str) -> ContactPair:
 def _contours(results: Results, pair: ContactPair) -> list[tuple[Ints, Floats]]:
     """Nodes of the slave surface in order, and the length along it; one for each contour."""
     mesh = results.mesh
-    edges = mesh.edge_sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
+    edges, single = edges_or_nodes(mesh, pair.slave)
+    if len(single):
+        # Single nodes stand along the longer side of the box around them.
+        points = mesh.points[single]
+        axis = int(np.argmax(np.ptp(points, axis=0)))
+        single = single[np.argsort(points[:, axis], kind="stable")]
+        return [(single, mesh.points[single, axis] - mesh.points[single[0], axis])]
     chain: dict[int, tuple[int, ...]] = {}
     for nodes in mesh.edge_nodes(edges):
         a, b, *middle = nodes.tolist()

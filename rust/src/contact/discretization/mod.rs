@@ -1,8 +1,10 @@
 //! How the gaps of two surfaces are measured: what a discretization says, and the list of them.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod line;
 pub mod mortar;
 pub mod node_to_segment;
+pub mod point_tie;
 pub mod tie;
 
 use super::search::{self, Candidate, Item};
@@ -12,6 +14,9 @@ use super::terms::{Terms, WIDTH, join};
 
 /// All discretizations.
 pub const DISCRETIZATIONS: &[Entry] = &[mortar::ENTRY, node_to_segment::ENTRY, tie::ENTRY];
+
+/// Those of pairs with a line or single nodes, which take no other.
+pub const OF_LINES: &[Entry] = &[line::ENTRY, point_tie::ENTRY];
 
 /// Facts of a discretization, and how one is made for a pair in its reference configuration.
 pub struct Entry {
@@ -25,9 +30,9 @@ pub struct Entry {
     pub new: fn(&Sides, &[[f64; 3]]) -> Box<dyn Discretization>,
 }
 
-/// The discretization of that name.
+/// The discretization of that name, or that of lines.
 pub fn find(name: &str) -> Result<&'static Entry, String> {
-    DISCRETIZATIONS.iter().find(|entry| entry.name == name).ok_or_else(|| {
+    DISCRETIZATIONS.iter().chain(OF_LINES).find(|entry| entry.name == name).ok_or_else(|| {
         let names: Vec<&str> = DISCRETIZATIONS.iter().map(|entry| entry.name).collect();
         format!("no contact discretization {name:?}; there are {names:?}")
     })
@@ -51,6 +56,16 @@ pub trait Discretization: Send + Sync {
     /// Slave node of each constraint, by its place in the slave's nodes.
     fn places(&self, slave: &Slave) -> Vec<usize> {
         (0..slave.nodes.len()).collect()
+    }
+
+    /// Mesh nodes of the corners that the last constraints belong to, -1 for those of a rigid body.
+    fn corners(&self) -> Vec<i64> {
+        Vec::new()
+    }
+
+    /// Whether an item of the slave may meet a master.
+    fn allows(&self, _item: usize, _master: usize) -> bool {
+        true
     }
 
     /// Variables of a candidate, -1 where unused.

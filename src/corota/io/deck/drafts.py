@@ -349,6 +349,7 @@ class LineDraft:
     elastic: Elastic | None = None
     profile: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rows: list[Row] = field(default_factory=list)
+    height: float = 0.0
 
 
 @dataclass(eq=False, repr=False)

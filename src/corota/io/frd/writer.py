@@ -28,6 +28,7 @@ from corota.io.frd.layout import (
 from corota.io.requests import in_force
 from corota.io.tables.dat import internal_force
 from corota.io.vtk.frame_arrays import point_data
+from corota.model.contact import edges_or_nodes
 from corota.results.averaging import Averaging
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
@@ -319,7 +320,8 @@ class FrdWriter:
         mesh = self._model.mesh
         out = np.zeros(mesh.n_nodes, dtype=bool)
         for pair in self._model.contacts:
-            out[mesh.edge_set_nodes(mesh.edge_pairs(pair.slave))] = True
+            edges, nodes = edges_or_nodes(mesh, pair.slave)
+            out[nodes if len(nodes) else mesh.edge_set_nodes(edges)] = True
         if not self._model.contacts and frame.C is not None:
             out = np.asarray(frame.C.any(axis=1))
         return out

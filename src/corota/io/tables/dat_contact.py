@@ -14,7 +14,7 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.io.tables.dat_numbers import fortran, rows
-from corota.model.contact import RigidCurve, joint_thickness
+from corota.model.contact import RigidCurve, edges_or_nodes, joint_thickness
 from corota.model.sections import thickness_at
 
 if TYPE_CHECKING:
@@ -68,12 +68,13 @@ def contact_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
 
 
 def _slave(model: Model, pair: ContactPair) -> Ints:
-    """Cells and local edges of the slave surface, shape (n, 2)."""
-    return model.mesh.edge_sets[pair.slave] if isinstance(pair.slave, str) else pair.slave
+    """Cells and local edges of the slave surface, shape (n, 2); none of single nodes."""
+    return edges_or_nodes(model.mesh, pair.slave)[0]
 
 
 def _slave_nodes(model: Model, pair: ContactPair) -> Ints:
-    return distinct(np.concatenate(model.mesh.edge_nodes(_slave(model, pair))))
+    edges, nodes = edges_or_nodes(model.mesh, pair.slave)
+    return distinct(nodes) if len(nodes) else model.mesh.edge_set_nodes(edges)
 
 
 def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str:
@@ -113,16 +114,35 @@ def _resultant(frame: Frame, pair: ContactPair, what: str) -> Floats:
     return np.array([get(f"{pair.name}: {what}{name}", 0.0) for name in names])
 
 
+def _closed_nodes(
+    model: Model, pair: ContactPair, frame: Frame, x: Floats
+) -> tuple[float, Floats, Floats]:
+    """The same for lines and single nodes, whose normal is that of the force between them."""
+    assert frame.C is not None
+    nodes = _slave_nodes(model, pair)
+    nodes = nodes[frame.C[nodes, 4] > 0.0]
+    if not len(nodes):
+        return 0.0, np.zeros(2), np.zeros(2)
+    force = _resultant(frame, pair, "")[:2] - _resultant(frame, pair, "friction ")[:2]
+    area = frame.scalars.get(f"{pair.name}: area", 0.0)
+    return area, x[nodes].mean(axis=0), -force / (math.hypot(*force) or 1.0)
+
+
 def _closed_part(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, Floats, Floats]:
     """Area that is closed, its center and its mean outward normal, in the current state."""
     assert frame.C is not None
     x = model.mesh.points + frame.U
-    ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(_slave(model, pair))])
+    edges = _slave(model, pair)
+    if not len(edges) or model.mesh.are_lines(edges[:, 0]).all():
+        return _closed_nodes(model, pair, frame, x)
+    ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
     chord = x[ends[:, 1]] - x[ends[:, 0]]
-    own = thickness_at(model.mesh, model.sections, _slave(model, pair)[:, 0], ends).mean(axis=1)
+    own = thickness_at(model.mesh, model.sections, edges[:, 0], ends).mean(axis=1)
     master = pair.master
     if not isinstance(master, RigidCurve):
-        edges = model.mesh.edge_sets[master] if isinstance(master, str) else np.asarray(master)
+        edges = edges_or_nodes(model.mesh, master)[0]
+        if model.mesh.are_lines(edges[:, 0]).all():
+            return _closed_nodes(model, pair, frame, x)
         facing = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
         other = thickness_at(model.mesh, model.sections, edges[:, 0], facing).mean(axis=1)
         own = joint_thickness(model.mesh.points, ends, own, facing, other)

@@ -52,7 +52,7 @@ def corner_note(pair: Pair, points: Floats, labels: Ints) -> str:
 
     Sharp corners under a pressure law, and round boundaries with too coarse edges.
     """
-    if pair.master is None or pair.tied:
+    if pair.master is None or pair.tied or pair.slave.pointwise:
         return ""
     sharp = sharp_corners(points, pair.master.nodes[:, :2]) if pair.law is not None else []
     if sharp:

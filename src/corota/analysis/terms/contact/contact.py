@@ -253,6 +253,8 @@ class ContactTerm(Term):
                 self._start_tie(pair, x)
                 continue
             check_side(self.system, pair, x)
+            if pair.slave.pointwise:
+                self._keep_sides(pair, x)
             mesh = self.system.model.mesh
             found = fillet_note(pair), corner_note(pair, mesh.points, mesh.node_labels)
             self.notes += filter(None, found)
@@ -296,6 +298,12 @@ class ContactTerm(Term):
                 pair.core.offset = pair.core.offset + np.where(moved, pair.overlap, 0.0) + near
             adjusted_gap = gap - (pair.core.offset - pair.base)
             pair.first_gap = np.where(seen, adjusted_gap, pair.reach)
+
+    def _keep_sides(self, pair: Pair, x: Floats) -> None:
+        """Lines keep the side that the other body is on at the start."""
+        pair.core.search(x)
+        pair.core.evaluate(x, None)
+        pair.core.commit()
 
     def _start_tie(self, pair: Pair, x: Floats) -> None:
         pair.core.search(x)

@@ -92,7 +92,8 @@ class Pair:
         self.owner = np.arange(self.n)  # constraint that owns a node's part
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
-        if isinstance(item, ContactPair) and METHODS[item.method]["integrates"]:
+        integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
+        if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
             left, right = np.full(self.n, -1, np.int64), np.full(self.n, -1, np.int64)
             right[ends[:, 0]], left[ends[:, 1]] = ends[:, 1], ends[:, 0]
@@ -432,6 +433,8 @@ def _surfaces(edges: Ints, nodes: Ints) -> Ints:
     from scipy.sparse import coo_array  # takes longer to import than a small job to solve
     from scipy.sparse.csgraph import connected_components
 
+    if not len(edges):
+        return np.arange(len(nodes), dtype=np.int64)
     pairs = np.concatenate([edges[:, :2], edges[:, ::2][edges[:, 2] >= 0]])
     ids, ends = np.unique(pairs, return_inverse=True)
     ends = ends.reshape(-1, 2)

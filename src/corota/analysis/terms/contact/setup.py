@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import corota._core as _core
+from corota.analysis.terms.contact.lines import line_core, line_surface, node_surface
 from corota.analysis.terms.contact.smoothing import smoothed
 from corota.analysis.terms.contact.surface import Surface
 from corota.errors import ModelError
@@ -32,7 +33,7 @@ MOST_LOOKED_AT, SAME = 20_000_000, 1e-9
 
 
 def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -> Surface:
-    """Edges of a surface; refuses interior edges.
+    """Edges of a surface, lines or single nodes; refuses interior edges.
 
     Raises
     ------
@@ -41,14 +42,15 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
     """
     mesh = system.model.mesh
     name = where if isinstance(where, str) else "edges"
+    if not isinstance(where, str) and np.ndim(where) == 1 and len(where):
+        return node_surface(system, "nodes", np.asarray(where, np.int64), item)
     if isinstance(where, str):
+        if where not in mesh.edge_sets and where in mesh.node_sets:
+            return node_surface(system, where, mesh.node_sets[where], item)
         if where not in mesh.edge_sets:
-            hint = ""
-            if where in mesh.node_sets:
-                hint = f"; {where!r} is a node set: contact needs the edges"
             known = ", ".join(mesh.edge_sets) or "none"
             raise ModelError(
-                f"contact pair {item.name!r}: no surface named {where!r}{hint}; there are: {known}",
+                f"contact pair {item.name!r}: no surface named {where!r}; there are: {known}",
                 item.where,
             )
         edges = mesh.edge_sets[where]
@@ -57,6 +59,16 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
     if not len(edges):
         raise ModelError(f"contact pair {item.name!r}: surface {name!r} is empty", item.where)
     edges = edges[np.sort(np.unique(edges, axis=0, return_index=True)[1])]
+    lines = mesh.are_lines(edges[:, 0])
+    if lines.all():
+        return line_surface(system, name, edges, item)
+    if lines.any():
+        cell = mesh.cell_labels[int(edges[int(np.argmax(lines)), 0])]
+        raise ModelError(
+            f"contact pair {item.name!r}: surface {name!r} has edges of bodies and the line "
+            f"{cell}; make two surfaces, and a pair of each",
+            item.where,
+        )
     inner = ~_among(edges, mesh.boundary_edges())
     if inner.any():
         cell = int(edges[int(np.argmax(inner)), 0])
@@ -90,7 +102,7 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
             item.where,
         )
     length = np.hypot(*(mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]).T)
-    return Surface(name, edges, nodes, bulge, thickness, length)
+    return Surface(name, edges, nodes, bulge, thickness, length, np.full(n, -1.0))
 
 
 def _among(edges: Ints, others: Ints) -> NDArray[np.bool_]:
@@ -134,8 +146,21 @@ def contact_core(
     if not item.itself and not isinstance(item.master, RigidCurve):
         master = surface(system, item.master, item)
         longest = max(longest, float(master.length.max()))
-        _check_pair(system, item, slave, master)
     reach = item.reach or REACH * longest
+    if _of_lines(slave) or (master is not None and _of_lines(master)):
+        if item.itself:
+            raise ModelError(
+                f"contact pair {item.name!r}: a line, or single nodes, cannot meet themselves; "
+                "make two surfaces of the parts that meet",
+                item.where,
+            )
+        against = item.master if isinstance(item.master, RigidCurve) else master
+        assert against is not None
+        bodies = [s for s in (slave, master) if s is not None and not _of_lines(s)]
+        depth = min((float(_thickness(system, body).max()) for body in bodies), default=reach)
+        return line_core(system, item, slave, against, reach, depth)
+    if master is not None:
+        _check_pair(system, item, slave, master)
     common: dict[str, Any] = {"method": item.method, "reach": reach, "margin": 0.5 * reach}
     # A pressure law permits overclosure, and its pressures act on areas: a corner has none.
     common["corners"] = item.law is None
@@ -188,6 +213,11 @@ def contact_core(
     return core, slave, master, reach, depth
 
 
+def _of_lines(side: Surface) -> bool:
+    """Whether a surface consists of lines or single nodes."""
+    return side.two_sided or side.points is not None
+
+
 def _thickness(system: NumberedModel, slave: Surface) -> Floats:
     """Thickness of the body behind edges of its surface, inwards.
 
@@ -215,14 +245,16 @@ def _thickness(system: NumberedModel, slave: Surface) -> Floats:
     return found if len(found) else np.full(1, np.inf)
 
 
-def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface, float, float]:
+def tie_core(system: NumberedModel, item: Tie) -> tuple[Any, Surface, Surface | None, float, float]:
     """The same for a tie; slave edges out of its tolerance are not tied."""
     mesh = system.model.mesh
     x = np.column_stack([mesh.points, np.zeros(mesh.n_nodes)])
     slave, master = surface(system, item.slave, item), surface(system, item.master, item)
-    _check_pair(system, item, slave, master)
     longest = float(max(slave.length.max(), master.length.max()))
     reach = item.tolerance or 0.1 * longest
+    if _of_lines(slave):
+        return line_core(system, item, slave, master, reach, np.inf)
+    _check_pair(system, item, slave, master)
     try:
         core = _core.Contact.edges(
             x,

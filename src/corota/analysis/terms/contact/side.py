@@ -51,6 +51,9 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
         return
     mesh = system.model.mesh
     pieces = other_side(pair, x, x)[0]
+    if pair.slave.pointwise:
+        _check_points(system, pair, pieces, x[:, :2])
+        return
     ends = x[pair.slave.nodes[:, :2], :2]
     size = SAME * float(pair.slave.length.max())
     distance, normal, inside = _signed(pieces, ends.mean(axis=1), size)
@@ -67,8 +70,28 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
     behind, _, inside = _signed(pieces, x[body, :2], size)
     if not inside.any() or behind[inside].max() >= -behind[inside].min():
         return
-    label = mesh.node_labels[pair.slave.nodes[nearest, 0]]
-    depth = -float(distance[nearest])
+    _refuse(system, pair, int(pair.slave.nodes[nearest, 0]), -float(distance[nearest]), size)
+
+
+def _check_points(system: NumberedModel, pair: Pair, pieces: Floats, x: Floats) -> None:
+    """The same for a line or single nodes, which have no outer side of their own."""
+    nodes, size = pair.slave.node_list, SAME * float(pair.slave.length.max())
+    distance, _, inside = _signed(pieces, x[nodes], size)
+    nearest = int(np.argmin(np.where(inside, np.abs(distance), np.inf)))
+    if not inside[nearest] or distance[nearest] > size:
+        return
+    part = part_of_nodes(system.model.mesh)
+    body, _, inside = _signed(pieces, x[np.isin(part, part[nodes])], size)
+    # What lies on the curve as a whole tells no side.
+    if not inside.any() or body[inside].max() >= -body[inside].min() - size:
+        return
+    _refuse(system, pair, int(nodes[nearest]), -float(distance[nearest]), size)
+
+
+def _refuse(system: NumberedModel, pair: Pair, node: int, depth: float, size: float) -> None:
+    curve = pair.item.master
+    assert isinstance(curve, RigidCurve)
+    label = system.model.mesh.node_labels[node]
     place = (
         "on it"
         if abs(depth) <= size

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,7 +30,9 @@ class Surface:
         Corner, corner, mid-side node or -1; the element on the left.
     bulge, thickness, length : ndarray, shape (n,)
         Share of the drilling rotations in the shape of the edge [1], thickness and length of
-        the chord [length].
+        the chord [length]; of single nodes the distance to the next one.
+    half : ndarray, shape (n,)
+        Distance of a line to its surfaces, on both sides [length]; -1 for edges of bodies.
     """
 
     name: str
@@ -39,6 +41,16 @@ class Surface:
     bulge: Floats
     thickness: Floats
     length: Floats
+    half: Floats = field(default_factory=lambda: np.zeros(0))
+    #: Nodes, in place of edges.
+    points: Ints | None = None
+    #: Whether gaps are those of nodes, as of every pair with lines.
+    pointwise: bool = False
+
+    @property
+    def two_sided(self) -> bool:
+        """Whether these are lines."""
+        return bool((self.half >= 0.0).any())
 
     def take(self, rows: Ints) -> Surface:
         """Some of the edges."""
@@ -49,11 +61,14 @@ class Surface:
             self.bulge[rows],
             self.thickness[rows],
             self.length[rows],
+            self.half[rows],
         )
 
     @property
     def node_list(self) -> Ints:
         """Nodes, each once."""
+        if self.points is not None:
+            return self.points
         every = distinct(self.nodes)
         return np.asarray(every[every >= 0])
 

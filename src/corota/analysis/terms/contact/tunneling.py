@@ -123,6 +123,8 @@ def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, In
         )
     other = pair.slave if pair.master is None else pair.master
     nodes = other.nodes[:, :2]
+    if other.two_sided:
+        nodes = np.concatenate([nodes, nodes[:, ::-1]])
     return old[nodes][:, :, :2], new[nodes][:, :, :2], nodes
 
 

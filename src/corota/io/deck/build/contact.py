@@ -168,8 +168,13 @@ class _Builder:
             return self._rigid_sides(full, view, surface, sides)
         full = view.prefix + surface.name
         if surface.nodes:
-            edges = _edges_of_nodes(self.model.mesh, self.model.mesh.node_sets[full])
+            nodes = self.model.mesh.node_sets[full]
+            edges = _edges_of_nodes(self.model.mesh, nodes)
             what = "no outer element edge has both ends in it"
+            if pair.slave == name and len(nodes):
+                covered = self.model.mesh.edge_set_nodes(edges)
+                if not np.isin(nodes, covered).all():
+                    return full  # single nodes, without edges between them
         else:
             edges, what = self.model.mesh.edge_sets[full], "it has no edges"
         if not len(edges):

@@ -356,6 +356,8 @@ class Sets:
             if edges is not None:
                 parts.append(edges)
         edges = np.concatenate(parts)
+        if len(edges) and self.mesh.are_lines(edges[:, 0]).all():
+            return self.mesh.line_sides(edges[:, 0])
         _, first = np.unique(edges, axis=0, return_index=True)
         return edges[np.sort(first)]
 
@@ -371,6 +373,12 @@ class Sets:
         return found
 
     def _row_edges(self, surface: Surface, row: SurfaceRow, cells: Ints) -> Ints | None:
+        lines = self.mesh.are_lines(cells)
+        if len(lines) and lines.all() and row.face in ("", "SPOS", "SNEG"):
+            if row.face:
+                text = f"{row.face}: contact acts on both sides of lines"
+                self.deck.note(f"{row.where}: {surface.card.spelled}: {text}")
+            return self.mesh.line_sides(cells)
         if not row.face:
             free = self.mesh.boundary_edges()
             return free[np.isin(free[:, 0], cells)]

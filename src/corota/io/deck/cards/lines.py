@@ -117,6 +117,7 @@ def beam_section(deck: Deck, card: Card) -> None:
         return
     row = rows[0]
     names = SIZES[kind]
+    height = 0.0  # that of a rectangle follows from its profile
     if kind == "CIRC" and not row.get(1) and deck.dialect == "abaqus":
         deck.note(f"{row.where}: one number of a circle is its radius, as in Abaqus")
         radius = _numbers(deck, card, row, ("the radius",))
@@ -144,6 +145,7 @@ def beam_section(deck: Deck, card: Card) -> None:
             return
         area = math.pi * (outer**2 - inner**2)
         profile = (area, 0.25 * math.pi * (outer**4 - inner**4), TUBE * area)
+        height = 2.0 * outer
     elif kind == "BOX":
         # Walls right, top, left, bottom of a box of width a and height b along the two axes.
         a, b, right, top, left, bottom = sizes
@@ -157,20 +159,21 @@ def beam_section(deck: Deck, card: Card) -> None:
             deck.row_error(card, row, 2, "the walls fill the box")
             return
         profile = _of_walls(walls, normal)
+        height = b if normal else a
     elif kind == "I":
         # Height, then width of the lower and the upper flange and the three thicknesses.
-        at, height, low, high, t_low, t_high, web = sizes
-        if height <= t_low + t_high:
+        at, tall, low, high, t_low, t_high, web = sizes
+        if tall <= t_low + t_high:
             deck.row_error(card, row, 1, "the flanges fill the height")
             return
-        mid = height - t_low - t_high
+        mid = tall - t_low - t_high
         walls = [
             (low, t_low, 0.0, 0.5 * t_low),
-            (high, t_high, 0.0, height - 0.5 * t_high),
+            (high, t_high, 0.0, tall - 0.5 * t_high),
             (web, mid, 0.0, t_low + 0.5 * mid),
         ]
         centre = sum(w * h * y for w, h, _, y in walls) / sum(w * h for w, h, _, _ in walls)
-        if abs(at - centre) > 1e-6 * height:
+        if abs(at - centre) > 1e-6 * tall:
             deck.row_error(
                 card,
                 row,
@@ -180,6 +183,7 @@ def beam_section(deck: Deck, card: Card) -> None:
             )
             return
         profile = _of_walls(walls, normal)
+        height = tall if normal else max(low, high)
     else:
         across, depth = sizes if normal else sizes[::-1]
         if kind == "RECT":
@@ -188,8 +192,10 @@ def beam_section(deck: Deck, card: Card) -> None:
         else:
             area = 0.25 * math.pi * across * depth
             profile = (area, area * depth**2 / 16.0, CIRCLE * area)
+            height = depth
     if elset and material:
-        deck.scope.lines.append(LineDraft("beam", card, elset, material, profile=profile))
+        draft = LineDraft("beam", card, elset, material, profile=profile, height=height)
+        deck.scope.lines.append(draft)
 
 
 def _of_walls(
@@ -326,7 +332,9 @@ def _section(
     if type_ in ("B23", "B33"):
         shear = 0.0
     profile = (area, inertia, shear)
-    return Section(cells, "BEAM", material, area, where=card.where, profile=profile)
+    return Section(
+        cells, "BEAM", material, area, where=card.where, profile=profile, height=draft.height
+    )
 
 
 def _spring(deck: Deck, draft: LineDraft, type_: str, cells: Ints) -> Section | None:

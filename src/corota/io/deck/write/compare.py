@@ -17,7 +17,7 @@ from corota.io.deck.write.loads import edge_area
 from corota.io.deck.write.text import Writer
 from corota.mesh.parts import cells_of
 from corota.model.constraints import Coupling, Equation
-from corota.model.contact import RigidCurve
+from corota.model.contact import RigidCurve, edges_or_nodes
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce, Temperature, applied
 from corota.model.material_table import MaterialTable
 from corota.model.materials import Expansion
@@ -342,8 +342,13 @@ def _constraints(model: Model) -> dict[str, Any]:
     }
 
 
+def _side(mesh: Mesh, where: Any) -> Any:
+    edges, nodes = edges_or_nodes(mesh, where)
+    return sorted(nodes.tolist()) if len(nodes) else sorted(map(tuple, edges.tolist()))
+
+
 def _tie(mesh: Mesh, tie: Any) -> Any:
-    return [sorted(map(tuple, mesh.edge_pairs(s).tolist())) for s in (tie.slave, tie.master)]
+    return [_side(mesh, side) for side in (tie.slave, tie.master)]
 
 
 def _pair(mesh: Mesh, pair: Any) -> Any:
@@ -354,7 +359,7 @@ def _pair(mesh: Mesh, pair: Any) -> Any:
             # Arcs may be written in pieces.
             found.append(side.reference)
         else:
-            found.append(sorted(map(tuple, mesh.edge_pairs(side).tolist())))
+            found.append(_side(mesh, side))
     return found
 
 

@@ -4,18 +4,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.errors import UnsupportedError
-from corota.model.contact import RigidCurve
+from corota.mesh.parts import cells_of
+from corota.model.contact import RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from corota.io.deck.write.text import Writer
-    from corota.mesh.data import Floats
+    from corota.mesh.data import Floats, Ints
     from corota.model.contact import ContactPair, PressureLaw
     from corota.model.model import Model
 
@@ -33,11 +35,12 @@ def contact_cards(writer: Writer) -> Iterator[str]:
         If a deck cannot hold them.
     """
     model = writer.model
+    known: list[str] = []
     for tie in model.ties:
         tolerance = f", POSITION TOLERANCE={tie.tolerance!r}" if tie.tolerance else ""
-        slave, master = writer.edge_set(tie.slave), writer.edge_set(tie.master)
+        slave, master = _side(writer, tie.slave), writer.edge_set(tie.master)
+        yield from _new_node_surface(writer, tie.slave, known)
         yield f"*TIE, NAME={_word(tie.name)}, ADJUST=NO{tolerance}\n{slave}, {master}\n"
-    known: list[str] = []
     for number, pair in enumerate(model.contacts, start=1):
         if pair.reach:
             raise UnsupportedError(
@@ -49,7 +52,9 @@ def contact_cards(writer: Writer) -> Iterator[str]:
             yield _behavior(pair.law)
         if pair.friction:
             yield f"*FRICTION\n{float(pair.friction)!r}\n"
+        _check_heights(model, pair)
         slave, master = surfaces(writer, pair)
+        yield from _new_node_surface(writer, pair.slave, known)
         if isinstance(pair.master, RigidCurve) and master not in known:
             known.append(master)
             yield _profile(model, pair.master, master)
@@ -80,11 +85,42 @@ def step_cards(writer: Writer, number: int) -> Iterator[str]:
 
 def surfaces(writer: Writer, pair: ContactPair) -> tuple[str, str]:
     """Names of the slave and the master surface in the deck."""
-    slave = writer.edge_set(pair.slave)
+    slave = _side(writer, pair.slave)
     if not isinstance(pair.master, RigidCurve):
         return slave, writer.edge_set(pair.master)
     curves = [p.master for p in writer.model.contacts if isinstance(p.master, RigidCurve)]
     return slave, f"RIGID{1 + next(i for i, c in enumerate(curves) if c is pair.master)}"
+
+
+def _side(writer: Writer, where: str | Ints) -> str:
+    """Name of a surface of edges, lines or single nodes."""
+    if len(edges_or_nodes(writer.model.mesh, where)[1]):
+        return f"NODES_{writer.node_set(where)}"
+    return writer.edge_set(where)
+
+
+def _new_node_surface(writer: Writer, where: str | Ints, known: list[str]) -> Iterator[str]:
+    """The card of a surface of single nodes, once."""
+    name = _side(writer, where)
+    if len(edges_or_nodes(writer.model.mesh, where)[1]) and name not in known:
+        known.append(name)
+        yield f"*SURFACE, TYPE=NODE, NAME={name}\n{writer.node_set(where)}\n"
+
+
+def _check_heights(model: Model, pair: ContactPair) -> None:
+    """Refuse lines in contact whose height does not follow from the section card."""
+    sides = [pair.slave] if isinstance(pair.master, RigidCurve) else [pair.slave, pair.master]
+    cells = np.concatenate([edges_or_nodes(model.mesh, side)[0][:, 0] for side in sides])
+    cells = cells[model.mesh.are_lines(cells)]
+    for section in model.sections if len(cells) else ():
+        plain = replace(section, height=0.0).line_height
+        same = math.isclose(section.line_height, plain, rel_tol=1e-12)
+        if not same and np.isin(cells, cells_of(model.mesh, section.cells)).any():
+            raise UnsupportedError(
+                f"contact pair {pair.name!r}: no card of a deck holds the height "
+                f"{section.height:g} of a line with this area and second moment; leave it out, or "
+                "keep the model in Python"
+            )
 
 
 def _behavior(law: PressureLaw) -> str:

@@ -282,7 +282,11 @@ class _Writer:
 
 def _surface(mesh: Mesh, name: str, edges: Ints) -> str:
     labels = mesh.cell_labels
-    rows = "".join(f"{labels[cell]}, S{side + 1}\n" for cell, side in edges.tolist())
+    lines = mesh.are_lines(edges[:, 0])
+    rows = "".join(
+        f"{labels[cell]}, {'' if line else f'S{side + 1}'}\n"
+        for (cell, side), line in zip(edges.tolist(), lines, strict=True)
+    )
     return f"*SURFACE, NAME={plain(name)}\n{rows}" if rows else ""
 
 
