@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 #: Independent fraction of a constraint below which it is dropped, and the largest number of
 #: constraints for this test.
 DEPENDENT, MOST_DENSE = 1e-9, 2000
+#: Fraction of a gradient at dofs that can move below which supports fix the constraint: its gap
+#: changes by less than a millionth of any displacement.
+FIXED = 1e-6
 #: Relative size of a product that consists of rounding errors only.
 NULL = 1e-10
 #: Right-hand sides beyond which a factorization of the whole matrix costs less than GMRES.
@@ -80,13 +83,15 @@ class SaddlePointSystem:
     system : Reduced
     n : int
         Multipliers.
+    kept : int
+        The first of these belong to constraints that are never dropped in favor of others: ties.
     """
 
     #: Processes whose values add up to the matrix.
     communicator: Communicator = ALONE
 
-    def __init__(self, system: Reduced, n: int) -> None:
-        self.system, self.n = system, n
+    def __init__(self, system: Reduced, n: int, kept: int = 0) -> None:
+        self.system, self.n, self.kept = system, n, kept
         if system.constraints.pattern.communicator is not ALONE:
             self.communicator = system.constraints.pattern.communicator
         self.free, base = system.constraints.free, system.constraints.pattern
@@ -147,9 +152,18 @@ class SaddlePointSystem:
     # -- solution ----------------------------------------------------------------------
 
     def solve(
-        self, at: Evaluation, coupling: Coupling, force: Floats, rhs: Floats, du_prescribed: Floats
+        self,
+        at: Evaluation,
+        coupling: Coupling,
+        force: Floats,
+        rhs: Floats,
+        release: Floats,
+        du_prescribed: Floats,
     ) -> tuple[Floats, Floats, int]:
         """Corrections of displacements and multipliers.
+
+        Constraints that supports fix, or that follow from others, are taken out: their tractions
+        become zero.
 
         Parameters
         ----------
@@ -159,6 +173,8 @@ class SaddlePointSystem:
             Right-hand sides of equilibrium.
         rhs : ndarray, shape (n, k)
             And of the constraints.
+        release : ndarray, shape (n, k)
+            Changes of the multipliers that make them zero.
         du_prescribed : ndarray, shape (n_dofs, k)
             Prescribed changes at constrained dofs, 0 elsewhere.
 
@@ -173,9 +189,8 @@ class SaddlePointSystem:
         if at.load_stiffness is not None and not (system.free_motion_excluded or at.heft):
             # Follower loads give a free motion a stiffness that does not constrain it.
             bare = replace(at, load_stiffness=None)
-            self.solve(
-                bare, coupling, np.zeros_like(force), np.zeros_like(rhs), 0.0 * du_prescribed
-            )
+            none = np.zeros_like(rhs)
+            self.solve(bare, coupling, np.zeros_like(force), none, none, 0.0 * du_prescribed)
             system.free_motion_excluded = True
         system.link = link
         constrained = np.zeros(self.size, bool)
@@ -196,6 +211,8 @@ class SaddlePointSystem:
                     column -= self._multiply(data, move)
                     np.subtract.at(column, rest.rows, rest.values * move[rest.columns])
             data[self._mask(constrained)] = 0.0
+            fixed = self._fixed(coupling, data)
+            self._take_out(fixed, data, b, release)
             on = self.diagonal[constrained]
             data[on] = np.where(data[on] == 0.0, 1.0, np.abs(data[on]))
             b[constrained] = 0.0
@@ -203,16 +220,19 @@ class SaddlePointSystem:
         try:
             x, negative = self._solve(data, rest, b)
         except SingularError as error:
-            dropped = self._drop_dependent(data, b)
-            if not dropped:
+            # The first process has their rows.
+            dropped = self.communicator.broadcast(self._dependent(data))
+            if not len(dropped):
                 raise self._named(error) from None
+            self._take_out(dropped, data, b, release)
+            fixed = np.concatenate([fixed, dropped])
             try:
                 x, negative = self._solve(data, rest, b)
             except SingularError as again:
                 raise self._named(again) from None
-            self.dropped.update(dropped)
-            if negative >= 0:
-                negative += len(dropped)  # each would have given one
+        self.dropped.update(fixed.tolist())
+        if negative >= 0:
+            negative += len(fixed)  # each would have given one
         x[constrained] = moved[constrained]
         self._at_rest, self._link = constrained, link
         return self._spread(x), x[self.nf :], negative
@@ -233,16 +253,24 @@ class SaddlePointSystem:
         """Displacements of all dofs of a solution."""
         return self._link.expand(x[: self.nf])
 
-    def _drop_dependent(self, data: Floats, b: Floats) -> list[int]:
-        """Remove redundant constraints, in place; returns their multipliers."""
-        # The first process has their rows.
-        eliminated = self.communicator.broadcast(self._dependent(data))
-        if len(eliminated):
-            mine = np.isin(self.columns, eliminated + self.nf)
-            data[mine] = 0.0
-            data[self.diagonal[eliminated + self.nf]] = 1.0
-            b[eliminated + self.nf] = 0.0
-        return [int(k) for k in eliminated]
+    def _fixed(self, coupling: Coupling, data: Floats) -> Ints:
+        """Multipliers of constraints whose gradients vanish at all dofs that can move."""
+        whole = np.zeros(self.n)
+        np.add.at(whole, coupling.rows.columns, coupling.rows.values**2)
+        border = np.flatnonzero((self.columns >= self.nf) & (self.rows < self.nf))
+        left = np.zeros(self.n)
+        np.add.at(left, self.columns[border] - self.nf, data[border] ** 2)
+        left = self.communicator.sum(left)
+        fixed = np.flatnonzero((whole > 0.0) & (left <= FIXED**2 * whole))
+        out: Ints = self.communicator.broadcast(fixed)
+        return out
+
+    def _take_out(self, multipliers: Ints, data: Floats, b: Floats, release: Floats) -> None:
+        """Remove constraints from a matrix and its right-hand sides, in place."""
+        if len(multipliers):
+            data[np.isin(self.columns, multipliers + self.nf)] = 0.0
+            data[self.diagonal[multipliers + self.nf]] = 1.0
+            b[multipliers + self.nf] = release[multipliers]
 
     def _dependent(self, data: Floats) -> Ints:
         """Multipliers of constraints that follow from others."""
@@ -263,10 +291,16 @@ class SaddlePointSystem:
         table[row, column] = data[inner]
         length = np.sqrt((table**2).sum(axis=0))
         table /= np.where(length > 0.0, length, 1.0)
-        _, r, order = scipy.linalg.qr(table, mode="economic", pivoting=True)
-        size = np.zeros(len(chosen))
-        size[: min(r.shape)] = np.abs(np.diag(r))
-        return chosen[order[size <= DEPENDENT]]
+        out, basis = [], np.zeros((len(table), 0))
+        for part in (chosen < self.kept, chosen >= self.kept):
+            # What the constraints before it fix already is no part of a constraint.
+            rest = table[:, part] - basis @ (basis.T @ table[:, part])
+            q, r, order = scipy.linalg.qr(rest, mode="economic", pivoting=True)
+            size = np.zeros(rest.shape[1])
+            size[: min(r.shape)] = np.abs(np.diag(r))
+            out.append(chosen[part][order[size <= DEPENDENT]])
+            basis = np.column_stack([basis, q[:, : int((size > DEPENDENT).sum())]])
+        return np.concatenate(out)
 
     def _named(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""

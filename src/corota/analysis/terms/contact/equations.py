@@ -255,7 +255,10 @@ class ContactEquations:
         coupling, own, expected = self._coupling(at.contact_state, states)
         force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
         rows = own[:, None] * right_sides.own
-        du, dp, negative = self.border.solve(at.at, coupling, force, rows, right_sides.constrained)
+        release = -at.contact_state.multipliers[:, None] * right_sides.own
+        du, dp, negative = self.border.solve(
+            at.at, coupling, force, rows, release, right_sides.constrained
+        )
         return du, dp, negative - expected if negative >= 0 else -1
 
     def _held(
@@ -283,7 +286,9 @@ class ContactEquations:
         """Linear algebra, kept with the system."""
         border = self.contact_term.border
         if border is None:
-            border = self.contact_term.border = SaddlePointSystem(self.system, self.contact_term.n)
+            ties = sum(pair.width for pair in self.contact_term.pairs if pair.tied)
+            border = SaddlePointSystem(self.system, self.contact_term.n, ties)
+            self.contact_term.border = border
         return border
 
     def _pairs(self, contact_state: ContactState) -> Any:

@@ -436,7 +436,11 @@ def responses(
     constrained = np.zeros((problem.n, len(columns)))
     constrained[:, 0] = right_sides.constrained[:, 0]
     both = np.column_stack([right_sides.own[0] * own, rows])
-    du, dp, _ = problem.border.solve(at.at, coupling, np.column_stack(columns), both, constrained)
+    release = np.zeros_like(both)
+    release[:, 0] = -right_sides.own[0] * at.contact_state.multipliers
+    du, dp, _ = problem.border.solve(
+        at.at, coupling, np.column_stack(columns), both, release, constrained
+    )
     return du, dp
 
 
