@@ -113,3 +113,13 @@ def test_energy_that_an_impact_loses_is_noted_and_the_conserving_scheme_keeps_it
         else:
             assert abs(lost) < 1e-3
             assert not any("energy balance" in n for n in results.notes)
+
+
+@pytest.mark.parametrize(("layers", "said"), [(2, True), (3, False)])
+def test_a_changed_moment_of_inertia_is_said(layers, said):
+    """A thick ring of two elements cannot keep it once its outer nodes have no mass."""
+    model = ct.Model(ct.mesh.annulus(0.8, 1.6, layers, 24))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.0, rho=1.0))
+    model.contact("outer", ct.RigidCurve.line((-9.0, -1.7), (9.0, -1.7)), name="floor")
+    results = ct.solve(model, ct.Dynamic(period=0.02, first_increment=0.01), threads=1)
+    assert any("changes the moment of inertia" in note for note in results.notes) == said

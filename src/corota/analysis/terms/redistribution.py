@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 LEAST = 0.1
 #: Relative residual of satisfied conditions.
 HOLDS = 1e-9
-#: Share of a body's size by which its center may move without a remark.
+#: Share of a body's size by which its center may move without a remark, and relative change of its
+#: moment of inertia.
 SMALL = 0.01
 
 
@@ -57,22 +58,26 @@ def set_moving_mass(system: Any, kind: str, massless: NDArray[np.bool_] | None) 
     before, after = communicator.concatenate(before), communicator.concatenate(after)
     process = communicator.concatenate(np.full(len(own), communicator.rank))
     factors = np.ones(len(body))
-    moved = 0.0
+    errors = np.zeros(2)
     for number in np.unique(body[(before != after).any(axis=1)]):
         heavy = (body == number) & (after[:, 0] > 0.0)
-        factors[heavy], aside = _kept(before[heavy], after[heavy])
-        moved = max(moved, aside)
+        factors[heavy], left = _kept(before[heavy], after[heavy])
+        errors = np.maximum(errors, left)
     factors = factors[process == communicator.rank]
     first = 0
     for number, block in enumerate(system.own_blocks):
         core.set_mass_factors(number, factors[first : first + len(block.cells)])
         first += len(block.cells)
-    if moved <= SMALL:
+    what = [
+        f"moves the center of mass of a body by {errors[0]:.1%} of its radius of gyration",
+        f"changes the moment of inertia of a body by {errors[1]:.1%}",
+    ]
+    said = [text for text, error in zip(what, errors, strict=True) if error > SMALL]
+    if not said:
         return ""
     return (
-        f"contact: the mass of contact nodes moves the center of mass of a body by {moved:.1%} of "
-        "its radius of gyration; take three elements or more through its thickness, elements with "
-        "mid-side nodes, or redistribute=False"
+        f"contact: the mass of contact nodes {' and '.join(said)}; take three elements or more "
+        "through its thickness, elements with mid-side nodes, or redistribute=False"
     )
 
 
@@ -100,8 +105,12 @@ def _moments(system: Any, kind: str) -> Floats:
     return np.stack([mass, along, across, polar], axis=1)
 
 
-def _kept(before: Floats, after: Floats) -> tuple[Floats, float]:
-    """Factors of the elements of a body, and how far its center moves over its gyration."""
+def _kept(before: Floats, after: Floats) -> tuple[Floats, tuple[float, float]]:
+    """Factors of the elements of a body, and what they leave of its errors.
+
+    These are the way of its center over its radius of gyration, and the relative change of its
+    moment of inertia.
+    """
     total = before.sum(axis=0)
     center = total[1:3] / total[0]
     size = np.sqrt(max(total[3] / total[0] - center @ center, 0.0)) or 1.0
@@ -122,8 +131,11 @@ def _kept(before: Floats, after: Floats) -> tuple[Floats, float]:
             continue
         factors = 1.0 + shape[:, :count] @ share
         if factors.min() >= LEAST:
-            return factors, 0.0
-    return np.ones(len(after)), float(np.hypot(*missing[1:3]))
+            break
+    else:
+        factors = np.ones(len(after))
+    left = (want - factors @ have) / total[0]
+    return factors, (float(np.hypot(*left[1:3])), float(abs(left[3])))
 
 
 __all__ = ["set_moving_mass"]
