@@ -81,6 +81,8 @@ class Section(Brief):
     profile: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), kw_only=True)
     table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
     height: float = field(default=0.0, kw_only=True)
+    #: Distance of the outer fibers of a beam from its axis [length], 0 if it is not known.
+    fiber: float = field(default=0.0, kw_only=True, compare=False)
     #: Thickness of the nodes, where it is given for each.
     nodal_thickness: Floats | None = field(default=None, kw_only=True, compare=False, repr=False)
 

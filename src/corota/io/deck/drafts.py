@@ -348,6 +348,8 @@ class LineDraft:
     material: str = ""
     elastic: Elastic | None = None
     profile: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    #: Distance of the outer fibers from the axis, 0 if they are not alike.
+    fiber: float = 0.0
     rows: list[Row] = field(default_factory=list)
     height: float = 0.0
 

@@ -17,6 +17,7 @@ from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
 from corota.io.tables.dat_numbers import fortran, rows
+from corota.mesh.parts import cells_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -174,7 +175,7 @@ def _element_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]
     for name in (v.upper() for v in output.variables):
         if name in POINT_TITLES:
             title, stored = POINT_TITLES[name]
-            owner, point, values = _at_points(frame, cells, stored)
+            owner, point, values = _at_points(model, frame, cells, stored)
             yield _head(title, output, frame)
             if not len(owner):
                 continue
@@ -226,10 +227,40 @@ def _picked(
     return place, owners, values
 
 
-def _at_points(frame: Frame, cells: Ints | None, name: str) -> tuple[Ints, Ints, Floats]:
+def _at_fibers(model: Model, block: PointFields) -> Floats | None:
+    """Stress of beams at the outer fibers, shape (n, 4, 4); none if these are not known.
+
+    At the first end on the right of the way to the second and on the left, then at the second.
+    """
+    if "M1" not in block.values or not len(block.cells):
+        return None
+    cell = int(block.cells[0])
+    beams = [s for s in model.sections if s.element == "BEAM" and s.fiber > 0.0]
+    section = next((s for s in beams if cell in cells_of(model.mesh, s.cells)), None)
+    if section is None:
+        return None
+    number, _ = model.mesh.locate(cell)
+    rows = block.cells - model.mesh.offsets[number]
+    place = model.mesh.points[model.mesh.cells[number].nodes[rows]]
+    along = place[:, 1] - place[:, 0]
+    angle = np.arctan2(along[:, 1], along[:, 0]) + block.frame_rotation
+    c, s = np.cos(angle), np.sin(angle)
+    area, inertia, _ = section.profile
+    axial = block.values["N"][:, :1] / area
+    bending = [block.values[name][:, :1] * section.fiber / inertia for name in ("M1", "M2")]
+    stress = np.hstack([axial + sign * b for b in bending for sign in (1.0, -1.0)])
+    direction = np.stack([c * c, s * s, np.zeros_like(c), c * s], axis=1)
+    return np.asarray(stress[:, :, None] * direction[:, None, :])
+
+
+def _at_points(
+    model: Model, frame: Frame, cells: Ints | None, name: str
+) -> tuple[Ints, Ints, Floats]:
     """Cell, point number (from 1) and value of every point of a set, in the set's order."""
 
     def take(block: PointFields) -> Floats | None:
+        if name == "S" and (fibers := _at_fibers(model, block)) is not None:
+            return fibers
         # Variables that a material does not have, such as plastic strain, are zero.
         return block.values.get(name, np.zeros_like(block.volume))
 

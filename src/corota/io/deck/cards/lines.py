@@ -138,7 +138,9 @@ def beam_section(deck: Deck, card: Card) -> None:
         sizes = _numbers(deck, card, row, names)
     if sizes is None:
         return
+    fiber = 0.0
     if kind == "PIPE":
+        fiber = sizes[0]
         outer, inner = sizes[0], sizes[0] - sizes[1]
         if inner < 0.0:
             deck.row_error(card, row, 1, "the thickness exceeds the radius")
@@ -186,6 +188,7 @@ def beam_section(deck: Deck, card: Card) -> None:
         height = tall if normal else max(low, high)
     else:
         across, depth = sizes if normal else sizes[::-1]
+        fiber = 0.5 * depth
         if kind == "RECT":
             area = across * depth
             profile = (area, area * depth**2 / 12.0, RECTANGLE * area)
@@ -194,7 +197,9 @@ def beam_section(deck: Deck, card: Card) -> None:
             profile = (area, area * depth**2 / 16.0, CIRCLE * area)
             height = depth
     if elset and material:
-        draft = LineDraft("beam", card, elset, material, profile=profile, height=height)
+        draft = LineDraft(
+            "beam", card, elset, material, profile=profile, height=height, fiber=fiber
+        )
         deck.scope.lines.append(draft)
 
 
@@ -333,7 +338,14 @@ def _section(
         shear = 0.0
     profile = (area, inertia, shear)
     return Section(
-        cells, "BEAM", material, area, where=card.where, profile=profile, height=draft.height
+        cells,
+        "BEAM",
+        material,
+        area,
+        where=card.where,
+        profile=profile,
+        height=draft.height,
+        fiber=draft.fiber,
     )
 
 

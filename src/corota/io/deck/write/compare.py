@@ -39,7 +39,7 @@ ROUNDING = 1e-9
 #: Strain of the path that compares plastic laws, in strains at first yield.
 PAST_YIELD = 20.0
 #: Fields of sections that are compared elsewhere or not at all.
-_ELSEWHERE = ("cells", "where", "material", "thickness", "nodal_thickness")
+_ELSEWHERE = ("cells", "where", "material", "thickness", "nodal_thickness", "fiber")
 
 
 @dataclass
