@@ -233,3 +233,10 @@ def test_a_part_in_another_plane_has_one_message(tmp_path: Path) -> None:
         read(tmp_path, text)
     assert len(caught.value.diagnostics) == 1
     assert "exchange y and z" in str(caught.value)
+
+
+def test_parameters_without_effect_are_noted(tmp_path: Path) -> None:
+    text = PERIODIC.format(unsorted="")
+    text = text.replace("MATERIAL=M\n1.", "MATERIAL=M, STACK DIRECTION=3, LAYUP=A\n1.")
+    notes = read(tmp_path, text).notes
+    assert sum("is ignored" in note for note in notes) == 2

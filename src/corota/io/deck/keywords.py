@@ -123,13 +123,14 @@ _TABLE: dict[str, Keyword] = {
     "SOLID SECTION": Keyword(
         card("material.solid_section"),
         "ELSET MATERIAL ORIENTATION PLANE LOCALSTRAIN DILATATION BETA0 NODALTHICKNESS",
-        "CONTROLS OFFSET REFNODE",
+        "CONTROLS OFFSET REFNODE STACKDIRECTION SYMMETRIC LAYUP",
         place="model",
     ),
     "SHELL SECTION": Keyword(
         card("material.shell_section"),
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",
-        "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO",
+        "OFFSET CONTROLS POISSON SECTIONINTEGRATION TEMPERATURE DENSITY THICKNESSMODULUS ZERO "
+        "STACKDIRECTION SYMMETRIC LAYUP",
         place="model",
     ),
     "NODAL THICKNESS": Keyword(card("material.nodal_thickness"), place="model"),
@@ -185,7 +186,7 @@ _TABLE: dict[str, Keyword] = {
         card("dynamic.frequency"),
         "",
         "SOLVER STORAGE EIGENSOLVER NORMALIZATION ACOUSTICCOUPLING RESIDUALMODES "
-        "NUMBERINTERVAL SIM",
+        "NUMBERINTERVAL SIM BIAS DAMPINGPROJECTION",
     ),
     "MODAL DYNAMIC": Keyword(card("dynamic.modal_dynamic"), "", "SOLVER DIRECT"),
     "STEADY STATE DYNAMICS": Keyword(
