@@ -23,7 +23,6 @@ from corota.analysis.terms.contact.contact import ContactTerm
 from corota.analysis.terms.elements import Elements
 from corota.analysis.terms.term import TERMS, StatePoint
 from corota.errors import SingularError
-from corota.lazy import lazy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-name_motion = lazy("corota.analysis.free_motion:name_motion")
 
 #: Procedures that find the equilibrium of their own theory.
 EQUILIBRATING = ("static", "dynamic")
@@ -300,8 +298,9 @@ class System(NumberedModel):
 
     def singular(self, error: SingularError) -> SingularError:
         """The same error in terms of nodes."""
-        named: SingularError = name_motion(self, error, self.scales.ratio)
-        return named
+        from corota.analysis.free_motion import name_motion
+
+        return name_motion(self, error, self.scales.ratio)
 
     def _add_load_stiffness(self, at: Evaluation) -> tuple[bool, Any]:
         import scipy.sparse as sp

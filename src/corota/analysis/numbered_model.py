@@ -21,7 +21,6 @@ from corota.analysis.parallel.partition import own_blocks
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains, start_temperatures
 from corota.errors import ModelError
-from corota.lazy import lazy
 from corota.model import elements
 from corota.model.blocks import blocks_of, check_shapes, core_input
 
@@ -36,8 +35,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-carry_curves = lazy("corota.analysis.constraints.setup:carry_curves")
-extra_dofs = lazy("corota.analysis.constraints.setup:extra_dofs")
 
 #: Names of the dofs in messages.
 DOF_NAMES = ("x", "y", "rotation")
@@ -81,9 +78,14 @@ class NumberedModel:
         for b in self.blocks:
             own = elements.find(b.section.element).dofs_per_node
             np.maximum.at(carried, b.nodes.ravel(), own)
-        extra = extra_dofs(model, carried > 0) if model.constraints else np.zeros(0, np.uint8)
-        if model.contacts:
-            extra = carry_curves(model, carried, extra)
+        extra = np.zeros(0, np.uint8)
+        if model.constraints or model.contacts:
+            from corota.analysis.constraints.setup import carry_curves, extra_dofs
+
+            if model.constraints:
+                extra = extra_dofs(model, carried > 0)
+            if model.contacts:
+                extra = carry_curves(model, carried, extra)
         if self.communicator.size > 1:
             # All processes number the dofs of all elements.
             extra = np.maximum(extra if len(extra) else 0, carried).astype(np.uint8)

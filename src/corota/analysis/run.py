@@ -27,7 +27,6 @@ from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built,
 from corota.analysis.terms.contact.output import output as contact_output
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
-from corota.lazy import lazy
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
 from corota.results.results import Frame, Results
 
@@ -47,7 +46,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-add_kinetic = lazy("corota.analysis.terms.inertia:add_kinetic")
 
 #: Largest useful number of threads per core, and in total.
 THREADS_PER_CORE, LEAST_CAP = 4, 64
@@ -457,6 +455,8 @@ class Analysis:
                     fields, sums = state.recover()
                 elements = dict(sums)
                 if state.v is not None and any("ELKE" in out.variables for out in step.outputs):
+                    from corota.analysis.terms.inertia import add_kinetic
+
                     add_kinetic(system, fields, state.u, state.v, step)
             scalars = {**scalars, "strain energy": sums["strain energy"]}
             strain = system.largest_linear_strain, number, increment

@@ -9,7 +9,6 @@ import numpy as np
 
 from corota.analysis.load_history import LoadHistory
 from corota.errors import ModelError
-from corota.lazy import lazy
 from corota.model.dofs import DOFS
 from corota.model.loads import check_supports
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from corota.model.loads import Fixed
 
     Floats = NDArray[np.float64]
-
-without_rotation = lazy("corota.model.rotations:without_rotation")
 
 
 class Supports:
@@ -79,6 +76,8 @@ class Supports:
                     item.where,
                 )
             if item.dof == 2 and item.where is None and (dofs < 0).all():
+                from corota.model.rotations import without_rotation
+
                 self.notes.append(without_rotation(self.system.model.mesh, item))
             dofs = dofs[dofs >= 0]
             self.system.constraints.refuse_constrained(dofs, item.where)
