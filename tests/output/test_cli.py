@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -314,7 +313,5 @@ def test_missing_matplotlib_says_how_to_install_it(monkeypatch, capsys):
 def test_console_script_is_installed():
     script = shutil.which("corota", path=str(Path(sys.executable).parent))
     assert script
-    begin = time.perf_counter()
     done = subprocess.run([script, "--version"], capture_output=True, text=True, check=True)
     assert done.stdout.startswith("corota ")
-    assert time.perf_counter() - begin < 5.0
