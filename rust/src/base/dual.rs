@@ -19,7 +19,7 @@ impl<const D: usize> Dual<D> {
         Self { v, d }
     }
 
-    fn chain(self, v: f64, dv: f64) -> Self {
+    pub(super) fn chain(self, v: f64, dv: f64) -> Self {
         let mut d = self.d;
         for x in &mut d {
             *x *= dv;

@@ -1,6 +1,7 @@
 //! Forward differentiation twice over: a value with its exact gradient and Hessian.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::dual::Dual;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// A number that geometry can be written in: plain, or with its derivatives.
@@ -36,6 +37,25 @@ impl Smooth for f64 {
     }
     fn sin_cos(self) -> (Self, Self) {
         f64::sin_cos(self)
+    }
+}
+
+impl<const D: usize> Smooth for Dual<D> {
+    fn real(v: f64) -> Self {
+        Self { v, d: [0.0; D] }
+    }
+    fn value(self) -> f64 {
+        self.v
+    }
+    fn scale(self, k: f64) -> Self {
+        self.chain(self.v * k, k)
+    }
+    fn sqrt(self) -> Self {
+        super::Real::sqrt(self)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.v.sin_cos();
+        (self.chain(s, c), self.chain(c, -s))
     }
 }
 

@@ -8,13 +8,15 @@
 //! their roles are exchanged; the signs are those of the slave's other constraints.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Shape, Vec2, add, dot, sub, unit};
-use super::discretization::node_to_segment::{Bounds, choose, gap_and_slip, open};
+use super::boundary::followers;
+use super::curve::{Vec2, add, dot, unit};
+use super::discretization::node_to_segment::{Bounds, choose, met, open};
 use super::master::{Hit, Master, Surface};
 use super::search::{self, Candidate, Item, Search, each};
 use super::sides::Sides;
 use super::terms::{Function, Share, Terms, WIDTH, join, lifted};
-use std::collections::HashMap;
+use super::travel::{Start, Station};
+use crate::base::Smooth;
 
 /// Least turn of the boundary at a corner [rad]: 50 degrees, since the constraints at both sides of
 /// a blunter one keep it out.
@@ -29,8 +31,6 @@ const DENT: f64 = 0.35;
 /// edge passes `DENT`, the corner may lie inside: in force on one side of this angle and absent on the
 /// other, with no equilibrium on either.
 const KEPT: f64 = 0.175;
-/// Distance of two ends that are one point, in lengths of the pieces that meet there.
-const SAME: f64 = 1e-6;
 /// Most variables of an edge and a corner.
 const OWN: usize = 9;
 
@@ -57,6 +57,8 @@ pub struct Corners {
     /// Reference area of every constraint: that of a slave edge, on average.
     area: f64,
     search: Search,
+    /// The same where slips are measured from.
+    search_of_start: Search,
     /// Number of each corner's first candidate.
     index: Vec<usize>,
     /// Member of the other side that each corner met: in the last evaluation, and in the last commit.
@@ -108,6 +110,7 @@ impl Corners {
             depth,
             held: [vec![None; list.len()], vec![None; list.len()]],
             search: Search::default(),
+            search_of_start: Search::default(),
             index: Vec::new(),
             list,
             first,
@@ -203,28 +206,34 @@ impl Corners {
         self.first + c
     }
 
-    /// Terms of all corners that meet an edge at `x`; slip since `old`. Candidates are numbered
+    /// Terms of all corners that meet an edge at `x`; slips since a start. Candidates are numbered
     /// from `from`.
     pub fn evaluate(
         &mut self,
         sides: &Sides,
         x: &[[f64; 3]],
-        old: Option<&[[f64; 3]]>,
+        start: Option<&Start>,
         from: usize,
     ) -> Vec<Terms> {
         if self.index.is_empty() {
             return Vec::new();
         }
-        let found = each(self.list.len(), |c| self.meets(sides, c, x));
+        let found = each(self.list.len(), |c| self.meets(sides, c, x, self.held[0][c]));
         for (held, pair) in self.held[0].iter_mut().zip(&found) {
             *held = pair.map(|p| self.search.candidates[p].1);
         }
-        let terms = |pair: usize| self.terms(sides, pair, x, old, from);
+        let terms = |pair: usize| self.terms(sides, pair, x, start, from);
         found.into_iter().flatten().map(terms).collect()
     }
 
     /// The candidate whose edge a corner meets.
-    fn meets(&self, sides: &Sides, c: usize, x: &[[f64; 3]]) -> Option<usize> {
+    fn meets(
+        &self,
+        sides: &Sides,
+        c: usize,
+        x: &[[f64; 3]],
+        before: Option<usize>,
+    ) -> Option<usize> {
         let corner = self.list[c];
         let (p, [first, second]) = (point(&self.own, corner, x), normals(&self.own, corner, x));
         let normal = unit(add(first, second));
@@ -232,7 +241,6 @@ impl Corners {
         let half = dot(normal, first).clamp(-1.0, 1.0).acos();
         let facing = |tilt: f64| (half + tilt).min(0.5 * std::f64::consts::PI).cos();
         let (facing, kept) = (facing(DENT), facing(DENT + KEPT));
-        let before = self.held[0][c];
         let shape = |pair: usize| {
             let i = self.search.candidates[pair].1;
             let edge = self.faces.place(i, x);
@@ -255,7 +263,7 @@ impl Corners {
         sides: &Sides,
         pair: usize,
         x: &[[f64; 3]],
-        old: Option<&[[f64; 3]]>,
+        start: Option<&Start>,
         from: usize,
     ) -> Terms {
         let (c, i) = self.search.candidates[pair];
@@ -269,17 +277,64 @@ impl Corners {
             rigid => rigid.shape(corner.before, &v[at..at + own]).end(1),
         };
         let face = self.faces.shape(i, &v[from_other..from_other + other]);
-        let before = old.map(|o| (point(&self.own, corner, o), self.faces.place(i, o)));
-        let before = before.as_ref().map(|(p, face)| (*p, face));
-        let (gap, slip) = gap_and_slip(p, &face, before);
-        let constraint = self.constraint(c);
+        let (hit, along) = met(p, &face);
+        let (constraint, r) = (self.constraint(c), hit.r.v);
+        let slip = start.map_or_else(Function::none, |start| {
+            let ends = if self.of_slave {
+                [(corner.before, 1.0), (i, r)]
+            } else {
+                [(i, r), (corner.before, 1.0)]
+            };
+            let normal = face.normal_at(r);
+            let normal = if self.of_slave { normal } else { normal.map(|c| -c) };
+            let path = start.slip(ends[0], ends[1], normal, Some(constraint));
+            let path = path * start.stretch(self.of_slave, i, r, face.way_beside(r, hit.gap.v));
+            // The direction is that of a node of the slave; seen from the other side it is the same.
+            Function::along(path * self.area, &along.map(|a| a.scale(self.area)))
+        });
         let share = Share {
             constraint,
-            gap: (&open(gap, sides.offset[constraint], self.area)).into(),
-            slip: slip.map_or_else(Function::none, |s| (&open(s, 0.0, self.area)).into()),
+            gap: (&open(hit.gap, sides.offset[constraint], self.area)).into(),
+            slip,
             area: self.area,
         };
         Terms { pair: from + pair, variables, shares: vec![share] }
+    }
+
+    /// Where corners meet the other side at `x`, with candidates that belong to it.
+    pub fn stations(
+        &mut self,
+        sides: &Sides,
+        x: &[[f64; 3]],
+        closed: &dyn Fn(usize) -> bool,
+    ) -> Vec<Station> {
+        std::mem::swap(&mut self.search, &mut self.search_of_start);
+        self.renew(sides, x);
+        self.number();
+        let station = |(c, &corner): (usize, &Corner)| {
+            let own = self.constraint(c);
+            let i = self.search.candidates[self.meets(sides, c, x, self.held[1][c])?].1;
+            let hit = self.faces.place(i, x).closest(point(&self.own, corner, x));
+            let corner = (corner.before, 1.0);
+            let [(edge, place), (master, r)] =
+                if self.of_slave { [corner, (i, hit.r)] } else { [(i, hit.r), corner] };
+            let (gap, closed) = (hit.gap, closed(own));
+            let (span, opposite) = ([place; 2], [r; 2]);
+            Some(Station {
+                point: Some(own),
+                corner: true,
+                edge,
+                span,
+                master,
+                opposite,
+                gap,
+                closed,
+            })
+        };
+        let found = self.list.iter().enumerate().filter_map(station).collect();
+        std::mem::swap(&mut self.search, &mut self.search_of_start);
+        self.number();
+        found
     }
 
     pub fn commit(&mut self) {
@@ -368,37 +423,11 @@ fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
 
 /// Corners at which the boundary, with the body on its left, turns left sharply.
 fn sharp(master: &Surface, x: &[[f64; 3]], least: f64) -> Vec<Corner> {
-    let members: Vec<Master<f64>> = (0..master.len()).map(|j| master.place(j, x)).collect();
     let turns = |&Corner { before, behind }: &Corner| {
         let [a, b] = normals(master, Corner { before, behind }, x);
         (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b)) > least
     };
-    let pairs: Vec<Corner> = match master {
-        Surface::Edges(edges) => {
-            let whole = |shape: Shape| matches!(shape, Shape::Element | Shape::SecondHalf);
-            let begins: HashMap<u32, usize> =
-                edges.iter().enumerate().map(|(j, e)| (e.nodes[0], j)).collect();
-            let ends = edges.iter().enumerate().filter(|(_, e)| whole(e.shape));
-            let next = |(before, e): (usize, &super::curve::Edge)| {
-                begins.get(&e.nodes[1]).map(|&behind| Corner { before, behind })
-            };
-            ends.filter_map(next).collect()
-        }
-        _ => {
-            let met = |before: usize| {
-                let end = members[before].end(1);
-                let size = dist(members[before].end(0), end);
-                (0..members.len())
-                    .find(|&j| dist(members[j].end(0), end) <= SAME * size)
-                    .map(|behind| Corner { before, behind })
-            };
-            (0..members.len()).filter_map(met).collect()
-        }
-    };
-    pairs.into_iter().filter(turns).collect()
-}
-
-fn dist(p: Vec2<f64>, q: Vec2<f64>) -> f64 {
-    let d = sub(p, q);
-    dot(d, d).sqrt()
+    let met =
+        |(before, behind): (usize, Option<usize>)| behind.map(|behind| Corner { before, behind });
+    followers(master, x).into_iter().enumerate().filter_map(met).filter(turns).collect()
 }

@@ -1,9 +1,7 @@
 //! What a slave point is measured against: element edges, and lines and arcs of a rigid body.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{
-    Curve, Edge, Shape, Vec2, add, dot, fixed, lift, outward, sub, times, unit, values,
-};
+use super::curve::{Curve, Edge, Shape, Vec2, add, dot, fixed, outward, sub, times, unit, values};
 use crate::base::Smooth;
 use std::f64::consts::PI;
 
@@ -14,9 +12,9 @@ const BEYOND: f64 = 0.17;
 /// Place and turn of a rigid body.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<T> {
-    origin: Vec2<T>,
-    cos: T,
-    sin: T,
+    pub(super) origin: Vec2<T>,
+    pub(super) cos: T,
+    pub(super) sin: T,
 }
 
 impl<T: Smooth> Frame<T> {
@@ -30,7 +28,7 @@ impl<T: Smooth> Frame<T> {
         add(self.origin, [p[0] * c - p[1] * s, p[0] * s + p[1] * c])
     }
 
-    fn back(&self, p: Vec2<T>) -> Vec2<T> {
+    pub(super) fn back(&self, p: Vec2<T>) -> Vec2<T> {
         let (c, s, q) = (self.cos, self.sin, sub(p, self.origin));
         [q[0] * c + q[1] * s, q[1] * c - q[0] * s]
     }
@@ -53,7 +51,7 @@ pub enum Piece {
 #[derive(Clone, Debug)]
 pub struct Rigid {
     pieces: Vec<Piece>,
-    node: Option<u32>,
+    pub(super) node: Option<u32>,
     point: Vec2<f64>,
 }
 
@@ -101,11 +99,11 @@ impl Rigid {
 /// An arc in space.
 #[derive(Clone, Copy, Debug)]
 pub struct Arc<T> {
-    center: Vec2<T>,
+    pub(super) center: Vec2<T>,
     radius: f64,
     ends: [Vec2<T>; 2],
-    half: f64,
-    frame: Frame<T>,
+    pub(super) half: f64,
+    pub(super) frame: Frame<T>,
 }
 
 impl<T: Smooth> Arc<T> {
@@ -236,38 +234,38 @@ impl<T: Smooth> Master<T> {
         }
     }
 
-    /// The same material point in another configuration of the master.
-    pub fn carry(&self, hit: &Hit<T>, other: &Self) -> Hit<T> {
-        let point = match (self, other) {
-            (Self::Curve(_), Self::Curve(c)) => c.extended(hit.r),
-            (Self::Arc(a), Self::Arc(b)) => b.frame.out(a.frame.back(hit.point)),
-            _ => unreachable!("a piece keeps its kind"),
-        };
-        Hit { point, ..*hit }
-    }
-
-    /// Length of the master for a unit of its parameter, near a hit.
-    pub fn speed(&self, hit: &Hit<T>) -> f64 {
+    /// Length of the master for a unit of its parameter, near one.
+    pub fn speed_at(&self, r: f64) -> f64 {
         match self {
             Self::Curve(c) => {
-                let t = values(c.slope(T::real(hit.r.value().clamp(-1.0, 1.0))));
+                let t = values(c.slope(T::real(r.clamp(-1.0, 1.0))));
                 dot(t, t).sqrt()
             }
             Self::Arc(a) => a.radius * a.half.abs(),
         }
     }
 
-    /// A plain master as one of constants.
-    pub fn lift(plain: &Master<f64>) -> Self {
-        match plain {
-            Master::Curve(c) => Self::Curve(lift(c)),
-            Master::Arc(a) => Self::Arc(Arc {
-                center: fixed(a.center),
-                radius: a.radius,
-                ends: a.ends.map(fixed),
-                half: a.half,
-                frame: Frame::lift(a.frame),
-            }),
+    /// Way of a point at a distance for a unit of the parameter of its foot.
+    pub fn way_beside(&self, r: f64, gap: f64) -> f64 {
+        let speed = self.speed_at(r);
+        match self {
+            Self::Curve(c) if !c.straight && r.abs() <= 1.0 => {
+                speed + 2.0 * gap * dot(self.normal_at(r), values(c.b)) / speed
+            }
+            Self::Curve(_) => speed,
+            Self::Arc(a) => speed + gap * a.half,
+        }
+    }
+
+    /// Outward unit normal at a parameter.
+    pub fn normal_at(&self, r: f64) -> Vec2<f64> {
+        match self {
+            Self::Curve(c) => unit(outward(values(c.slope(T::real(r.clamp(-1.0, 1.0)))))),
+            Self::Arc(a) => {
+                let [p, q] = a.ends.map(|e| sub(values(e), values(a.center)));
+                let ([c, s], (sin, cos)) = (unit(add(p, q)), (r * a.half).sin_cos());
+                [c * cos - s * sin, s * cos + c * sin].map(|v| v * a.half.signum())
+            }
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Contact and ties between boundaries: gap and slip as functions of the nodal positions.
 //!
-//! Everything that Newton's method needs follows from these functions: forces are their
-//! gradients and tangents their Hessians, so force and counterforce, moment balance and the
-//! symmetry of the frictionless tangent hold by construction.
+//! Pressures act along the gradients of gaps, and tangents are their Hessians, so force and
+//! counterforce, moment balance and the symmetry of the frictionless tangent hold by construction.
+//! Shear tractions act along the relative tangential velocity (`slip`), with its exact derivative;
+//! the slip of an increment is a path along both surfaces (`travel`).
 // SPDX-License-Identifier: BSD-3-Clause
 
 pub mod active_set;
+pub mod boundary;
 pub mod chains;
 pub mod corners;
 pub mod curve;
@@ -16,7 +18,9 @@ pub mod pair;
 pub mod search;
 pub mod sides;
 pub mod slave;
+pub mod slip;
 pub mod terms;
+pub mod travel;
 pub mod tree;
 
 pub use curve::{Edge, Shape};

@@ -9,6 +9,7 @@ use super::search::Candidate;
 use super::sides::{Distances, Sides};
 use super::slave::Slave;
 use super::terms::{Terms, WIDTH};
+use super::travel::Start;
 
 /// A pair of boundaries.
 pub struct Contact {
@@ -17,6 +18,8 @@ pub struct Contact {
     /// Corners of both sides with constraints behind those of the discretization.
     corners: Vec<Corners>,
     joins: bool,
+    /// What slips are measured from.
+    start: Start,
     /// Whether the candidates of joined surfaces were never requested.
     fresh: bool,
 }
@@ -66,7 +69,14 @@ impl Contact {
             }
         }
         sides.offset = vec![0.0; first];
-        let mut pair = Self { sides, method, corners: found, joins: entry.joins, fresh: true };
+        let mut pair = Self {
+            sides,
+            method,
+            corners: found,
+            joins: entry.joins,
+            start: Start::default(),
+            fresh: true,
+        };
         if pair.joins {
             pair.renew(x);
             pair.method.bind(&mut pair.sides, x);
@@ -134,6 +144,13 @@ impl Contact {
     }
 
     fn renew(&mut self, x: &[[f64; 3]]) -> bool {
+        let changed = self.look(x);
+        let sides = &self.sides;
+        self.corners.iter_mut().fold(changed, |any, c| c.renew(sides, x) || any)
+    }
+
+    /// Renews the candidates of the surfaces where needed; tells whether they changed.
+    fn look(&mut self, x: &[[f64; 3]]) -> bool {
         let Sides { slave, master, search, distances, itself, .. } = &mut self.sides;
         let items = self.method.items(slave, x);
         let count = items.len();
@@ -146,8 +163,7 @@ impl Contact {
         if changed {
             self.sides.index(count);
         }
-        let sides = &self.sides;
-        self.corners.iter_mut().fold(changed, |any, c| c.renew(sides, x) || any)
+        changed
     }
 
     /// A candidate of the surfaces, or one of a corner.
@@ -182,15 +198,47 @@ impl Contact {
         }
     }
 
-    /// Terms of all candidates that meet at `x`, in their order; slip since `old`.
-    pub fn evaluate(&mut self, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
-        let mut terms = self.method.evaluate(&self.sides, x, old);
+    /// Terms of all candidates that meet at `x`, in their order; slips since `old`, where some
+    /// constraints were `closed`.
+    pub fn evaluate(
+        &mut self,
+        x: &[[f64; 3]],
+        old: Option<&[[f64; 3]]>,
+        closed: &[bool],
+    ) -> Vec<Terms> {
+        if let Some(old) = old.filter(|_| !self.joins) {
+            if self.method.has_stations() {
+                self.begin(old, closed, x);
+            } else {
+                self.start.hold(old);
+            }
+        }
+        let start = old.map(|_| &self.start);
+        let mut terms = self.method.evaluate(&self.sides, x, start);
         let mut from = self.sides.candidates().len();
         for corners in &mut self.corners {
-            terms.extend(corners.evaluate(&self.sides, x, old, from));
+            terms.extend(corners.evaluate(&self.sides, x, start, from));
             from += corners.candidates().len();
         }
         terms
+    }
+
+    /// Finds where the sides faced each other at `old`, with candidates that belong to it.
+    fn begin(&mut self, old: &[[f64; 3]], closed: &[bool], x: &[[f64; 3]]) {
+        if !self.start.begin(&self.sides, old, closed, x) {
+            return;
+        }
+        std::mem::swap(&mut self.sides.search, &mut self.start.search);
+        self.look(old);
+        let items = self.sides.depth.len();
+        self.sides.index(items);
+        let flag = |k: usize| self.start.closed(k);
+        let mut found = self.method.stations(&self.sides, old, &flag);
+        let sides = &self.sides;
+        found.extend(self.corners.iter_mut().flat_map(|c| c.stations(sides, old, &flag)));
+        std::mem::swap(&mut self.sides.search, &mut self.start.search);
+        self.sides.index(items);
+        self.start.take(found);
     }
 
     /// Keeps the masters of the constraints as those to return to.

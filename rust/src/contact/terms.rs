@@ -1,17 +1,19 @@
 //! What one pair gives to its constraints, with derivatives.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::{Hyper, Smooth};
+use crate::base::{Dual, Hyper, Smooth};
 
 /// Most variables of a pair: two edges of six each.
 pub const WIDTH: usize = 12;
 
-/// A function of a pair's variables.
+/// A gap or a slip: its value, the direction in which its traction acts, and its linearization.
+///
+/// The direction of a gap is its gradient, and the linearization symmetric.
 #[derive(Clone, Debug)]
 pub struct Function {
     pub value: f64,
     pub gradient: [f64; WIDTH],
-    /// Row by row, of the first `size` variables.
+    /// Derivatives of the direction, row by row, of the first `size` variables.
     hessian: Vec<f64>,
     size: usize,
 }
@@ -25,12 +27,20 @@ impl<const D: usize> From<&Hyper<D>> for Function {
 }
 
 impl Function {
+    /// A slip, and the direction of its traction.
+    pub fn along<const D: usize>(value: f64, direction: &[Dual<D>; D]) -> Self {
+        let mut gradient = [0.0; WIDTH];
+        gradient.iter_mut().zip(direction).for_each(|(g, d)| *g = d.v);
+        let hessian = direction.iter().flat_map(|d| d.d).collect();
+        Self { value, gradient, hessian, size: D }
+    }
+
     /// A function that is zero.
     pub fn none() -> Self {
         Self { value: 0.0, gradient: [0.0; WIDTH], hessian: Vec::new(), size: 0 }
     }
 
-    /// Adds `factor` times the Hessian to a full square.
+    /// Adds `factor` times the linearization to a full square.
     pub fn add_hessian(&self, factor: f64, to: &mut [f64]) {
         if factor == 0.0 {
             return;

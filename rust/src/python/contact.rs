@@ -94,8 +94,8 @@ fn contact_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 
 /// A pair of boundaries that may touch, or are tied.
 ///
-/// Gap and slip of each constraint (a node of the slave side) as functions of the nodal
-/// positions, with exact gradients and Hessians. Edges are rows corner, corner, middle (-1 for
+/// Gap and slip of each constraint (a node of the slave side), the directions of their tractions as
+/// functions of the nodal positions, and the exact derivatives of these. Edges are rows corner, corner, middle (-1 for
 /// none) with the element on the left; configurations are arrays (n_nodes, 3) of x, y and
 /// rotation; a variable is ``3 * node + component``.
 #[pyclass(module = "corota._core")]
@@ -325,13 +325,15 @@ impl Contact {
         Ok((matrix(py, variables, [n, WIDTH])?, matrix(py, constraints, [n, 3])?))
     }
 
-    /// Terms at a configuration, sorted by constraint; without ``old`` the slip is left out.
-    #[pyo3(signature = (x, old=None))]
+    /// Terms at a configuration, sorted by constraint; without ``old`` the slip is left out. With it,
+    /// ``closed`` tells which constraints were (none: not known).
+    #[pyo3(signature = (x, old=None, closed=None))]
     fn evaluate<'py>(
         &mut self,
         py: Python<'py>,
         x: Rows<'py>,
         old: Option<Rows<'py>>,
+        closed: Option<PyReadonlyArray1<'py, bool>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let x = self.configuration(&x, "x")?;
         let old = match &old {
@@ -339,12 +341,16 @@ impl Contact {
             None => None,
         };
         let (threads, pair) = (self.workers(), &mut self.pair);
-        self.terms = py.detach(|| pool::run(threads, |_| pair.evaluate(x, old)));
+        let closed = match &closed {
+            Some(flags) => flags.as_slice()?,
+            None => &[],
+        };
+        self.terms = py.detach(|| pool::run(threads, |_| pair.evaluate(x, old, closed)));
         self.collect(py)
     }
 
-    /// Pairs (h,), variables (h, 12) and ``sum_k p_k d2G_k + q_k d2S_k`` (h, 12, 12) of the last
-    /// evaluation.
+    /// Pairs (h,), variables (h, 12) and derivatives (h, 12, 12) of ``sum_k p_k dG_k + q_k dS_k``, of
+    /// the last evaluation; those of slips are not symmetric.
     fn hessian<'py>(
         &self,
         py: Python<'py>,

@@ -23,6 +23,7 @@ use super::super::search::{Candidate, Item, each};
 use super::super::sides::Sides;
 use super::super::slave::Slave;
 use super::super::terms::{Function, Share, Terms, WIDTH, join, lifted};
+use super::super::travel::Start;
 use super::node_to_segment::open;
 use super::{Discretization, Entry};
 use crate::base::Smooth;
@@ -206,7 +207,7 @@ impl Lines {
         let right = if both { self.side(i, face).unwrap_or(there) } else { true };
         let away = if right { hit.gap } else { -hit.gap };
         let width = self.circles[i].radius + self.half[face];
-        let size = shape.speed(&hit);
+        let size = shape.speed_at(hit.r);
         let beyond = (hit.r.abs() - 1.0) * size;
         let which = usize::from(hit.r > 0.0);
         let free = self.chains.free(face, which);
@@ -379,7 +380,7 @@ impl Lines {
                 .filter_map(|j| {
                     let shape = sides.master.place(j, old);
                     let hit = shape.closest(p);
-                    let beyond = (hit.r.abs() - 1.0).max(0.0) * shape.speed(&hit);
+                    let beyond = (hit.r.abs() - 1.0).max(0.0) * shape.speed_at(hit.r);
                     let right = !self.both[j] || self.side(i, j).unwrap_or(hit.gap >= 0.0);
                     let width = self.circles[i].radius + self.half[j];
                     let away = if right { hit.gap } else { -hit.gap };
@@ -506,7 +507,7 @@ impl Lines {
             }
             (_, None) => {
                 let hit = shape.closest(p);
-                let speed = shape.speed(&shape_hit(&hit));
+                let speed = shape.speed_at(hit.r.value());
                 (hit.r - T::real(hit.r.value())).scale(speed)
                     + T::real(self.chains.between(
                         faces,
@@ -540,11 +541,6 @@ impl Lines {
             }
         }
     }
-}
-
-/// A place without derivatives.
-fn shape_hit<T: Smooth>(hit: &Hit<T>) -> Hit<T> {
-    Hit { r: T::real(hit.r.value().clamp(-1.0, 1.0)), ..*hit }
 }
 
 /// Angle from a constant direction to one with derivatives.
@@ -679,7 +675,12 @@ impl Discretization for Lines {
         [i, usize::MAX, usize::MAX]
     }
 
-    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
+    fn has_stations(&self) -> bool {
+        false
+    }
+
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
+        let old = start.map(Start::old);
         let found = each(sides.n_items(), |i| self.choose(sides, i, x));
         for (i, met) in found.iter().enumerate() {
             self.seen[i] = met.map(|m| (m.face, m.next));

@@ -11,6 +11,7 @@ use super::search::{self, Candidate, Item};
 use super::sides::Sides;
 use super::slave::Slave;
 use super::terms::{Terms, WIDTH, join};
+use super::travel::{Start, Station};
 
 /// All discretizations.
 pub const DISCRETIZATIONS: &[Entry] = &[mortar::ENTRY, node_to_segment::ENTRY, tie::ENTRY];
@@ -82,8 +83,24 @@ pub trait Discretization: Send + Sync {
     /// leave those that are.
     fn bind(&mut self, _sides: &mut Sides, _x: &[[f64; 3]]) {}
 
-    /// Terms of all candidates that meet at `x`, in the order of the candidates; slip since `old`.
-    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms>;
+    /// Terms of all candidates that meet at `x`, in the order of the candidates; slips since a
+    /// start.
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms>;
+
+    /// Whether slips are measured from stations; else from where the sides were.
+    fn has_stations(&self) -> bool {
+        true
+    }
+
+    /// Where slave points face a master at `x`, with candidates that belong to it.
+    fn stations(
+        &self,
+        _sides: &Sides,
+        _x: &[[f64; 3]],
+        _closed: &dyn Fn(usize) -> bool,
+    ) -> Vec<Station> {
+        Vec::new()
+    }
 
     /// Keep what later evaluations depend on as what to return to.
     fn commit(&mut self) {}

@@ -3,18 +3,19 @@
 //! From each slave point a ray along the slave normal meets the master at distance g. Weighted
 //! with the linear shape functions psi of the slave corners and integrated with the reference
 //! area, G = int psi g dA; the limits are the feet of the master's ends on the slave edge and
-//! are differentiated with everything else. The slip is the tangential distance that the two
-//! material points now opposite had in the old configuration: it depends on the motion only
-//! through the pairing, so a common rigid motion gives none.
+//! are differentiated with everything else. Slips are weighted in the same way; their tractions act
+//! along the relative tangential velocity, with weights and limits held.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::super::curve::{Curve, GAUSS, dot, lift, outward, sub, unit};
+use super::super::curve::{Curve, GAUSS, dot, lift, outward, times, unit};
 use super::super::master::Master;
 use super::super::search::each;
 use super::super::sides::Sides;
+use super::super::slip::{Along, Point, direction, first, firsts};
 use super::super::terms::{Function, Share, Terms, lifted};
+use super::super::travel::{Start, Station, ray};
 use super::{Discretization, Entry};
-use crate::base::Smooth;
+use crate::base::{Dual, Hyper, Smooth};
 
 pub const ENTRY: Entry = Entry {
     name: "mortar",
@@ -49,7 +50,7 @@ pub struct Overlap {
     pub limits: [Limit; 2],
     pub values: [f64; 2],
     /// Distance at the middle, without sign.
-    distance: f64,
+    pub distance: f64,
 }
 
 /// Part of the slave edge opposite to a master, if they face each other within the bounds:
@@ -127,40 +128,44 @@ pub fn clip_occluded(overlaps: &mut Vec<Overlap>) {
     *overlaps = seen;
 }
 
-/// Slave edge and master in some configuration.
-pub struct Placed<'a, T> {
-    pub slave: &'a Curve<T>,
-    pub master: &'a Master<T>,
+/// A slave edge and a master that it sees.
+struct Facing<'a, const D: usize> {
+    slave: Curve<Hyper<D>>,
+    master: Master<Hyper<D>>,
+    /// Their numbers.
+    members: [usize; 2],
+    /// The undeformed slave edge, and its thickness.
+    reference: &'a Curve<f64>,
+    thickness: f64,
+    /// Clearance taken off the gap at the corners of the edge.
+    offset: [f64; 2],
 }
 
 /// Integrals for the two corners of a slave edge.
-pub struct Integrals<T> {
-    pub gap: [T; 2],
-    pub slip: Option<[T; 2]>,
-    pub area: [f64; 2],
+struct Integrals<const D: usize> {
+    gap: [Hyper<D>; 2],
+    slip: [f64; 2],
+    /// Along which the shear tractions act.
+    direction: [[Dual<D>; D]; 2],
+    area: [f64; 2],
 }
 
-/// Gap, slip and area of an overlap; `reference` is the undeformed slave edge,
-/// `offset` the clearance taken off the gap at its corners.
-pub fn integrals<T: Smooth>(
+/// Gaps, slips and areas of an overlap.
+fn integrals<const D: usize>(
     overlap: &Overlap,
-    now: &Placed<T>,
-    old: Option<&Placed<f64>>,
-    reference: &Curve<f64>,
-    thickness: f64,
-    offset: [f64; 2],
-) -> Integrals<T> {
-    let slave = now.slave;
+    now: &Facing<'_, D>,
+    start: Option<&Start>,
+) -> Integrals<D> {
+    let Facing { slave, master, members, reference, thickness, offset } = now;
     let [low, high] = overlap.limits.map(|limit| match limit {
-        Limit::Fixed(r) => T::real(r),
-        Limit::Foot(end) => slave.foot(now.master.end(end)),
+        Limit::Fixed(r) => Hyper::real(r),
+        Limit::Foot(end) => slave.foot(master.end(end)),
     });
     let (middle, half) = ((high + low).scale(0.5), (high - low).scale(0.5));
-    let zero = T::real(0.0);
     // Integrals with the weights 1 and xi.
-    let [mut gap, mut slip] = [[zero; 2]; 2];
-    let mut area = [0.0; 2];
-    let before = old.map(|o| (lift::<T>(o.slave), Master::lift(o.master)));
+    let mut gap = [Hyper::real(0.0); 2];
+    let [mut area, mut slip] = [[0.0; 2]; 2];
+    let mut along = [[Dual::real(0.0); D]; 2];
     let straight = slave.straight.then(|| (slave.d, unit(outward(slave.d))));
     for (r, w) in GAUSS {
         let xi = middle + half.scale(r);
@@ -168,25 +173,43 @@ pub fn integrals<T: Smooth>(
             let t = slave.slope(xi);
             (t, unit(outward(t)))
         });
-        let hit = now.master.ray(slave.at(xi), t, n);
+        let hit = master.ray(slave.at(xi), t, n);
         let da = half * length(reference, xi).scale(w * thickness);
-        let put = |to: &mut [T; 2], v: T| {
-            to[0] += v;
-            to[1] += v * xi;
-        };
-        area[0] += da.value();
-        area[1] += da.value() * xi.value();
+        area[0] += da.v;
+        area[1] += da.v * xi.v;
         let shift = xi.scale(0.5 * (offset[1] - offset[0]));
-        let shift = shift + T::real(0.5 * (offset[0] + offset[1]));
-        put(&mut gap, da * (hit.gap - shift));
-        if let Some((edge, master)) = &before {
-            let apart = sub(now.master.carry(&hit, master).point, edge.at(xi));
-            put(&mut slip, da * dot(apart, unit(edge.slope(xi))));
+        let shift = shift + Hyper::real(0.5 * (offset[0] + offset[1]));
+        let part = da * (hit.gap - shift);
+        gap[0] += part;
+        gap[1] += part * xi;
+        let Some(start) = start else { continue };
+        let (da, place) = (first(&da), first(&xi));
+        let apart = times(firsts(&n), first(&hit.gap));
+        let points = (Point::Curve(slave, place), Point::of(master, &hit));
+        let rate = direction(&points.0, &points.1, Along::Slave, apart);
+        for (v, rate) in rate.into_iter().enumerate() {
+            let part = da * rate;
+            along[0][v] += part;
+            along[1][v] += part * place;
         }
+        let (r, normal) = (hit.r.v, master.normal_at(hit.r.v));
+        let path = start.slip((members[0], xi.v), (members[1], r), normal, None);
+        // Along the slave, and as long as it is now.
+        let facing = -(normal[0] * n[0].v + normal[1] * n[1].v);
+        let stretch = start.stretch(true, members[1], r, master.speed_at(r)) * facing;
+        let part = da.v * stretch * path;
+        slip[0] += part;
+        slip[1] += part * xi.v;
     }
-    let corners = |[a, b]: [T; 2]| [(a - b).scale(0.5), (a + b).scale(0.5)];
-    let area = [0.5 * (area[0] - area[1]), 0.5 * (area[0] + area[1])];
-    Integrals { gap: corners(gap), slip: old.map(|_| corners(slip)), area }
+    let corners = |[a, b]: [f64; 2]| [0.5 * (a - b), 0.5 * (a + b)];
+    let [a, b] = along;
+    let side = |sign: f64| std::array::from_fn(|v| (a[v] + b[v].scale(sign)).scale(0.5));
+    Integrals {
+        gap: [(gap[0] - gap[1]).scale(0.5), (gap[0] + gap[1]).scale(0.5)],
+        slip: corners(slip),
+        direction: [side(-1.0), side(1.0)],
+        area: corners(area),
+    }
 }
 
 /// Length of a curve for a unit of the parameter.
@@ -203,28 +226,52 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
 pub struct Mortar;
 
 impl Discretization for Mortar {
-    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
-        each(sides.n_items(), |i| self.edge(sides, i, x, old)).into_iter().flatten().collect()
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
+        each(sides.n_items(), |i| self.edge(sides, i, x, start)).into_iter().flatten().collect()
+    }
+
+    fn stations(
+        &self,
+        sides: &Sides,
+        x: &[[f64; 3]],
+        closed: &dyn Fn(usize) -> bool,
+    ) -> Vec<Station> {
+        let of_edge = |i: usize| {
+            let mut overlaps = overlaps(sides, i, x);
+            clip_occluded(&mut overlaps);
+            let slave = Master::Curve(sides.slave.edges[i].place(x));
+            let closed = sides.slave.constraints[i][..2].iter().any(|&k| closed(k));
+            let station = move |o: Overlap| {
+                let j = sides.candidates()[o.pair].1;
+                let master = sides.master.place(j, x);
+                Station {
+                    point: None,
+                    corner: false,
+                    edge: i,
+                    span: o.values,
+                    master: j,
+                    opposite: o.values.map(|xi| ray(&slave, xi, &master)),
+                    gap: o.distance,
+                    closed,
+                }
+            };
+            overlaps.into_iter().map(station)
+        };
+        (0..sides.n_items()).flat_map(of_edge).collect()
     }
 }
 
 impl Mortar {
-    fn edge(
-        &self,
-        sides: &Sides,
-        i: usize,
-        x: &[[f64; 3]],
-        old: Option<&[[f64; 3]]>,
-    ) -> Vec<Terms> {
+    fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         let mut overlaps = overlaps(sides, i, x);
         clip_occluded(&mut overlaps);
         let width = sides.slave.edges[i].variables().len();
         let terms = |o: &Overlap| {
             let master = sides.candidates()[o.pair].1;
             if width + sides.master.variables(master).len() <= 8 {
-                self.overlapped::<8>(sides, o, x, old)
+                self.overlapped::<8>(sides, o, x, start)
             } else {
-                self.overlapped::<12>(sides, o, x, old)
+                self.overlapped::<12>(sides, o, x, start)
             }
         };
         overlaps.iter().map(terms).collect()
@@ -235,32 +282,28 @@ impl Mortar {
         sides: &Sides,
         overlap: &Overlap,
         x: &[[f64; 3]],
-        old: Option<&[[f64; 3]]>,
+        start: Option<&Start>,
     ) -> Terms {
         let (i, j) = sides.candidates()[overlap.pair];
         let edge = &sides.slave.edges[i];
         let variables = self.variables(sides, (i, j));
         let v = lifted::<D>(&variables, x);
         let (width, master) = (edge.variables().len(), sides.master.variables(j).len());
-        let slave = edge.curve(&v[..width]);
-        let master = sides.master.shape(j, &v[width..width + master]);
-        let now = Placed { slave: &slave, master: &master };
-        let before = old.map(|o| (edge.place(o), sides.master.place(j, o)));
-        let before = before.as_ref().map(|(slave, master)| Placed { slave, master });
         let constraints = sides.slave.constraints[i];
-        let offset = [sides.offset[constraints[0]], sides.offset[constraints[1]]];
-        let sums = integrals(
-            overlap,
-            &now,
-            before.as_ref(),
-            &sides.reference[i],
-            sides.slave.thickness[i],
-            offset,
-        );
+        let facing = Facing {
+            slave: edge.curve(&v[..width]),
+            master: sides.master.shape(j, &v[width..width + master]),
+            members: [i, j],
+            reference: &sides.reference[i],
+            thickness: sides.slave.thickness[i],
+            offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
+        };
+        let sums = integrals(overlap, &facing, start);
+        let slip = |a: usize| Function::along(sums.slip[a], &sums.direction[a]);
         let share = |a: usize| Share {
             constraint: constraints[a],
             gap: (&sums.gap[a]).into(),
-            slip: sums.slip.as_ref().map_or_else(Function::none, |s| (&s[a]).into()),
+            slip: start.map_or_else(Function::none, |_| slip(a)),
             area: sums.area[a],
         };
         Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }

@@ -11,14 +11,16 @@
 //! facet while both of its nodes lie on the flat.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::super::curve::{Vec2, add, dot, fixed, outward, sub, times, unit};
+use super::super::curve::{Curve, Vec2, dot, outward, sub, unit};
 use super::super::master::{Hit, Master};
 use super::super::search::{self, Candidate, Item, each};
 use super::super::sides::Sides;
 use super::super::slave::Slave;
+use super::super::slip::{Along, Point, direction, first, firsts};
 use super::super::terms::{Function, Share, Terms, WIDTH, join, lifted};
+use super::super::travel::{Start, Station};
 use super::{Discretization, Entry};
-use crate::base::{Hyper, Smooth};
+use crate::base::{Dual, Hyper, Smooth};
 
 pub const ENTRY: Entry = Entry {
     name: "node_to_segment",
@@ -68,7 +70,7 @@ pub fn choose(
         .iter()
         .filter_map(|(pair, shape)| {
             let hit = shape.closest(p);
-            let size = shape.speed(&hit);
+            let size = shape.speed_at(hit.r);
             let beyond = hit.r.abs() - 1.0;
             let faces = dot(shape.normal(&hit), n) < FACING;
             (faces && hit.gap <= bounds.reach && -hit.gap <= bounds.depth).then(|| Found {
@@ -102,21 +104,15 @@ pub fn choose(
     Some(vertex[0].pair)
 }
 
-/// Gap of a node, and its slip since an old configuration of node and master.
-pub fn gap_and_slip<T: Smooth>(
-    p: Vec2<T>,
-    master: &Master<T>,
-    old: Option<(Vec2<f64>, &Master<f64>)>,
-) -> (T, Option<T>) {
+/// Where a node meets a master, and along which its shear traction acts if it is the slave's.
+pub fn met<const D: usize>(
+    p: Vec2<Hyper<D>>,
+    master: &Master<Hyper<D>>,
+) -> (Hit<Hyper<D>>, [Dual<D>; D]) {
     let hit = master.closest(p);
-    let slip = old.map(|(before, plain)| {
-        let other = Master::lift(plain);
-        let there = master.carry(&hit, &other);
-        // Master and slave run against each other.
-        let tangent = outward(other.normal(&there));
-        dot(sub(there.point, fixed(before)), tangent)
-    });
-    (hit.gap, slip)
+    let apart = firsts(&sub(hit.point, p));
+    let along = direction(&Point::Node(p), &Point::of(master, &hit), Along::Master, apart);
+    (hit, along)
 }
 
 /// Gap between the straight facet from `p` to `q` and a round master, at the point of the master
@@ -127,22 +123,6 @@ pub fn round_gap<T: Smooth>(p: Vec2<T>, q: Vec2<T>, master: &Master<T>) -> (T, T
     let hit = master.foremost(n);
     let away = sub(hit.point, p);
     (dot(away, n), dot(away, along) / dot(along, along), hit)
-}
-
-/// The same with the slip since an old configuration of facet and master.
-pub fn round_gap_and_slip<T: Smooth>(
-    [p, q]: [Vec2<T>; 2],
-    master: &Master<T>,
-    old: Option<([Vec2<f64>; 2], &Master<f64>)>,
-) -> (T, Option<T>) {
-    let (gap, t, hit) = round_gap(p, q, master);
-    let slip = old.map(|([p, q], plain)| {
-        let other = Master::lift(plain);
-        let there = master.carry(&hit, &other);
-        let before = add(fixed(p), times(fixed(sub(q, p)), t));
-        dot(sub(there.point, before), outward(other.normal(&there)))
-    });
-    (gap, slip)
 }
 
 /// Area times a distance less an offset.
@@ -157,6 +137,9 @@ pub struct NodeToSegment {
     next: Vec<i64>,
     length: Vec<f64>,
     radius: Vec<f64>,
+    /// Slave edge of each node with its parameter there, and that of the node behind.
+    from: Vec<(usize, f64)>,
+    to: Vec<f64>,
     /// Constraint of the facet behind each slave node, after those of the nodes, where it has one.
     of_facet: Vec<Option<usize>>,
     /// Master of each node: of the last evaluation, and of the last commit.
@@ -194,9 +177,10 @@ impl Discretization for NodeToSegment {
         [k, facet.unwrap_or(usize::MAX), usize::MAX]
     }
 
-    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Vec<Terms> {
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         let normals = search::nodes(&sides.slave, x);
-        let chosen = each(sides.n_items(), |k| self.choose(sides, k, normals[k].1, x));
+        let chosen =
+            each(sides.n_items(), |k| self.choose(sides, k, normals[k].1, x, self.held[0][k]));
         for (held, pair) in self.held[0].iter_mut().zip(&chosen) {
             *held = pair.0.map(|(p, _)| sides.candidates()[p].1);
         }
@@ -206,11 +190,55 @@ impl Discretization for NodeToSegment {
         each(pairs.len(), |i| {
             let ((pair, round), besides) = pairs[i];
             if round {
-                self.facet(sides, pair, besides, x, old)
+                self.facet(sides, pair, besides, x, start)
             } else {
-                self.node(sides, pair, x, old)
+                self.node(sides, pair, x, start)
             }
         })
+    }
+
+    fn stations(
+        &self,
+        sides: &Sides,
+        x: &[[f64; 3]],
+        closed: &dyn Fn(usize) -> bool,
+    ) -> Vec<Station> {
+        let normals = search::nodes(&sides.slave, x);
+        let at = |k: usize| x[sides.slave.nodes[k] as usize];
+        let mut found = Vec::new();
+        for k in 0..sides.n_items() {
+            let (node, facet) = self.choose(sides, k, normals[k].1, x, self.held[1][k]);
+            let node = node.map(|(pair, round)| (pair, round, Some(k)));
+            let facet = facet.map(|pair| (pair, true, self.of_facet[k]));
+            for (pair, round, own) in [node, facet].into_iter().flatten() {
+                let j = sides.candidates()[pair].1;
+                let (p, master) = (at(k), sides.master.place(j, x));
+                let (edge, mut place) = self.from[k];
+                let (gap, r) = if round {
+                    let q = x[self.next[k] as usize];
+                    let (gap, t, hit) = round_gap([p[0], p[1]], [q[0], q[1]], &master);
+                    place += (self.to[k] - place) * t;
+                    (gap, hit.r)
+                } else {
+                    let hit = master.closest([p[0], p[1]]);
+                    (hit.gap, hit.r)
+                };
+                let closed = own.is_some_and(closed);
+                let (span, opposite) = ([place; 2], [r; 2]);
+                let corner = false;
+                found.push(Station {
+                    point: own,
+                    corner,
+                    edge,
+                    span,
+                    master: j,
+                    opposite,
+                    gap,
+                    closed,
+                });
+            }
+        }
+        found
     }
 
     fn commit(&mut self) {
@@ -244,6 +272,15 @@ impl NodeToSegment {
         let slave = &sides.slave;
         let n = slave.nodes.len();
         let (mut next, mut length, mut radius) = (vec![-1; n], vec![0.0; n], Vec::new());
+        let (mut from, mut to) = (vec![(0, 1.0); n], vec![1.0; n]);
+        for (i, k) in slave.constraints.iter().enumerate() {
+            // The edge that begins at a node, rather than the one that ends there.
+            from[k[1]] = if from[k[1]].1 < 1.0 { from[k[1]] } else { (i, 1.0) };
+            from[k[0]] = (i, -1.0);
+            if k[2] != usize::MAX {
+                (from[k[2]], to[k[0]]) = ((i, 0.0), 0.0);
+            }
+        }
         if !sides.itself {
             radius = (0..sides.master.len()).map(|j| sides.master.radius(j, x)).collect();
             for (edge, k) in slave.edges.iter().zip(&slave.constraints) {
@@ -266,7 +303,7 @@ impl NodeToSegment {
                 })
             })
             .collect();
-        Self { next, length, radius, of_facet, held: [vec![None; n], vec![None; n]] }
+        Self { next, length, radius, from, to, of_facet, held: [vec![None; n], vec![None; n]] }
     }
 
     /// Whether the facet behind a slave node meets a master as a round.
@@ -282,12 +319,13 @@ impl NodeToSegment {
         k: usize,
         normal: Vec2<f64>,
         x: &[[f64; 3]],
+        held: Option<usize>,
     ) -> (Option<(usize, bool)>, Option<usize>) {
         let p = x[sides.slave.nodes[k] as usize];
         let pairs = sides.of_item(k);
         let shapes: Vec<(usize, Master<f64>)> =
             pairs.map(|pair| (pair, sides.master.place(sides.candidates()[pair].1, x))).collect();
-        let last = self.held[0][k].and_then(|j| {
+        let last = held.and_then(|j| {
             let same = |s: &&(usize, Master<f64>)| sides.candidates()[s.0].1 == j;
             shapes.iter().find(same).map(|s| s.0)
         });
@@ -332,24 +370,27 @@ impl NodeToSegment {
         pair: usize,
         besides: bool,
         x: &[[f64; 3]],
-        old: Option<&[[f64; 3]]>,
+        start: Option<&Start>,
     ) -> Terms {
         let (k, j) = sides.candidates()[pair];
         let variables = self.variables(sides, (k, j));
         let v = lifted::<WIDTH>(&variables, x);
         let width = sides.master.variables(j).len();
         let master = sides.master.shape(j, &v[4..4 + width]);
-        let ends = |x: &[[f64; 3]]| {
-            [i64::from(sides.slave.nodes[k]), self.next[k]].map(|n| {
-                let p = x[n as usize];
-                [p[0], p[1]]
-            })
-        };
-        let before = old.map(|o| (ends(o), sides.master.place(j, o)));
-        let before = before.as_ref().map(|(ends, m)| (*ends, m));
-        let (gap, slip) = round_gap_and_slip([[v[0], v[1]], [v[2], v[3]]], &master, before);
+        let (p, q) = ([v[0], v[1]], [v[2], v[3]]);
+        let (gap, t, hit) = round_gap(p, q, &master);
         let own = if besides { self.of_facet[k].expect("a facet of a round") } else { k };
-        Self::share(sides, pair, own, variables, &gap, slip.as_ref())
+        let slip = start.map(|start| {
+            let (r, from) = (t.scale(2.0) - Hyper::real(1.0), self.from[k]);
+            let place = from.1 + (self.to[k] - from.1) * t.v;
+            let path =
+                start.slip((from.0, place), (j, hit.r.v), master.normal_at(hit.r.v), Some(own));
+            let facet = Curve::line(p, q);
+            let points = (Point::Curve(&facet, first(&r)), Point::of(&master, &hit));
+            let apart = firsts(&sub(hit.point, facet.at(r)));
+            (path, direction(&points.0, &points.1, Along::Slave, apart))
+        });
+        Self::share(sides, pair, own, variables, &gap, slip)
     }
 
     fn share<const D: usize>(
@@ -358,31 +399,35 @@ impl NodeToSegment {
         constraint: usize,
         variables: [i64; WIDTH],
         gap: &Hyper<D>,
-        slip: Option<&Hyper<D>>,
+        slip: Option<(f64, [Dual<D>; D])>,
     ) -> Terms {
         let area = sides.slave.area[sides.candidates()[pair].0];
         let share = Share {
             constraint,
             gap: (&open(*gap, sides.offset[constraint], area)).into(),
-            slip: slip.map_or_else(Function::none, |s| (&open(*s, 0.0, area)).into()),
+            slip: slip.map_or_else(Function::none, |(path, along)| {
+                Function::along(path * area, &along.map(|a| a.scale(area)))
+            }),
             area,
         };
         Terms { pair, variables, shares: vec![share] }
     }
 
-    fn node(&self, sides: &Sides, pair: usize, x: &[[f64; 3]], old: Option<&[[f64; 3]]>) -> Terms {
+    fn node(&self, sides: &Sides, pair: usize, x: &[[f64; 3]], start: Option<&Start>) -> Terms {
         let (k, j) = sides.candidates()[pair];
         let variables = self.variables(sides, (k, j));
         // A pair that may meet as a round has the facet's other end among its variables.
         let (v, first) = (lifted::<10>(&variables, x), if self.is_round(k, j) { 4 } else { 2 });
         let width = sides.master.variables(j).len();
         let master = sides.master.shape(j, &v[first..first + width]);
-        let before = old.map(|o| {
-            let p = o[sides.slave.nodes[k] as usize];
-            ([p[0], p[1]], sides.master.place(j, o))
-        });
-        let before = before.as_ref().map(|(p, m)| (*p, m));
-        let (gap, slip) = gap_and_slip([v[0], v[1]], &master, before);
-        Self::share(sides, pair, k, variables, &gap, slip.as_ref())
+        let p = [v[0], v[1]];
+        let Some(start) = start else {
+            return Self::share(sides, pair, k, variables, &master.closest(p).gap, None);
+        };
+        let (hit, along) = met(p, &master);
+        let r = hit.r.v;
+        let path = start.slip(self.from[k], (j, r), master.normal_at(r), Some(k));
+        let path = path * start.stretch(true, j, r, master.way_beside(r, hit.gap.v));
+        Self::share(sides, pair, k, variables, &hit.gap, Some((path, along)))
     }
 }

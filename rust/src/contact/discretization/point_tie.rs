@@ -10,6 +10,7 @@ use super::super::search::{Candidate, Item, each};
 use super::super::sides::Sides;
 use super::super::slave::Slave;
 use super::super::terms::{Share, Terms, WIDTH, join, lifted};
+use super::super::travel::Start;
 use super::node_to_segment::open;
 use super::{Discretization, Entry};
 use crate::base::Smooth;
@@ -89,7 +90,7 @@ impl Discretization for PointTie {
         sides.keep(kept);
     }
 
-    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], _: Option<&[[f64; 3]]>) -> Vec<Terms> {
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], _: Option<&Start>) -> Vec<Terms> {
         each(sides.candidates().len(), |pair| {
             let (k, j) = sides.candidates()[pair];
             let variables = self.variables(sides, (k, j));

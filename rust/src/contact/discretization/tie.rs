@@ -10,6 +10,7 @@ use super::super::search::each;
 use super::super::sides::Sides;
 use super::super::slave::weights;
 use super::super::terms::{Share, Terms, WIDTH, lifted};
+use super::super::travel::Start;
 use super::mortar::{Overlap, clip_occluded, overlaps};
 use super::{Discretization, Entry};
 use crate::base::Smooth;
@@ -118,7 +119,7 @@ impl Discretization for Tie {
         sides.keep(kept);
     }
 
-    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], _: Option<&[[f64; 3]]>) -> Vec<Terms> {
+    fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], _: Option<&Start>) -> Vec<Terms> {
         each(sides.candidates().len(), |pair| self.joined(sides, pair, x))
     }
 }

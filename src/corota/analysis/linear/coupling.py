@@ -27,6 +27,8 @@ class Coupling:
     ----------
     geometric_stiffness : Triplets
         Symmetric part at dofs, both triangles.
+    skew : Triplets
+        Skew part at dofs.
     rows : Triplets
         Dofs by multipliers: derivatives of the forces by the tractions, and transposed those
         of the constraints.
@@ -40,6 +42,7 @@ class Coupling:
     """
 
     geometric_stiffness: Triplets
+    skew: Triplets
     rows: Triplets
     follow: Triplets
     diagonal: Floats

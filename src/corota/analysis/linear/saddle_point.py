@@ -332,6 +332,8 @@ class SaddlePointSystem:
             even, odd = Triplets.halves(link.reduce_entries(load, n))
             upper.append(even)
             rest.append(odd)
+        if len(c.skew.values):
+            rest.append(Triplets.of(link.reduce_entries(c.skew, n)))
         upper += [self._border(c.rows, link), Triplets(own, own, c.diagonal)]
         return Triplets.join(upper), Triplets.join([*rest, self._border(c.follow, link)])
 

@@ -1,8 +1,9 @@
 """Contact pairs and ties during an analysis: gaps, forces and their multipliers.
 
-With the weighted gap G_k(x) and slip S_k(x) of a slave node k and the tractions p_k, q_k that
-belong to them, the Lagrangian is ``Pi - sum_k p_k G_k - sum_k q_k S_k``. G and S come from the
-core as functions of the nodal positions alone, with exact first and second derivatives.
+With the weighted gap G_k(x) of a slave node k and its pressure p_k, the Lagrangian is ``Pi - sum_k
+p_k G_k``. A shear traction q_k acts along the relative tangential velocity B_k(x) of the surfaces,
+which is the derivative of the slip S_k where it sticks. G, S, B and the derivatives of both
+directions come from the core.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -521,6 +522,7 @@ class ContactTerm(Term):
         ):
             for part in tractions if not pair.tied else ():
                 part[state == OPEN] = 0.0
+            pair.keep_closed(state)
         contact_state.acting = [terms.acting for terms in contact_state.terms]
         for i, (pair, terms) in enumerate(zip(self.pairs, contact_state.terms, strict=True)):
             if pair.start is not None:

@@ -4,7 +4,8 @@ A traction does exactly the work of its gap, ``p (G1 - G0)``, if it acts along a
 of the gap. It is the gradient at the middle of the increment, which keeps the momenta because the
 gap does not depend on the frame, with a correction that is orthogonal to all rigid motions of the
 nodes of a constraint (Gonzalez 1996). A pressure law acts with the quotient of its energy and its
-overclosure.
+overclosure. A shear traction acts along its direction at the middle; what it does work on is the
+slip of the increment.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -36,7 +37,7 @@ def discrete_gradient(
     master: Any,
     rounding: float,
 ) -> Terms:
-    """Gradients whose products with the increment are the changes of gap and slip.
+    """Terms along which tractions act, whose products with the increment are its gap and slip.
 
     Parameters
     ----------
@@ -65,15 +66,23 @@ def discrete_gradient(
     away = _without_symmetry(master, variables, 0.5 * (x + old), move)
     size = np.bincount(constraint, (away**2).sum(axis=1), n)
     moved = move.ravel()[variables]
-    changes = {"gap_gradient": end.gap - begun, "slip_gradient": end.slip}
-    gradients = {}
-    for name, change in changes.items():
-        gradient = both(name)
-        missing = change - np.bincount(constraint, (gradient * moved).sum(axis=1), n)
-        counts = size > rounding**2
-        factor = np.where(counts, missing / np.where(counts, size, 1.0), 0.0)
-        gradients[name] = gradient + factor[constraint, None] * away
-    return replace(end, constraint=constraint, variables=variables, pair=both("pair"), **gradients)
+
+    def product(gradient: Floats) -> Floats:
+        return np.asarray(np.bincount(constraint, (gradient * moved).sum(axis=1), n), np.float64)
+
+    gradient, along = both("gap_gradient"), both("slip_gradient")
+    missing = end.gap - begun - product(gradient)
+    counts = size > rounding**2
+    factor = np.where(counts, missing / np.where(counts, size, 1.0), 0.0)
+    return replace(
+        end,
+        constraint=constraint,
+        variables=variables,
+        pair=both("pair"),
+        gap_gradient=gradient + factor[constraint, None] * away,
+        slip_gradient=along,
+        slip=product(along),
+    )
 
 
 def _without_symmetry(curve: Any, variables: Ints, x: Floats, move: Floats) -> Floats:

@@ -216,6 +216,8 @@ class ForwardContact:
             pair.core.commit()
         contact.u, contact.committed, contact.time = u.copy(), multipliers, time
         states = [state.copy() for state in self.state]
+        for pair, state in zip(contact.pairs, states, strict=True):
+            pair.keep_closed(state)
         where = contact.positions(u)
         contact.at = ContactState(
             found, force, size, multipliers, states=states, acting=found, where=where

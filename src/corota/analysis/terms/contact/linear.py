@@ -42,7 +42,7 @@ def linearized_contact(
     contact_term = system.contact_term
     if not contact_term.pairs:
         none, entries = np.zeros(0), Triplets.join([])
-        coupling = Coupling(entries, entries, entries, none, none, lambda: stacked([]))
+        coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
         return system.evaluate(u.copy(), 0.0), coupling, []
     contact = ContactEquations(system, system)
     found = contact.evaluate(np.concatenate([u, multipliers]), 0.0)

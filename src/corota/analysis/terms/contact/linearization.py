@@ -32,7 +32,7 @@ def linearized(
     slip_directions : dict of int to ndarray
         Signs of slipping tractions, by the pair's first multiplier.
     """
-    geometric_stiffness, rows, follow = [], [], []
+    geometric_stiffness, skew, rows, follow = [], [], [], []
     diagonal, rhs = np.ones(term.n), np.zeros(term.n)
     force = np.zeros(term.system.n_dofs)
     expected = 0
@@ -77,7 +77,13 @@ def linearized(
         if term.system.nlgeom and (p.any() or q.any()):
             # Half way an end moves by half.
             half = 1.0 if acting is terms else 0.5
-            geometric_stiffness.append(second_derivatives(term, pair, half * share * p, half * q))
+            even, odd = second_derivatives(term, pair, half * share * p, half * q)
+            geometric_stiffness.append(even)
+            skew.append(odd)
+
+    # Where all stick, nothing moves along the tractions, which take the skew part up: without it
+    # the matrix is symmetric, and its inertia known.
+    slips = any(bool((state == SLIPPING).any()) for state in states)
 
     def near() -> tuple[Ints, Ints]:
         each = zip(term.pairs, at.terms, strict=True)
@@ -85,6 +91,7 @@ def linearized(
 
     coupling = Coupling(
         Triplets.join(geometric_stiffness),
+        Triplets.join(skew if slips else []),
         Triplets.join(rows),
         Triplets.join(follow),
         diagonal,
@@ -94,16 +101,31 @@ def linearized(
     return coupling, rhs, expected
 
 
-def second_derivatives(term: ContactTerm, pair: Pair, p: Floats, q: Floats) -> Triplets:
-    """Geometric stiffness: second derivatives of gaps and slips under their tractions."""
+def second_derivatives(
+    term: ContactTerm, pair: Pair, p: Floats, q: Floats
+) -> tuple[Triplets, Triplets]:
+    """Geometric stiffness: derivatives of the directions of the tractions.
+
+    Returns
+    -------
+    even, odd : Triplets
+        Symmetric part, and the skew part that friction has.
+    """
     with term.system.timed("contact"):
         _, variables, values = pair.core.hessian(p[pair.owner], q[pair.owner])
     where = term.dofs(variables)
     v = where.shape[1]
     a, b = np.repeat(where, v, axis=1).ravel(), np.repeat(where, v, axis=0).ravel()
-    entries = -values.reshape(-1)
-    keep = (a >= 0) & (b >= 0) & (entries != 0.0)
-    return Triplets(a[keep], b[keep], entries[keep])
+
+    def entries(part: Floats) -> Triplets:
+        flat = -part.reshape(-1)
+        keep = (a >= 0) & (b >= 0) & (flat != 0.0)
+        return Triplets(a[keep], b[keep], flat[keep])
+
+    if not pair.friction or not q.any():
+        return entries(values), Triplets.join([])
+    turned = values.transpose(0, 2, 1)
+    return entries(0.5 * (values + turned)), entries(0.5 * (values - turned))
 
 
 def _near(term: ContactTerm, pair: Any, terms: Terms) -> tuple[Ints, Ints]:

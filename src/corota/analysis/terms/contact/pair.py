@@ -32,6 +32,8 @@ NONE = 1e-8
 REDUNDANT = 1e-3
 #: Covered fraction of its area below which a node passes its part to a neighbor.
 WEAK = 0.2
+#: And that above which it takes it back for good.
+AMPLE = 0.5
 EPS = float(np.finfo(float).eps)
 
 
@@ -85,6 +87,8 @@ class Pair:
         self.fixed: Terms | None = None  # of geometrically linear steps
         self.fixed_offset: Floats = np.zeros(0)  # the offset that they were made with
         self.area = self.full.copy()  # areas of pressure laws, kept within an increment
+        #: Constraints that were closed in the committed state.
+        self.closed: NDArray[np.bool_] = np.zeros(self.n, bool)
         #: Gaps and areas of the committed state where gaps must not fall below those.
         self.start: tuple[Floats, Floats] | None = None
         self.overlap = self.base = np.zeros(self.n)  # of the start, and offset of the gap
@@ -137,9 +141,9 @@ class Pair:
         if self.start is not None and x is not old and (acts or self._may_act()):
             x_middle = 0.5 * (x + old)
             self.core.search(x_middle)
-            middle = self.core.evaluate(x_middle, before)
+            middle = self.core.evaluate(x_middle, before, self.closed)
         self.core.search(x)
-        terms = self._read(self.core.evaluate(x, before))
+        terms = self._read(self.core.evaluate(x, before, self.closed))
         if middle is not None:
             terms.between = discrete_gradient(
                 terms,
@@ -150,6 +154,7 @@ class Pair:
                 getattr(self.item, "master", None),
                 NONE * self.size,
             )
+            terms.slip = terms.between.slip
         return self._since(terms)
 
     def gaps_at(self, term: Any, number: int, x: Floats) -> Terms:
@@ -218,8 +223,14 @@ class Pair:
 
     def _read(self, raw: dict[str, Any]) -> Terms:
         self.seen = self.seen or bool(len(raw["constraint"]))
-        if self.beside is not None and not self.frozen:
-            self.owner = self._owners(raw["total_area"])
+        if self.beside is not None:
+            area = raw["total_area"]
+            if self.frozen:
+                # An iterate far from the end of the increment may have seen little.
+                ample = area >= AMPLE * self.full
+                self.owner = np.where(ample, np.arange(self.n), self.owner)
+            else:
+                self.owner = self._owners(area)
         return self._shared(raw)
 
     def _shared(self, raw: dict[str, Any]) -> Terms:
@@ -344,6 +355,10 @@ class Pair:
     def violation(self, terms: Terms, p: Floats, q: Floats) -> Floats:
         """Contact residual as a force by constraint, shape (n,)."""
         return self.conditions.residual(self._at(terms), p, q)
+
+    def keep_closed(self, states: NDArray[np.int8]) -> None:
+        """Take the states of a committed state: slips are measured from where surfaces touched."""
+        self.closed = states[self.owner] != OPEN
 
     def law_energy(self, terms: Terms) -> float:
         """Energy of the pressure law [force*length]."""
