@@ -110,7 +110,9 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     fn parameter_of(_beta0: f64) -> Option<f64> {
         None
     }
-    fn prepare<T: Real>(x: &Nodal<T, N, 2>, parameter: f64) -> Self::Prepared<T>;
+    /// `sides` is the share [`Element::ALPHA_B`] of each edge (a, a + 1), which is less on an edge
+    /// that the element shares with one of a smaller share.
+    fn prepare<T: Real>(x: &Nodal<T, N, 2>, parameter: f64, sides: &[T; N]) -> Self::Prepared<T>;
     fn sample<T: Real>(
         x: &Nodal<T, N, 2>,
         prepared: &Self::Prepared<T>,

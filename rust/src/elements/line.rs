@@ -125,7 +125,7 @@ macro_rules! bar {
             axis(x).1.scale(0.5 * point.weight)
         }
         #[inline(always)]
-        fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64) {}
+        fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64, _: &[T; 2]) {}
         #[inline(always)]
         fn sample<T: Real>(
             x: &Nodal<T, 2, 2>,
@@ -339,7 +339,7 @@ impl Element<2, 2, 0> for Spring {
         T::zero()
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 2, 2>, _: f64, _: &[T; 2]) {}
     #[inline(always)]
     fn sample<T: Real>(_: &Nodal<T, 2, 2>, (): &(), _: &Point<2>) -> Sample<T, Grad<T, 2>, 0> {
         Sample { op: Grad([[T::zero(); 2]; 2]), modes: [], weight: T::zero() }
@@ -413,7 +413,7 @@ macro_rules! dof_spring {
                 T::zero()
             }
             #[inline(always)]
-            fn prepare<T: Real>(_: &Nodal<T, $n, 2>, _: f64) {}
+            fn prepare<T: Real>(_: &Nodal<T, $n, 2>, _: f64, _: &[T; $n]) {}
             #[inline(always)]
             fn sample<T: Real>(
                 _: &Nodal<T, $n, 2>,

@@ -64,7 +64,7 @@ impl Element<3, 3, 0> for Opt {
     }
 
     #[inline(always)]
-    fn prepare<T: Real>(x: &Nodal<T, 3, 2>, parameter: f64) -> Prepared<T> {
+    fn prepare<T: Real>(x: &Nodal<T, 3, 2>, parameter: f64, sides: &[T; 3]) -> Prepared<T> {
         let dx = |i: usize, j: usize| x[i][0] - x[j][0];
         let dy = |i: usize, j: usize| x[i][1] - x[j][1];
         let double_area = dx(1, 0) * dy(2, 0) - dx(2, 0) * dy(1, 0);
@@ -78,9 +78,11 @@ impl Element<3, 3, 0> for Opt {
             basic[i][0] = [y_jk, x_kj, T::zero(), T::zero()];
             basic[i][1] = [T::zero(), T::zero(), y_jk, x_kj];
             mean[i] = [x_kj.scale(-0.5), y_jk.scale(0.5)];
-            let ex = (y_jk * (dy(i, k) - dy(j, i))).scale(ALPHA_B / 6.0);
-            let ey = (x_kj * (dx(k, i) - dx(i, j))).scale(ALPHA_B / 6.0);
-            let half = (dx(k, i) * dy(i, k) - dx(i, j) * dy(j, i)) * r.scale(ALPHA_B / 6.0);
+            // A side gives its ends opposite moments of the normal traction.
+            let (before, after) = (sides[k] * r.scale(1.0 / 6.0), sides[i] * r.scale(1.0 / 6.0));
+            let ex = before * dy(i, k) * dy(i, k) - after * dy(j, i) * dy(j, i);
+            let ey = before * dx(k, i) * dx(k, i) - after * dx(i, j) * dx(i, j);
+            let half = before * dx(k, i) * dy(i, k) - after * dx(i, j) * dy(j, i);
             basic[i][2] = [ex, half, half, ey];
         }
         // Natural strains along the edges (21, 32, 13): squared lengths and directions.

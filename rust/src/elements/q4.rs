@@ -26,7 +26,7 @@ impl Element<4, 2, 0> for Q4 {
         shapes::square_linear(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 4, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 4, 2>, _: f64, _: &[T; 4]) {}
     #[inline(always)]
     fn sample<T: Real>(x: &Nodal<T, 4, 2>, (): &(), point: &Point<4>) -> Sample<T, Grad<T, 4>, 0> {
         let (g, weight) = shapes::gradients(x, point);

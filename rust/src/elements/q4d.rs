@@ -16,7 +16,8 @@ impl Element<4, 3, 1> for Q4d {
     const CELL: &'static str = "quad4";
     const ALPHA_B: f64 = 1.0;
     type Op<T: Real> = Drilling<T, 4>;
-    type Prepared<T: Real> = ();
+    /// Bulges of the edges.
+    type Prepared<T: Real> = [[T; 2]; 4];
 
     // The 2 x 2 rule leaves a zero-energy mode.
     fn rule() -> Vec<[f64; 3]> {
@@ -37,18 +38,20 @@ impl Element<4, 3, 1> for Q4d {
         (c[0][0] + c[1][1] - 2.0 * c[0][1] + 4.0 * c[2][2]) / 8.0
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 4, 2>, _: f64) {}
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, _: f64, sides: &[T; 4]) -> [[T; 2]; 4] {
+        shapes::bulges(x, sides)
+    }
     #[inline(always)]
     fn sample<T: Real>(
         x: &Nodal<T, 4, 2>,
-        (): &(),
+        bulges: &[[T; 2]; 4],
         point: &Point<4>,
     ) -> Sample<T, Drilling<T, 4>, 1> {
         let (inverse, det) = inverse2(&shapes::jacobian(x, &point.dn));
         let dn = shapes::push(&inverse, &point.dn);
         let dm = shapes::push(&inverse, &shapes::square_sides(point.xi).1);
         let bubble = shapes::push(&inverse, &[shapes::square_bubble(point.xi).1]);
-        let op = Drilling { grad: dn, turn: shapes::turning_rows(x, &dm), n: point.n };
+        let op = Drilling { grad: dn, turn: shapes::turning_rows(bulges, &dm), n: point.n };
         Sample { op, modes: bubble, weight: det.scale(point.weight) }
     }
 }

@@ -18,7 +18,7 @@ impl Element<4, 3, 2> for Q4di {
     const CELL: &'static str = "quad4";
     const ALPHA_B: f64 = Q4d::ALPHA_B;
     type Op<T: Real> = Drilling<T, 4>;
-    type Prepared<T: Real> = Centre<T>;
+    type Prepared<T: Real> = (Centre<T>, [[T; 2]; 4]);
 
     fn rule() -> Vec<[f64; 3]> {
         Q4d::rule()
@@ -36,19 +36,19 @@ impl Element<4, 3, 2> for Q4di {
         Q4d::parameter(moduli)
     }
     #[inline(always)]
-    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, parameter: f64) -> Centre<T> {
-        Q4i::prepare(x, parameter)
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, parameter: f64, sides: &[T; 4]) -> Self::Prepared<T> {
+        (Q4i::prepare(x, parameter, sides), Q4d::prepare(x, parameter, sides))
     }
     #[inline(always)]
     fn sample<T: Real>(
         x: &Nodal<T, 4, 2>,
-        centre: &Centre<T>,
+        (centre, bulges): &Self::Prepared<T>,
         point: &Point<4>,
     ) -> Sample<T, Drilling<T, 4>, 2> {
         let Sample { op, modes, weight } = Q4i::sample(x, centre, point);
         let (inverse, _) = crate::base::small::inverse2(&shapes::jacobian(x, &point.dn));
         let dm = shapes::push(&inverse, &shapes::square_sides(point.xi).1);
-        let op = Drilling { grad: op.0, turn: shapes::turning_rows(x, &dm), n: point.n };
+        let op = Drilling { grad: op.0, turn: shapes::turning_rows(bulges, &dm), n: point.n };
         Sample { op, modes, weight }
     }
 }

@@ -35,7 +35,7 @@ impl Element<4, 2, 2> for Q4i {
         shapes::square_linear(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, _: f64) -> Centre<T> {
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, _: f64, _: &[T; 4]) -> Centre<T> {
         let (_, dn) = shapes::square_linear([0.0, 0.0]);
         let (inverse, det) = inverse2(&shapes::jacobian(x, &dn));
         Centre { inverse, det }

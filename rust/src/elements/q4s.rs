@@ -28,8 +28,8 @@ impl Element<4, 2, 2> for Q4s {
         Q4i::shape(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, parameter: f64) -> Centre<T> {
-        Q4i::prepare(x, parameter)
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, parameter: f64, sides: &[T; 4]) -> Centre<T> {
+        Q4i::prepare(x, parameter, sides)
     }
     #[inline(always)]
     fn sample<T: Real>(

@@ -25,7 +25,7 @@ impl Element<8, 2, 0> for Q8 {
         shapes::square_serendipity(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 8, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 8, 2>, _: f64, _: &[T; 8]) {}
     #[inline(always)]
     fn sample<T: Real>(x: &Nodal<T, 8, 2>, (): &(), point: &Point<8>) -> Sample<T, Grad<T, 8>, 0> {
         let (g, weight) = shapes::gradients(x, point);
@@ -55,7 +55,7 @@ impl Element<8, 2, 0> for Q8r {
         Q8::shape(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 8, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 8, 2>, _: f64, _: &[T; 8]) {}
     #[inline(always)]
     fn sample<T: Real>(x: &Nodal<T, 8, 2>, (): &(), point: &Point<8>) -> Sample<T, Grad<T, 8>, 0> {
         Q8::sample(x, &(), point)

@@ -25,7 +25,7 @@ impl Element<9, 2, 0> for Q9 {
         shapes::square_lagrange(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 9, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 9, 2>, _: f64, _: &[T; 9]) {}
     #[inline(always)]
     fn sample<T: Real>(x: &Nodal<T, 9, 2>, (): &(), point: &Point<9>) -> Sample<T, Grad<T, 9>, 0> {
         let (g, weight) = shapes::gradients(x, point);

@@ -201,16 +201,24 @@ pub fn edge_bulge<T: Real, const N: usize>(x: &Nodal<T, N, 2>, a: usize) -> [T; 
     [e[1].scale(-0.125), e[0].scale(0.125)]
 }
 
+/// The [`edge_bulge`] of each edge times its share.
+#[inline(always)]
+pub fn bulges<T: Real, const N: usize>(x: &Nodal<T, N, 2>, sides: &[T; N]) -> [[T; 2]; N] {
+    std::array::from_fn(|a| edge_bulge(x, a).map(|v| v * sides[a]))
+}
+
 /// Gradient rows of the drilling rotations from the gradients of the mid-side functions.
 #[inline(always)]
-pub fn turning_rows<T: Real, const N: usize>(x: &Nodal<T, N, 2>, dm: &[[T; 2]; N]) -> [[T; 4]; N] {
+pub fn turning_rows<T: Real, const N: usize>(
+    bulges: &[[T; 2]; N],
+    dm: &[[T; 2]; N],
+) -> [[T; 4]; N] {
     let mut h = [[T::zero(); 4]; N];
     for a in 0..N {
         let b = (a + 1) % N;
-        let bulge = edge_bulge(x, a);
         for i in 0..2 {
             for j in 0..2 {
-                let v = bulge[i] * dm[a][j];
+                let v = bulges[a][i] * dm[a][j];
                 h[a][2 * i + j] += v;
                 h[b][2 * i + j] -= v;
             }

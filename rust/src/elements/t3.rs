@@ -26,7 +26,7 @@ impl Element<3, 2, 0> for T3 {
         shapes::triangle_linear(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 3, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 3, 2>, _: f64, _: &[T; 3]) {}
     #[inline(always)]
     fn sample<T: Real>(x: &Nodal<T, 3, 2>, (): &(), point: &Point<3>) -> Sample<T, Grad<T, 3>, 0> {
         let (g, weight) = shapes::gradients(x, point);

@@ -25,7 +25,7 @@ impl Element<6, 2, 0> for T6 {
         shapes::triangle_quadratic(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(_: &Nodal<T, 6, 2>, _: f64) {}
+    fn prepare<T: Real>(_: &Nodal<T, 6, 2>, _: f64, _: &[T; 6]) {}
     #[inline(always)]
     fn sample<T: Real>(x: &Nodal<T, 6, 2>, (): &(), point: &Point<6>) -> Sample<T, Grad<T, 6>, 0> {
         let (g, weight) = shapes::gradients(x, point);

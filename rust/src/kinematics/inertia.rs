@@ -64,6 +64,7 @@ impl<T: Real, const N: usize> Mass<T, N> {
         x: &Nodal<T, N, 2>,
         points: &[Point<N>],
         rho_t: impl Fn(&Point<N>) -> f64,
+        sides: &[f64; N],
         kind: MassKind,
     ) -> Self
     where
@@ -92,7 +93,8 @@ impl<T: Real, const N: usize> Mass<T, N> {
         }
         if M == 3 {
             for k in 0..N {
-                m.s[k] = shapes::edge_bulge(x, k);
+                // The displacement is quadratic on an edge even where the share exceeds one.
+                m.s[k] = shapes::edge_bulge(x, k).map(|v| v.scale(sides[k].min(1.0)));
             }
         }
         if kind != MassKind::Consistent {

@@ -1,4 +1,4 @@
-//! What the points of a block do not share: thickness, and laws at their temperature.
+//! What the elements of a block do not share: thickness, edges, and laws at their temperature.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::integrate::Section;
@@ -74,6 +74,8 @@ pub struct ElementLaws<'a> {
 pub struct PerPoint<'a> {
     /// Thickness by point, `stride` apart; empty where that of the section holds.
     pub thickness: &'a [f64],
+    /// Shares of the edges, `stride` apart; empty where those of the element hold.
+    pub sides: &'a [f64],
     pub stride: usize,
     /// Laws that follow the temperature. Their coefficients are plain numbers, so that batches of
     /// several elements have none.
@@ -82,9 +84,24 @@ pub struct PerPoint<'a> {
 
 impl<'a> PerPoint<'a> {
     /// Of the element `e` of a chunk.
-    pub fn of(thickness: &'a [f64], laws: Option<&'a PointLaws>, e: usize, stride: usize) -> Self {
-        let thickness = if thickness.is_empty() { &[] } else { &thickness[e..] };
-        Self { thickness, stride, laws: laws.map(|l| l.of(e)) }
+    pub fn of(
+        thickness: &'a [f64],
+        sides: &'a [f64],
+        laws: Option<&'a PointLaws>,
+        e: usize,
+        stride: usize,
+    ) -> Self {
+        let from = |values: &'a [f64]| if values.is_empty() { values } else { &values[e..] };
+        Self { thickness: from(thickness), sides: from(sides), stride, laws: laws.map(|l| l.of(e)) }
+    }
+
+    /// Share of the traction of each edge that goes into end moments, `alpha_b` unless given.
+    #[inline(always)]
+    pub fn sides<T: Real, const N: usize>(&self, alpha_b: f64) -> [T; N] {
+        if self.sides.is_empty() {
+            return [T::real(alpha_b); N];
+        }
+        std::array::from_fn(|a| T::load(&self.sides[a * self.stride..]))
     }
 
     /// Thickness at a point.

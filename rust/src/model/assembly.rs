@@ -51,7 +51,13 @@ where
                 alpha: &mut self.alpha[e.min(2 * A * self.stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride: self.stride,
-                per_point: PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride),
+                per_point: PerPoint::of(
+                    &self.thickness,
+                    &self.sides,
+                    self.laws.as_ref(),
+                    e,
+                    self.stride,
+                ),
             };
             let mut answer;
             if T::LANES == 1 {

@@ -25,6 +25,9 @@ pub struct BlockInput {
     pub thickness: f64,
     /// Thickness of the nodes, element by element; empty where it is the same everywhere.
     pub nodal_thickness: Vec<f64>,
+    /// Share of the edge tractions that goes into end moments of drilling elements, by element and
+    /// edge; empty where that of the element holds.
+    pub sides: Vec<f64>,
     /// Section numbers of line elements.
     pub profile: [f64; 3],
     /// Pairs of elongation and force of nonlinear springs.
@@ -106,7 +109,7 @@ pub fn build(
             mean_dilatation: input.options.mean_dilatation,
             finite: true,
         };
-        for nodal in [&input.nodal_thickness, &input.nodal_density] {
+        for nodal in [&input.nodal_thickness, &input.nodal_density, &input.sides] {
             if !nodal.is_empty() && nodal.len() != input.nodes.len() {
                 return Err("values of the nodes do not fit the elements".into());
             }
@@ -127,6 +130,7 @@ pub fn build(
             table,
             weighted: input.options.beta0.is_some(),
             nodal_thickness: input.nodal_thickness.clone(),
+            sides: input.sides.clone(),
             nodal_density: input.nodal_density.clone(),
             mass_points,
         };

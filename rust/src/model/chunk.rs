@@ -67,6 +67,7 @@ pub struct Shared<const N: usize> {
     /// Thickness and density of the nodes of all elements of the block, `[n, N]`; empty where those
     /// of the section hold.
     pub nodal_thickness: Vec<f64>,
+    pub sides: Vec<f64>,
     pub nodal_density: Vec<f64>,
     pub mass_points: Vec<crate::elements::Point<N>>,
 }

@@ -42,6 +42,8 @@ pub struct ChunkOf<E, const N: usize, const M: usize, const A: usize> {
     pub(super) mass_factors: Vec<f64>,
     /// Thickness by point, `[p]` strided; empty where that of the section holds.
     pub(super) thickness: Vec<f64>,
+    /// Share [`Element::ALPHA_B`] of each edge, `[N]` strided; empty where that of the element holds.
+    pub(super) sides: Vec<f64>,
     /// Thickness and density of the nodes of each element; empty likewise.
     pub(super) nodal_thickness: Vec<[f64; N]>,
     pub(super) nodal_density: Vec<[f64; N]>,
@@ -97,6 +99,15 @@ where
                 }
             }
         }
+        let mut sides = Vec::new();
+        if !shared.sides.is_empty() {
+            sides.resize(N * stride, E::ALPHA_B);
+            for (e, of_edges) in of_nodes(&shared.sides).iter().enumerate() {
+                for (a, share) in of_edges.iter().enumerate() {
+                    sides[a * stride + e] = *share;
+                }
+            }
+        }
         Self {
             shared: shared.clone(),
             elements: elements.to_vec(),
@@ -114,6 +125,7 @@ where
             massless: Vec::new(),
             mass_factors: Vec::new(),
             thickness,
+            sides,
             nodal_thickness,
             nodal_density: of_nodes(&shared.nodal_density),
             temperatures: Vec::new(),
@@ -129,7 +141,7 @@ where
 
     /// What the element `e` of the chunk has of its own.
     pub(super) fn per_point(&self, e: usize) -> PerPoint<'_> {
-        PerPoint::of(&self.thickness, self.laws.as_ref(), e, self.stride)
+        PerPoint::of(&self.thickness, &self.sides, self.laws.as_ref(), e, self.stride)
     }
 
     /// Laws at the temperatures that are stored.

@@ -88,7 +88,13 @@ where
             let rho = self.nodal_density.get(e).map_or(s.rho, |nodal| interpolate(p, nodal));
             rho * self.thickness(e, p)
         };
-        let mut mass = Mass::new::<E, M, A>(x, &s.mass_points, rho_t, kind);
+        let mut mass = Mass::new::<E, M, A>(
+            x,
+            &s.mass_points,
+            rho_t,
+            &self.per_point(e).sides(E::ALPHA_B),
+            kind,
+        );
         if E::LINE && M == 3 && s.section.thickness > 0.0 {
             mass.turn_with(s.section.profile[1] / s.section.thickness);
         }
@@ -145,7 +151,9 @@ where
                 }
                 None => {
                     let (points, kind) = (&self.shared.mass_points, MassKind::Consistent);
-                    let volume = Mass::new::<E, M, A>(&x, points, |p| self.thickness(e, p), kind);
+                    let sides = self.per_point(e).sides(E::ALPHA_B);
+                    let thickness = |p: &Point<N>| self.thickness(e, p);
+                    let volume = Mass::new::<E, M, A>(&x, points, thickness, &sides, kind);
                     (volume, Self::coupled(kind))
                 }
             };
@@ -205,7 +213,13 @@ where
                 alpha: &mut self.alpha[e.min(2 * A * stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride,
-                per_point: PerPoint::of(&self.thickness, self.laws.as_ref(), e, stride),
+                per_point: PerPoint::of(
+                    &self.thickness,
+                    &self.sides,
+                    self.laws.as_ref(),
+                    e,
+                    stride,
+                ),
             };
             let step = Step {
                 u0: &u0,

@@ -112,6 +112,11 @@ fn case(facts: &Facts, law: &str, strain: &str, nlgeom: bool) -> Case {
         } else {
             Vec::new()
         },
+        sides: if strain == "logarithmic" {
+            x.iter().map(|p| 0.5 + 0.4 * p[1].sin()).collect()
+        } else {
+            Vec::new()
+        },
         profile: [0.7, 0.1, 0.4],
         table: if strain == "logarithmic" { TABLE.to_vec() } else { Vec::new() },
         rho: 1.0,

@@ -216,7 +216,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             modes[m] = [alpha[2 * m], alpha[2 * m + 1]];
         }
         let parameter = own.parameter::<f64, N>(section);
-        let prepared = E::prepare(&x, parameter);
+        let prepared = E::prepare(&x, parameter, &own.sides(E::ALPHA_B));
         let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
@@ -342,7 +342,9 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
         for m in 0..A {
             modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];
         }
-        let prepared = E::prepare(&x, chunk.per_point(e).parameter::<f64, N>(section));
+        let own = chunk.per_point(e);
+        let parameter = own.parameter::<f64, N>(section);
+        let prepared = E::prepare(&x, parameter, &own.sides(E::ALPHA_B));
         let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);

@@ -29,6 +29,7 @@ fn sheet(n: usize, shuffled: bool) -> Problem {
         local_strain: "green_lagrange".into(),
         thickness: 1.0,
         nodal_thickness: Vec::new(),
+        sides: Vec::new(),
         profile: [0.0; 3],
         table: Vec::new(),
         rho: 1.0,

@@ -46,6 +46,7 @@ pub fn block_inputs(blocks: &Bound<'_, PyList>) -> PyResult<Vec<BlockInput>> {
             },
             rho: get("rho")?.extract()?,
             nodal_thickness: numbers(d, "nodal_thickness")?,
+            sides: numbers(d, "sides")?,
             nodal_density: numbers(d, "nodal_density")?,
             by_temperature: match d.get_item("by_temperature")? {
                 Some(v) => v.extract()?,

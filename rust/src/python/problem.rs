@@ -41,7 +41,7 @@ impl PyProblem {
     /// ``points`` (n, 2); ``blocks`` a list of dicts with element, law, parameters, plane,
     /// local_strain, thickness, rho, nodes (flat uint32), and
     /// where wanted profile (3 numbers), table (pairs), mean_dilatation (bool), beta0 (float or None),
-    /// nodal_thickness and nodal_density (flat as nodes) and by_temperature (pairs of a temperature
+    /// nodal_thickness, nodal_density and sides (flat as nodes; shares of the edges) and by_temperature (pairs of a temperature
     /// and parameters; see ``set_temperatures``); ``extra_dofs`` (n,) uint8 or empty.
     #[new]
     fn new(

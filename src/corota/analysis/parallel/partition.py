@@ -10,7 +10,6 @@ Source: H. D. Simon, Computing Systems in Engineering 2 (1991) 135-148.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,7 +54,7 @@ def own_blocks(
         rows = np.flatnonzero(part[first : first + len(block.cells)] == communicator.rank)
         first += len(block.cells)
         if len(rows):
-            own.append(replace(block, cells=block.cells[rows], nodes=block.nodes[rows]))
+            own.append(block.part(rows))
             numbers.append(number)
     return own, numbers
 
