@@ -2,6 +2,8 @@
 
 # SPDX-License-Identifier: BSD-3-Clause
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -150,12 +152,64 @@ def test_plastic_elements_balance(element, strain):
     results = cantilever(element, force=-0.03, increments=6, material=material, local_strain=strain)
     for x in (0.4, 4.13):
         cut = results.section((x, -1), (x, 2))
-        assert cut.method in ("element forces", "free body")
+        assert cut.method == "element forces"
         assert np.allclose(cut.force, [0.0, -0.03], atol=0.03 * EXACT)
 
 
-def test_flow_in_one_leg_of_a_clamped_frame_is_that_of_the_stress():
-    """No free body and history: the forces follow from the recorded stress, and still balance."""
+@pytest.mark.parametrize("strain", ["linear", "logarithmic"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_forces_balance_beside_a_rigid_body_with_heat_and_flow(element, strain, tmp_path):
+    """No part can be cut free, and no force follows from displacements or stresses alone."""
+    mesh = ct.mesh.rectangle(4.0, 1.0, nx=8, ny=2, cell=KINDS.get(element, "quad4"))
+    node = ct.mesh.add_node(mesh, 4.5, 0.5)
+    model = ct.Model(mesh)
+    material = ct.Mises(E=1e3, nu=0.3, yield_stress=3.0, isotropic=10.0, expansion=1e-4)
+    model.section("all", element=element, material=material, local_strain=strain)
+    model.fix("left")
+    model.rigid("right", node)
+    model.fix([node], x=0.1, y=0.2, rotation=0.1)
+    model.temperature(50.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of strain and of elements
+        results = ct.solve(model, ct.Static(increments=4), threads=1)
+    assert results.history("PEEQ").max() > 1e-3
+    frame, left = results.frame(), mesh.node_sets["left"]
+    place = mesh.points + frame.U
+    path = results.write(tmp_path / "r.vtkhdf", points=True)
+    for x in (2.25, 2.0):
+        cut = results.section((x, -1.0), (x, 2.0))
+        assert cut.method == "element forces"
+        total = -frame.RF[left][:, :2].sum(axis=0)
+        assert np.allclose(cut.force, total, atol=1e-6 * np.hypot(*total))
+        arm = place[left] - cut.center
+        moment = (arm[:, 0] * frame.RF[left, 1] - arm[:, 1] * frame.RF[left, 0]).sum()
+        moment += frame.RF[left, 2].sum() if frame.RF.shape[1] > 2 else 0.0
+        assert pytest.approx(-moment, abs=1e-6 * np.hypot(*total)) == cut.M
+        with read_results(path) as found:
+            again = found.section((x, -1.0), (x, 2.0))
+        assert np.allclose([again.N, again.V, again.M], [cut.N, cut.V, cut.M], rtol=1e-9)
+
+
+def test_heated_trusses_across_a_cut_have_their_forces():
+    """Between walls: - E A alpha dT each, with small and with large displacements."""
+    points = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 1.0]])
+    lines = Cells("line2", np.array([[0, 1], [2, 3]]), np.array([1, 2]))
+    for nlgeom in (False, True):
+        model = ct.Model(Mesh(points, [lines]))
+        material = ct.Elastic(E=1e3, nu=0.3, expansion=1e-4)
+        model.truss([0], material=material, area=0.5)
+        model.truss([1], material=material, area=0.25)
+        model.fix([0, 1, 2, 3])
+        model.temperature(40.0)
+        results = ct.solve(model, ct.Static(nlgeom=nlgeom), threads=1)
+        cut = results.section((1.0, -1.0), (1.0, 2.0))
+        assert cut.method == "element forces"
+        assert pytest.approx(-1e3 * 0.75 * 4e-3, rel=1e-2) == cut.N
+        assert pytest.approx(results.member_forces().N.sum(), rel=1e-9) == cut.N
+
+
+def test_flow_in_one_leg_of_a_clamped_frame_balances():
+    """No part can be cut free, and the force depends on the history."""
     mesh = ct.mesh.annulus(4.0, 6.0, n_radial=3, n_around=40)
     model = ct.Model(mesh)
     material = ct.Mises(E=1e3, nu=0.3, yield_stress=1.0, isotropic=50.0)
@@ -192,26 +246,30 @@ def test_heated_bar_between_walls():
 def test_files_give_the_same(tmp_path):
     results = cantilever(force=-0.35, increments=2)
     wanted = results.section((4.13, -1), (4.13, 2))
-    for points in (False, True):
+    for points, method in ((False, "free body"), (True, "element forces")):
         path = results.write(tmp_path / f"{points}.vtkhdf", points=points)
         with read_results(path) as found:
             cut = found.section((4.13, -1), (4.13, 2))
-            assert cut.method == "free body"
+            assert cut.method == method
             assert pytest.approx([wanted.N, wanted.V, wanted.M], rel=1e-7) == [cut.N, cut.V, cut.M]
 
 
-def test_one_leg_from_a_file_is_integrated_from_the_stress(tmp_path):
+def test_one_leg_from_a_file_without_forces_is_integrated_from_the_stress(tmp_path):
     results = ring(1e-3, full=True)
     wanted = results.section((9.0, 0.0), (11.0, 0.0))
     # Relative to the stress of bending, of which the force is a small difference.
     size = results.history("MISES").max() * 1.0
-    for points, off in ((False, 0.01), (True, 1e-3)):
-        path = results.write(tmp_path / f"{points}.vtkhdf", points=points)
-        with read_results(path) as found:
-            cut = found.section((9.0, 0.0), (11.0, 0.0))
-            assert cut.method == "stress"
-            assert pytest.approx(wanted.N, abs=off * size) == cut.N
-            assert pytest.approx(wanted.M, abs=off * size / 6) == cut.M
+    path = results.write(tmp_path / "nodes.vtkhdf")
+    with read_results(path) as found, pytest.warns(UserWarning, match="integrated from stresses"):
+        cut = found.section((9.0, 0.0), (11.0, 0.0))
+    assert cut.method == "stress"
+    assert pytest.approx(wanted.N, abs=0.01 * size) == cut.N
+    assert pytest.approx(wanted.M, abs=0.01 * size / 6) == cut.M
+    path = results.write(tmp_path / "points.vtkhdf", points=True)
+    with read_results(path) as found:
+        cut = found.section((9.0, 0.0), (11.0, 0.0))
+    assert cut.method == "element forces"
+    assert pytest.approx([wanted.N, wanted.V, wanted.M], rel=1e-12) == [cut.N, cut.V, cut.M]
 
 
 def test_elements_whose_stress_is_not_all_are_refused_from_files(tmp_path):

@@ -379,7 +379,8 @@ impl Problem {
         let (blocks, pool) = (&self.blocks, self.pool());
         let empty = |block: usize, n: usize| {
             let b = &blocks[block];
-            Fields::new(n, b.facts.n_points, &b.law, b.outputs().len())
+            let n_dofs = b.facts.n_nodes * b.facts.dofs_per_node;
+            Fields::new(n, b.facts.n_points, n_dofs, &b.law, b.outputs().len())
         };
         let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let evaluate = |chunk: &&dyn Chunk| {

@@ -32,6 +32,8 @@ pub struct Fields {
     pub tensors: Vec<Vec<f64>>,
     /// Current thickness, `[n, p]`.
     pub thickness: Vec<f64>,
+    /// Forces and moments of the nodes on the element in global axes, `[n, N, M]`.
+    pub forces: Vec<f64>,
     /// Rotation of the element frame in (-pi, pi], `[n]`.
     pub rotation: Vec<f64>,
     /// Energy of the drilling penalty, `[n]`; of springs, which have no volume, all of it.
@@ -50,7 +52,8 @@ pub struct Fields {
 }
 
 impl Fields {
-    pub fn new(n: usize, n_points: usize, law: &Law, outputs: usize) -> Self {
+    /// Zero fields of `n` elements with some dofs each.
+    pub fn new(n: usize, n_points: usize, n_dofs: usize, law: &Law, outputs: usize) -> Self {
         let p = n * n_points;
         Self {
             n_points,
@@ -63,6 +66,7 @@ impl Fields {
             outputs: vec![vec![0.0; p]; outputs],
             tensors: vec![vec![0.0; 4 * p]; law.tensors().len()],
             thickness: vec![0.0; p],
+            forces: vec![0.0; n * n_dofs],
             rotation: vec![0.0; n],
             penalty: vec![0.0; n],
             dissipated: vec![0.0; n],
@@ -90,6 +94,7 @@ impl Fields {
         copy(&mut self.energy, &part.energy);
         copy(&mut self.volume, &part.volume);
         copy(&mut self.thickness, &part.thickness);
+        copy(&mut self.forces, &part.forces);
         copy(&mut self.rotation, &part.rotation);
         copy(&mut self.penalty, &part.penalty);
         copy(&mut self.dissipated, &part.dissipated);
@@ -163,6 +168,20 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             [] => Vec::new(),
             from => (0..rows).map(|m| from[m * stride]).collect(),
         };
+        let old: Vec<f64> = (0..kept).map(|m| chunk.old[m * stride + e]).collect();
+        let mut alpha: Vec<f64> = (0..2 * A).map(|m| chunk.alpha[m * stride + e]).collect();
+        // The internal modes and the force that belong to these nodal dofs.
+        let mut history = History {
+            old: &old,
+            new: &mut new,
+            alpha: &mut alpha,
+            initial: &initial,
+            stride: 1,
+            per_point: own,
+        };
+        let answer = local::<E, f64, N, M, A>(&x, &frame.q, section, &mut history, false);
+        let forces = frame.force(&answer.force);
+        out.forces[e * N * M..(e + 1) * N * M].copy_from_slice(forces.as_flattened());
         if E::LINE {
             let axial = initial.first().copied().unwrap_or(0.0);
             let found = E::resultants(&x, &frame.q, section, &own, axial);
@@ -196,20 +215,6 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             }
             out.rotation[e] = frame.angle();
             continue;
-        }
-        let old: Vec<f64> = (0..kept).map(|m| chunk.old[m * stride + e]).collect();
-        let mut alpha: Vec<f64> = (0..2 * A).map(|m| chunk.alpha[m * stride + e]).collect();
-        {
-            // The internal modes that belong to these nodal dofs.
-            let mut history = History {
-                old: &old,
-                new: &mut new,
-                alpha: &mut alpha,
-                initial: &initial,
-                stride: 1,
-                per_point: own,
-            };
-            let _ = local::<E, f64, N, M, A>(&x, &frame.q, section, &mut history, false);
         }
         let mut modes = [[0.0; 2]; A];
         for m in 0..A {

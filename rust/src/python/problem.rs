@@ -495,6 +495,8 @@ impl PyProblem {
             d.set_item("largest_strain", f.largest_strain)?;
             d.set_item("points", rows(f.points, 2)?)?;
             d.set_item("volume", scalar(f.volume)?)?;
+            let of_nodes = [n, block.facts.n_nodes, block.facts.dofs_per_node];
+            d.set_item("forces", f.forces.into_pyarray(py).reshape(of_nodes)?)?;
             d.set_item("rotation", f.rotation.into_pyarray(py))?;
             let shape = block.shape.clone().into_pyarray(py);
             d.set_item("shape", shape.reshape([p, block.shape.len() / p.max(1)])?)?;

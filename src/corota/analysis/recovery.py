@@ -88,6 +88,7 @@ def _own(
             own["rotation"],
             own["volume"],
             own["values"],
+            own["forces"],
         )
         add_derived(found)
         fields.append(found)

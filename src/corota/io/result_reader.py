@@ -40,6 +40,8 @@ _NODAL_ARRAYS = {
     "external moment", "velocity", "angular velocity", "acceleration", "angular acceleration",
     *vf.CONTACT,
 }  # fmt: skip
+#: Arrays of a block of point values that are no variables.
+AT_POINTS = ("cells", "shape functions", "reference volume", "position", vf.FORCES)
 #: Scalars of a frame that are its own attributes.
 _OWN = ("step", "increment", "time", "step time", "load factor")
 
@@ -364,18 +366,19 @@ class FileFrames(Sequence[Frame]):
         values = {
             name: data[number * n : (number + 1) * n]
             for name, data in group.items()
-            if name not in ("cells", "shape functions", "reference volume", "position")
+            if name not in AT_POINTS
         }
         points = len(shape)
         for name, part in values.items():
             _whole(part.shape[:2] == (n, points) and part.dtype.kind == "f", f"{name} at points")
         position = group["position"][number * n : (number + 1) * n]
+        forces = group[vf.FORCES][number * n : (number + 1) * n] if vf.FORCES in group else None
         turns = self._file["VTKHDF/CellData/frame rotation"]
         rows = len(turns) // self._count
         every = turns[number * rows : (number + 1) * rows][self._rows.cells]
         rotation = every[np.minimum(cells, len(every) - 1)]
         return PointFields(
-            element, cells, position, shape, rotation, group["reference volume"][:], values
+            element, cells, position, shape, rotation, group["reference volume"][:], values, forces
         )
 
 

@@ -38,6 +38,9 @@ class PointFields(Brief):
     values : dict of str to ndarray
         ``S`` stress (n, p, 4) and ``E`` strain (n, p, 4), rows xx, yy, zz, xy in global axes,
         shear strain engineering; scalars (n, p): ``MISES``, ``ENER``, later ``PEEQ``, ...
+    forces : ndarray, shape (n, k, m), or None
+        Forces (and moments, m = 3) of the k nodes on each element in global axes; None if they were
+        not recorded [force, force*length].
     """
 
     element: str
@@ -47,6 +50,7 @@ class PointFields(Brief):
     frame_rotation: Floats
     volume: Floats
     values: dict[str, Floats]
+    forces: Floats | None = None
 
 
 @dataclass(repr=False)

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,6 @@ from corota.mesh.parts import parts_without
 from corota.mesh.shape_functions import shape_functions
 from corota.model import elements
 from corota.results.averaging import natural_nodes
-from corota.results.element_forces import element_forces
 from corota.results.history import History
 
 if TYPE_CHECKING:
@@ -38,6 +38,12 @@ draw_diagram = lazy("corota.plots:section_diagram")
 ON = 1e-7
 #: Share of the forces by which both parts of a free body may differ.
 BALANCED = 1e-6
+#: What is said where only stresses are left.
+INTEGRATED = (
+    "the section force is integrated from stresses and does not balance the loads exactly: the "
+    "results contain no forces of the elements; call section() on the results of solve(), or write "
+    "the file with values at points (--points)"
+)
 
 
 @dataclass(repr=False)
@@ -69,7 +75,7 @@ class SectionForces(Brief):
         Length of the cut inside of planar elements, undeformed.
     method : str
         ``"element forces"`` (exact), ``"free body"`` (exact, from loads and reactions), or
-        ``"stress"`` (integrated; as good as the stress).
+        ``"stress"`` (integrated; as good as the stress, with a warning).
     """
 
     N: float
@@ -217,14 +223,12 @@ class Cut:
         moved = state.U if self._nlgeom(state) else 0.0
         positions = self.results.mesh.points + moved
         center, normal = self._place(positions)
-        known = self._of_elements(state, positions, center)
-        found, method = (known[:2], "element forces") if known and known[2] else (None, "")
+        found, method = self._of_elements(state, positions, center), "element forces"
         if found is None:
             found, method = self._free_body(state, positions, center), "free body"
-        if found is None and known:
-            found, method = known[:2], "stress"
         if found is None:
             found, method = self._of_stress(state, positions, center, frame), "stress"
+            warnings.warn(INTEGRATED, stacklevel=3)
         force, moment = found
         across = np.array([-normal[1], normal[0]])
         return SectionForces(
@@ -289,21 +293,25 @@ class Cut:
 
     def _of_elements(
         self, state: Frame, positions: Floats, center: Floats
-    ) -> tuple[Floats, float, bool] | None:
-        """Force, moment, and whether they are exact."""
-        model = self.results.model
-        if not model.sections or not state.fields:
-            return None
-        cells = np.concatenate([c.cells for c in self.crossings])
-        found = element_forces(model, cells, state, self._nlgeom(state))
-        if found is None:
-            return None
+    ) -> tuple[Floats, float] | None:
+        """By the forces of the nodes ahead on the elements; None if not all were recorded."""
         force, moment = np.zeros(2), 0.0
-        for _, nodes, values in found[0]:
-            ahead = self.ahead[nodes]
-            one, turn = _resultant(positions[nodes][ahead], values[ahead], center)
+        for crossing in self.crossings:
+            values = np.zeros((*crossing.nodes.shape, 3))
+            known = np.zeros(len(values), dtype=bool)
+            for block in state.fields:
+                mine = np.isin(crossing.cells, block.cells)
+                if block.forces is None or not mine.any():
+                    continue
+                rows = np.searchsorted(block.cells, crossing.cells[mine])
+                values[mine, :, : block.forces.shape[2]] = block.forces[rows]
+                known |= mine
+            if not known.all():
+                return None
+            ahead = crossing.ahead
+            one, turn = _resultant(positions[crossing.nodes][ahead], values[ahead], center)
             force, moment = force + one, moment + turn
-        return force, moment, found[1]
+        return force, moment
 
     def _free_body(
         self, state: Frame, positions: Floats, center: Floats
@@ -363,7 +371,7 @@ class Cut:
                 raise InputError(
                     f"the nodal forces of {name} do not follow from its stress alone, and the part "
                     "cut off cannot be balanced with loads and reactions: call section() on the "
-                    "results of solve(), which contain the elements"
+                    "results of solve(), or write the file with values at points (--points)"
                 )
 
     def _of_lines(self, crossing: _Crossing, positions: Floats, index: int) -> Floats:

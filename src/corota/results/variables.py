@@ -57,6 +57,9 @@ UNKNOWN = ("stable", "negative pivots")
 #: Columns of the contact values at nodes.
 CONTACT = ("CPRESS", "CSHEAR", "COPEN", "CSLIP", "CSTATUS")
 
+#: Forces of the nodes on the elements, in files.
+FORCES = "nodal forces"
+
 #: Tensors at points, rows xx, yy, zz, xy: stress, strain, plastic strain, back-stress deviator.
 TENSORS = ("S", "E", "PE", "ALPHA")
 

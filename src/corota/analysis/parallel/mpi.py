@@ -174,6 +174,7 @@ def _join(group: list[PointFields]) -> PointFields:
         put([g.frame_rotation for g in group]),
         put([g.volume for g in group]),
         {name: put([g.values[name] for g in group]) for name in names},
+        put([g.forces for g in group]),
     )
 
 

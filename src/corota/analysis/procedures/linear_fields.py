@@ -67,7 +67,10 @@ def _combine(base: PointFields, ahead: PointFields, behind: PointFields, h: floa
         x, y, z, t = np.moveaxis(values["S"], -1, 0)
         values["MISES"] = np.sqrt(0.5 * ((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) + 3.0 * t**2)
     points = base.points + (ahead.points - behind.points) / (2.0 * h)
-    return replace(base, points=points, values=values)
+    forces = base.forces
+    if forces is not None and ahead.forces is not None and behind.forces is not None:
+        forces = forces + (ahead.forces - behind.forces) / (2.0 * h)
+    return replace(base, points=points, values=values, forces=forces)
 
 
 def _second(base: Floats | float, ahead: Floats | float, behind: Floats | float, h: float):  # type: ignore[no-untyped-def]

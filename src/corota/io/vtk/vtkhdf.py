@@ -309,6 +309,8 @@ class VtkhdfWriter:
             place = self._block(number, block)
             if self._options.points:
                 data[place] = block.values | {"position": block.points}
+                if block.forces is not None:
+                    data[place][vf.FORCES] = block.forces
         if self._options.single:
             data = {place: halved(frame, arrays) for place, arrays in data.items()}
         data["corota/frames"] = scalars(frame)
