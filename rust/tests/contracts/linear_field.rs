@@ -23,7 +23,7 @@ fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>() 
                 q[a][M - 1] = 0.5 * (h[2] - h[1]);
             }
         }
-        let prepared = E::prepare(&x, 0.9);
+        let prepared = E::prepare(&x, 0.9, &[E::ALPHA_B; N]);
         let mut area = 0.0;
         let mut mean = [[0.0; 2]; A];
         for point in E::points(&E::rule()) {

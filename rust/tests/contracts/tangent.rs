@@ -125,7 +125,7 @@ where
             modes[m] = [Dual::real(plain.alpha[2 * m]), Dual::real(plain.alpha[2 * m + 1])];
         }
         let x = x.map(|p| p.map(Dual::<D>::real));
-        let prepared = E::prepare(&x, section.parameter);
+        let prepared = E::prepare(&x, section.parameter, &[Dual::real(E::ALPHA_B); N]);
         let moduli = section.law.moduli();
         let [first, second] =
             E::stabilization(&x, &dual.frame.q, section, &PerPoint::default(), &[]);
