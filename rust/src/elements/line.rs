@@ -218,6 +218,7 @@ impl Element<2, 3, 0> for Beam {
     const CELL: &'static str = "line2";
     const LINE: bool = true;
     const OUTPUTS: &'static [&'static str] = &["N", "V", "M1", "M2"];
+    const ALPHA_B: f64 = 1.0;
     bar!(Full, [[T::zero(); 4]; 3]);
 
     /// Deflection of the axis by the difference of the end rotations, exact without shear force:

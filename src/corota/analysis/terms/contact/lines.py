@@ -48,7 +48,7 @@ def line_surface(system: NumberedModel, name: str, edges: Ints, item: ContactPai
         if not section.profile[0] or element.name not in ("BEAM", "TRUSS"):
             continue
         # A beam's chord bulges by the difference of its end rotations, as a drilling edge does.
-        bulge[here] = 1.0 if element.name == "BEAM" else 0.0
+        bulge[here] = element.alpha_b
         half[here] = 0.5 * section.line_height
         width[here] = section.profile[0] / (section.line_height or np.sqrt(section.profile[0]))
     if (half < 0.0).any():
