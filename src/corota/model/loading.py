@@ -203,7 +203,7 @@ class Loading:
         >>> import corota as ct
         >>> line = ct.Cells("line2", [[0, 1]], [1])
         >>> model = ct.Model(ct.Mesh([[0.0, 0.0], [2.0, 0.0]], [line]))
-        >>> model.beam("all", material=ct.Elastic(E=1000.0, nu=0.0), area=0.1, inertia=0.001)
+        >>> model.beam([0], material=ct.Elastic(E=1000.0, nu=0.0), area=0.1, inertia=0.001)
         >>> model.fix([0], rotation=True)
         >>> model.line_load(y=-0.01)
         >>> tip = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1].U[1, 1]
