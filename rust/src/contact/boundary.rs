@@ -18,27 +18,22 @@ const GAUSS5: [(f64, f64); 5] = [
 
 /// The member that begins where each one ends.
 pub fn followers(surface: &Surface, x: &[[f64; 3]]) -> Vec<Option<usize>> {
-    match surface {
-        Surface::Edges(edges) => {
-            let begins: HashMap<[u32; 2], usize> =
-                edges.iter().enumerate().map(|(j, e)| (ends(e)[0], j)).collect();
-            edges.iter().map(|e| begins.get(&ends(e)[1]).copied()).collect()
-        }
-        _ => {
-            let members: Vec<Master<f64>> =
-                (0..surface.len()).map(|j| surface.place(j, x)).collect();
-            let distance = |p: Vec2<f64>, q: Vec2<f64>| {
-                let d = sub(p, q);
-                dot(d, d).sqrt()
-            };
-            let behind = |m: &Master<f64>| {
-                let end = m.end(1);
-                let size = distance(m.end(0), end);
-                members.iter().position(|other| distance(other.end(0), end) <= SAME * size)
-            };
-            members.iter().map(behind).collect()
-        }
+    if let Surface::Edges(edges) = surface {
+        let begins: HashMap<[u32; 2], usize> =
+            edges.iter().enumerate().map(|(j, e)| (ends(e)[0], j)).collect();
+        return edges.iter().map(|e| begins.get(&ends(e)[1]).copied()).collect();
     }
+    let members: Vec<Master<f64>> = (0..surface.len()).map(|j| surface.place(j, x)).collect();
+    let distance = |p: Vec2<f64>, q: Vec2<f64>| {
+        let d = sub(p, q);
+        dot(d, d).sqrt()
+    };
+    let behind = |m: &Master<f64>| {
+        let end = m.end(1);
+        let size = distance(m.end(0), end);
+        members.iter().position(|other| distance(other.end(0), end) <= SAME * size)
+    };
+    members.iter().map(behind).collect()
 }
 
 /// Names of both ends of an edge: a node twice, or two nodes for the middle between them.

@@ -31,14 +31,13 @@ impl Chains {
             let [a, b] = ends[j];
             (a[0] - b[0]).hypot(a[1] - b[1])
         };
-        let touch =
-            |(j, a): (usize, usize), (k, b): (usize, usize)| match (faces.edge(j), faces.edge(k)) {
-                (Some(e), Some(f)) => e.nodes[a] == f.nodes[b],
-                _ => {
-                    let (p, q) = (ends[j][a], ends[k][b]);
-                    (p[0] - q[0]).hypot(p[1] - q[1]) <= SAME * size(j)
-                }
-            };
+        let touch = |(j, a): (usize, usize), (k, b): (usize, usize)| {
+            if let (Some(e), Some(f)) = (faces.edge(j), faces.edge(k)) {
+                return e.nodes[a] == f.nodes[b];
+            }
+            let (p, q) = (ends[j][a], ends[k][b]);
+            (p[0] - q[0]).hypot(p[1] - q[1]) <= SAME * size(j)
+        };
         let (mut next, mut previous) = (vec![None; n], vec![None; n]);
         let mut free = vec![[true; 2]; n];
         let order = sorted_ends(&ends);

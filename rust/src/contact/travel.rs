@@ -244,13 +244,8 @@ impl Start {
     fn place(&self, s: &Station, xi: f64) -> Place {
         let [slave, master] = self.sides.as_ref().expect("sides of the beginning");
         let other = &master.members[s.master];
-        let r = if xi == s.span[0] {
-            s.opposite[0]
-        } else if xi == s.span[1] {
-            s.opposite[1]
-        } else {
-            ray(&slave.members[s.edge], xi, other)
-        };
+        let end = s.span.iter().position(|r| r.total_cmp(&xi).is_eq());
+        let r = end.map_or_else(|| ray(&slave.members[s.edge], xi, other), |end| s.opposite[end]);
         let normal = other.normal_at(r);
         Place { a: slave.at(s.edge, xi), m: master.at(s.master, r), heading: angle(normal) }
     }

@@ -39,7 +39,7 @@ impl Energy for PolynomialEnergy {
         Ok(Self { c, d })
     }
     fn is_incompressible(&self) -> bool {
-        self.d == [0.0; 3]
+        self.d.iter().all(|&d| d == 0.0)
     }
     #[inline(always)]
     fn density<T: Real>(&self, s: &Stretches<T>) -> Jet<T> {

@@ -144,18 +144,15 @@ where
     ) {
         for e in (0..self.nodes.len()).filter(|&e| mask[self.elements[e] as usize]) {
             let (x, mut u) = self.gather::<f64>(e, context);
-            let (mass, coupled) = match load.kind {
-                Some(kind) => {
-                    let (mass, kind) = self.mass(e, &x, kind);
-                    (mass, Self::coupled(kind))
-                }
-                None => {
-                    let (points, kind) = (&self.shared.mass_points, MassKind::Consistent);
-                    let sides = self.per_point(e).sides(E::ALPHA_B);
-                    let thickness = |p: &Point<N>| self.thickness(e, p);
-                    let volume = Mass::new::<E, M, A>(&x, points, thickness, &sides, kind);
-                    (volume, Self::coupled(kind))
-                }
+            let (mass, coupled) = if let Some(kind) = load.kind {
+                let (mass, kind) = self.mass(e, &x, kind);
+                (mass, Self::coupled(kind))
+            } else {
+                let (points, kind) = (&self.shared.mass_points, MassKind::Consistent);
+                let sides = self.per_point(e).sides(E::ALPHA_B);
+                let thickness = |p: &Point<N>| self.thickness(e, p);
+                let volume = Mass::new::<E, M, A>(&x, points, thickness, &sides, kind);
+                (volume, Self::coupled(kind))
             };
             let mut secant = None;
             if !load.start.is_empty() {

@@ -230,9 +230,7 @@ impl Lines {
             if free && beyond > (HOLD * size).max(if both { width } else { 0.0 }) {
                 // It is beyond the end, on its way to the other side perhaps.
                 found.next = there;
-                if found.end.is_none() {
-                    return None;
-                }
+                found.end?;
             }
             // Over a joint the face goes on where its neighbor does not reach either.
             if !free && found.end.is_none() && self.covered(sides, (face, which), (p, x)) {
@@ -294,13 +292,13 @@ impl Lines {
             return true;
         }
         let shape = sides.master.place(met.face, x);
-        let towards = times(self.normal(&shape, met, p), -1.0);
+        let towards = times(Self::normal(&shape, met, p), -1.0);
         let tilt = match cone {
             Cone::Corner(..) if self.seen[i].is_some_and(|s| s.0 == met.face) => TILT + KEPT,
             Cone::Corner(..) => TILT,
             _ => 0.0,
         };
-        let inside = match self.bounds(&sides.master, cone, x) {
+        let inside = match Self::bounds(&sides.master, cone, x) {
             None => true,
             Some((middle, half)) => dot(towards, middle).clamp(-1.0, 1.0).acos() <= half + tilt,
         };
@@ -336,10 +334,10 @@ impl Lines {
     }
 
     /// Middle and half angle of a cone, or none if it is all round.
-    fn bounds(&self, faces: &Surface, cone: Cone, x: &[[f64; 3]]) -> Option<(Vec2<f64>, f64)> {
+    fn bounds(faces: &Surface, cone: Cone, x: &[[f64; 3]]) -> Option<(Vec2<f64>, f64)> {
         let normal = |j: usize, which: usize| end_normal(&faces.place(j, x), which);
         let (from, to) = match cone {
-            Cone::All => return None,
+            Cone::All | Cone::Corner(None, None, _) => return None,
             Cone::Round(first, last) => (normal(first, 0), normal(last, 1)),
             Cone::Corner(Some(before), Some(behind), left) => {
                 let (a, b) = (normal(before, 1), normal(behind, 0));
@@ -353,7 +351,6 @@ impl Lines {
                 let b = normal(behind, 0);
                 (if line { times(b, -1.0) } else { [b[1], -b[0]] }, b)
             }
-            Cone::Corner(None, None, _) => return None,
         };
         let turn = (from[0] * to[1] - from[1] * to[0]).atan2(dot(from, to));
         // A half turn has no sign of its own.
@@ -363,7 +360,7 @@ impl Lines {
     }
 
     /// Unit normal from a face to a circle.
-    fn normal<T: Smooth>(&self, shape: &Master<T>, met: &Meeting, p: Vec2<T>) -> Vec2<T> {
+    fn normal<T: Smooth>(shape: &Master<T>, met: &Meeting, p: Vec2<T>) -> Vec2<T> {
         if let Some(end) = met.end {
             return unit(sub(p, shape.end(end)));
         }
@@ -435,15 +432,12 @@ impl Lines {
         };
         let shape = sides.master.shape(met.face, &v[from..from + other]);
         let width = Smooth::real(circle.radius + self.half[met.face]);
-        let gap = match met.end {
-            Some(end) => {
-                let away = sub(p, shape.end(end));
-                dot(away, away).sqrt() - width
-            }
-            None => {
-                let gap = shape.closest(p).gap;
-                (if met.right { gap } else { -gap }) - width
-            }
+        let gap = if let Some(end) = met.end {
+            let away = sub(p, shape.end(end));
+            dot(away, away).sqrt() - width
+        } else {
+            let gap = shape.closest(p).gap;
+            (if met.right { gap } else { -gap }) - width
         };
         let area = sides.slave.area[self.nearest[i]];
         let slip = old.and_then(|old| {
@@ -479,8 +473,8 @@ impl Lines {
         let faces = &sides.master;
         let then = faces.place(before.face, old);
         let q = place(self.circles[i].center, faces, old);
-        let normal = self.normal(shape, met, p);
-        let first = self.normal(&then, before, q);
+        let normal = Self::normal(shape, met, p);
+        let first = Self::normal(&then, before, q);
         let tilt = angle(normal, first);
         // Rotation of the face where the circle meets it.
         let now_there = faces.place(met.face, old);
