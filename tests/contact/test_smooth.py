@@ -90,14 +90,17 @@ def test_derivatives_of_smoothed_masters(method, offset):
             + q[raw["constraint"], None] * raw["slip_gradient"]
         )
         np.add.at(out, raw["variables"], both)
-        return out[:-1], float(p @ raw["total_gap"] + q @ raw["total_slip"])
+        gaps = np.zeros(x.size + 1)
+        np.add.at(gaps, raw["variables"], p[raw["constraint"], None] * raw["gap_gradient"])
+        return out[:-1], gaps[:-1], float(p @ raw["total_gap"])
 
     dx = rng.standard_normal(x.shape) * [1.0, 1.0, 0.0]
-    slope, _ = gradient(x)
+    slope, of_gap, _ = gradient(x)
     assert np.abs(slope).max() > 0.1
     _, variables, values = core.hessian(p, q)
-    (up, high), (down, low) = gradient(x + STEP * dx), gradient(x - STEP * dx)
-    assert slope @ dx.ravel() == pytest.approx((high - low) / (2.0 * STEP), rel=1e-7)
+    (up, _, high), (down, _, low) = gradient(x + STEP * dx), gradient(x - STEP * dx)
+    # The gradient of a slip is the direction of its traction, not that of the path so far.
+    assert of_gap @ dx.ravel() == pytest.approx((high - low) / (2.0 * STEP), rel=1e-7)
     v = np.append(dx.ravel(), 0.0)
     curved = np.zeros(x.size + 1)
     np.add.at(curved, variables, (values @ v[variables][:, :, None])[:, :, 0])
