@@ -244,13 +244,18 @@ impl Discretization for Mortar {
             let station = move |o: Overlap| {
                 let j = sides.candidates()[o.pair].1;
                 let master = sides.master.place(j, x);
+                // At a foot the ray may only graze a round, and miss it by rounding.
+                let opposite = |limit: Limit| match limit {
+                    Limit::Fixed(xi) => ray(&slave, xi, &master),
+                    Limit::Foot(end) => 2.0 * end as f64 - 1.0,
+                };
                 Station {
                     point: None,
                     corner: false,
                     edge: i,
                     span: o.values,
                     master: j,
-                    opposite: o.values.map(|xi| ray(&slave, xi, &master)),
+                    opposite: o.limits.map(opposite),
                     gap: o.distance,
                     closed,
                 }

@@ -162,8 +162,9 @@ class SaddlePointSystem:
     ) -> tuple[Floats, Floats, int]:
         """Corrections of displacements and multipliers.
 
-        Constraints that supports fix, or that follow from others, are taken out: their tractions
-        become zero.
+        Constraints that supports fix are taken out, and their tractions become zero. Where a
+        constraint follows from others it is taken out, too, but its traction stays: with the next
+        contact states it may be independent, and zero would be a jump of the forces.
 
         Parameters
         ----------
@@ -224,7 +225,7 @@ class SaddlePointSystem:
             dropped = self.communicator.broadcast(self._dependent(data))
             if not len(dropped):
                 raise self._named(error) from None
-            self._take_out(dropped, data, b, release)
+            self._take_out(dropped, data, b, np.zeros_like(release))
             fixed = np.concatenate([fixed, dropped])
             try:
                 x, negative = self._solve(data, rest, b)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: Fraction of the friction bound from which a correction is repeated with slip, and how often.
 FRICTION_EXCESS, MAX_SLIP_CORRECTIONS = 2.0, 3
+#: Relative difference of two gaps that is rounding.
+EQUAL = 1e-6
 
 
 def held(
@@ -139,9 +141,12 @@ def _close_some(
     for count in (0, 1, 2, None):
         tried = [s.copy() for s in states]
         for s, gap in zip(tried, gaps, strict=True):
-            near = np.argsort(gap, kind="stable")[: count or (None if count is None else 1)]
-            limit = nearest if count == 0 else np.finfo(float).max
-            s[near[gap[near] <= limit]] = CLOSED
+            if count == 0:
+                # A flat side comes to rest on all of its nodes.
+                s[gap <= nearest * (1.0 + EQUAL)] = CLOSED
+                continue
+            near = np.argsort(gap, kind="stable")[:count]
+            s[near[gap[near] < np.inf]] = CLOSED
         if all(np.array_equal(a, b) for a, b in zip(tried, states, strict=True)):
             break
         try:
