@@ -215,7 +215,9 @@ class SaddlePointSystem:
             fixed = self._fixed(coupling, data)
             self._take_out(fixed, data, b, release)
             on = self.diagonal[constrained]
-            data[on] = np.where(data[on] == 0.0, 1.0, np.abs(data[on]))
+            # Rounding, as of a rigid circle that turns about its center, is no pivot.
+            size, most = np.abs(data[on]), float(np.abs(data[self.diagonal]).max(initial=0.0))
+            data[on] = np.where(size <= NULL * most, most or 1.0, size)
             b[constrained] = 0.0
             rest = rest.keep(~constrained[rest.rows] & ~constrained[rest.columns])
         try:
