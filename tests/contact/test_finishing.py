@@ -109,14 +109,14 @@ def test_a_ring_that_yields_is_found_between_the_gap_and_the_first_collapse():
 
 
 def test_bodies_drift_where_no_relaxed_position_balances():
-    # A yielding clip over a rigid fillet: 1965 iterations, 248 of them in drift.
+    # An elastic clip with sharp corners and friction 1: 942 iterations, 28 of them in drift.
     notes = []
 
     class Log(BaseObserver):
         def iteration(self, info):
             notes.append(info.note)
 
-    given = problem(616, size=0.5)
+    given = problem(562, size=0.5)
     results = ct.solve(given.model, given.steps, threads=1, observers=[Log()])
     assert results.times[-1] == pytest.approx(sum(step.period for step in given.steps))
     assert max(frame.scalars.get("residual", 0.0) for frame in results.frames[1:]) < 1e-8
