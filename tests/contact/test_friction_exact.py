@@ -153,3 +153,23 @@ def test_whole_turns_of_a_rigid_curve_count(curve):
     way = 4.0 * np.pi if curve == "solid" else 0.0
     slip = d["total_slip"][seen] / d["total_area"][seen]
     np.testing.assert_allclose(slip, way, atol=1e-12)
+
+
+def test_slip_is_a_number_where_a_ray_grazes_a_round():
+    """The end of an arc whose normal lies along the slave: the ray at its foot is a tangent."""
+    n = 4
+    X = np.column_stack([np.linspace(1.3, -1.3, n + 1), np.zeros((n + 1, 2))])
+    X = np.vstack([X, [[0.0, 0.5, 0.0]]])
+    edges = np.column_stack([np.arange(n), np.arange(1, n + 1), np.full(n, -1)])
+    circle = np.array([[0.5, 0.5, 0.0, 0.0, 0.0, 0.5, 2.0 * np.pi]])
+    contact = _core.Contact.rigid(
+        X, edges, np.zeros(n), np.ones(n), circle, n + 1, (0.0, 0.0), method="mortar", **LENGTHS
+    )
+    for place in np.linspace(-0.7, 0.7, 101):
+        old, x = X.copy(), X.copy()
+        old[-1, 0] += place
+        x[-1, 0] += place - 0.4
+        contact.search(x)
+        d = contact.evaluate(x, old)
+        assert d["total_area"].any()
+        assert np.isfinite(d["total_slip"]).all()
