@@ -145,3 +145,33 @@ def test_second_attempts_are_reported() -> None:
         iteration for step, increment, iteration, _ in notes.all if (step, increment) == (2, 1)
     ]
     assert first == list(range(1, len(first) + 1))
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q4S"])
+def test_load_that_turns_in_another_step_unloads_elastically(element: str) -> None:
+    """Strip of a law with two back-stresses under 340 and -240, increments of a fifth to begin.
+
+    With the tangent of flow the fourth step began at 2.4 times the length, under 15 negative
+    pivots, or ended with an error.
+    """
+    high, low = 340.0, -240.0
+    law = ct.Mises(E=YOUNG, nu=0.3, yield_stress=YIELD, chaboche=[(6e4, 400.0), (4e3, 10.0)])
+    model = ct.Model(ct.mesh.rectangle(2.0 * LENGTH, 4.0, 10, 2))
+    model.section(element=element, material=law)
+    model.fix("left", y=None)
+    model.fix([0], x=None)
+    steps = []
+    for stress in (high, low) * 3:
+        steps.append(ct.Static(first_increment=0.2, new_loads=True))
+        steps[-1].traction("right", x=stress)
+    results = ct.solve(model, steps, threads=1)
+    right = model.mesh.node_indices("right")
+    change = 0.2 * (high - low) / YOUNG
+    for before, after in zip(results.frames[:-1], results.frames[1:], strict=True):
+        if after.step > 1 and after.increment == 1:
+            stretch = (after.U[right, 0] - before.U[right, 0]) / (2.0 * LENGTH)
+            sign = 1.0 if after.step % 2 else -1.0
+            # Of the deformed strip, by half a percent of strain, and of its stress.
+            np.testing.assert_allclose(stretch, sign * change, rtol=0.02)
+            assert after.scalars["iterations"] <= 3.0
+    assert max(frame.scalars.get("negative pivots", 0.0) for frame in results.frames) == 0.0

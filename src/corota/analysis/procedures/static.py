@@ -43,7 +43,7 @@ STALLED = 3
 RESTS = 4
 #: Residual after a first iteration with the elastic tangent up to which an increment unloads.
 ELASTIC = 0.01
-#: Note of the iterations of a second attempt.
+#: Note of the iterations of such an attempt.
 UNLOADING = "line search from the elastic tangent"
 
 
@@ -121,9 +121,22 @@ class StaticStepper(NewtonStepper):
         """Newton's method, and reasons to refuse an equilibrium state."""
         system, state, step = self.system, self.state, self.step
         known = state.at if system.holds(target) else None
-        outcome, contact = self.equilibrium(target, known)
-        if outcome.reason and self.control.attempt == 1 and self.remembers:
-            again, its_contact = self.equilibrium(target, None, outcome)
+        may_unload = self.remembers and self.control.attempt == 1
+        turns = may_unload and self.control.number == 0 and self.loop.number > 1
+        before = 0
+        if turns:
+            # The load of another step may turn: the first correction with the tangent of flow
+            # would lead far away, and from there to another equilibrium path.
+            outcome, contact = self.equilibrium(target, None, ELASTIC)
+            before = outcome.iterations
+        if not turns or outcome.reason:
+            outcome, contact = self.equilibrium(target, known, before=before)
+            outcome.iterations += before
+        if outcome.reason and may_unload and (step.fixed_increments or not turns):
+            # Where an increment can be cut, only elastic unloading is worth a second attempt: a
+            # long increment of a softening body may end on another equilibrium path.
+            first = math.inf if step.fixed_increments else ELASTIC
+            again, its_contact = self.equilibrium(target, None, first, outcome.iterations)
             if again.reason:
                 outcome.iterations += again.iterations
             else:
@@ -145,7 +158,8 @@ class StaticStepper(NewtonStepper):
         self,
         target: float,
         known: Evaluation | None,
-        failed: Outcome[Evaluation] | None = None,
+        first: float | None = None,
+        before: int = 0,
     ) -> tuple[Outcome[Evaluation], ContactIncrement | None]:
         """Newton's method from the committed state.
 
@@ -155,8 +169,11 @@ class StaticStepper(NewtonStepper):
             Step time at the end of the increment [time].
         known : Evaluation or None
             At that state, with the tangent of the first iteration; None for that of unloading.
-        failed : Outcome, optional
-            Of an attempt without line search.
+        first : float, optional
+            Residual after the first iteration up to which an attempt with line search goes on;
+            without one there is no line search.
+        before : int, optional
+            Iterations of the attempts before, for the log.
 
         Returns
         -------
@@ -173,12 +190,10 @@ class StaticStepper(NewtonStepper):
         """
         system, state = self.system, self.state
         settings, report, contact = self.settings, self.report, None
-        if failed is not None:
-            # Where an increment can be cut, only elastic unloading is worth a second attempt: a
-            # long increment of a softening body may end on another equilibrium path.
-            first = math.inf if self.step.fixed_increments else ELASTIC
+        if first is not None:
             settings = replace(settings, search=True, first=first)
-            report = _continued(report, failed.iterations)
+        if first is not None or before:
+            report = _continued(report, before, UNLOADING if first is not None else "")
         try:
             outcome, contact = solve_increment(
                 system,
@@ -362,14 +377,13 @@ class StaticStepper(NewtonStepper):
         raise ConvergenceError(at_limit(system, step, number, limit.factor, state))
 
 
-def _continued(report: Report | None, before: int) -> Report | None:
-    """A report of the iterations of a second attempt, which follow those of the first."""
+def _continued(report: Report | None, before: int, how: str) -> Report | None:
+    """A report of the iterations of a later attempt, which follow those of the ones before."""
     if report is None:
         return None
 
     def continued(iteration: int, norms: ResidualNorms, correction: float, note: str) -> None:
-        said = f"{UNLOADING}; {note}" if note else UNLOADING
-        report(before + iteration, norms, correction, said)
+        report(before + iteration, norms, correction, "; ".join(filter(None, [how, note])))
 
     return continued
 
