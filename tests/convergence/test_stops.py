@@ -65,15 +65,40 @@ def test_mid_side_nodes_beyond_the_quarter_points_are_refused(element, share):
     ct.solve(model, Static(), threads=1)
 
 
-@pytest.mark.parametrize("at_limit", ["stop", "follow"])
-def test_plastic_collapse_is_named_with_its_load(at_limit):
-    """Limit load of a bar: yield stress times area, 200 of 230 (closed form)."""
+def bar_beyond_its_limit(element, local_strain=None):
+    """Bar 4 x 1 of a perfectly plastic material under 1.15 times its limit load."""
     model = ct.Model(ct.mesh.rectangle(4.0, 1.0, 4, 1))
     material = ct.Mises(E=2e5, nu=0.3, yield_stress=200.0)
-    model.section("all", element="Q4I", material=material)
+    model.section("all", element=element, material=material, local_strain=local_strain)
     model.fix("left", y=None)
     model.fix("bottom", x=None)
     model.traction("right", x=230.0)
+    return model
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q4I", "Q4S"])
+def test_collapse_of_a_bar_that_thins_is_its_limit_point(element):
+    """The Kirchhoff stress yields at 200: the load is 200 exp(-200 / E) and falls in flow.
+
+    All elements yield at once, so that the tangent has several soft modes there; in Q4I the path
+    passed the limit as a bifurcation and the step ended far behind it, at a sixteenth of the load.
+    """
+    model, step = bar_beyond_its_limit(element), Static(first_increment=0.2)
+    with pytest.raises(ct.ConvergenceError, match=r"limit point .*plastic collapse") as error:
+        ct.solve(model, step, threads=1, fields=False)
+    results = error.value.results
+    exact = 200.0 / 230.0 * np.exp(-200.0 / 2e5)
+    assert results.frames[-1].factor == pytest.approx(exact, rel=1e-6)
+    assert [p.kind for p in results.critical_points] == ["limit"]
+
+
+@pytest.mark.parametrize("at_limit", ["stop", "follow"])
+def test_plastic_collapse_is_named_with_its_load(at_limit):
+    """Limit load of a bar: yield stress times area, 200 of 230 (closed form).
+
+    The linear local strain has the undeformed area: there the load stays constant in flow.
+    """
+    model = bar_beyond_its_limit("Q4I", "linear")
     step = Static(first_increment=0.2, at_limit=at_limit)
     with pytest.raises(ct.ConvergenceError, match="plastic collapse: the limit load") as error:
         ct.solve(model, step, threads=1, fields=False)

@@ -235,6 +235,13 @@ def locate(
     after = min((s for s in behind if s.share >= clear), key=lambda s: s.share)
     projection = work_share(system, at.point, mode)
     limit = turned(start.tangent, after.tangent)
+    if turned(start.tangent, high.tangent) and abs(projection) <= NO_WORK:
+        # Of several soft modes, as where a body yields everywhere, the path takes one itself.
+        along = high.tangent.u
+        work = work_share(system, at.point, along)
+        if abs(work) > NO_WORK:
+            shown = np.where(system.counted, along, 0.0)
+            mode, projection = along / shown[np.abs(shown).argmax()], work
     negative = (start.tangent.negative, after.tangent.negative)
     kind: Literal["limit", "bifurcation", "kink"] = "bifurcation"
     if low.behind != high.behind:
