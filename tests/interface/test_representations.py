@@ -14,6 +14,7 @@ import pytest
 import corota as ct
 from corota.errors import Diagnostic
 from corota.model.materials import Material
+from corota.sweeps.variant import Outcome
 
 LONGEST = 2000
 
@@ -61,6 +62,13 @@ def results() -> ct.Results:
     return ct.solve(model, ct.Static(increments=20), threads=1)
 
 
+def sought() -> ct.Sought:
+    """A search of a thousand runs."""
+    rows = [{"length": float(i)} for i in range(1000)]
+    outcomes = [Outcome({"tip": 1.0}, notes=["a note " * 100]) for _ in rows]
+    return ct.Sought("length", 1.0, 1.0, 1.0, ct.Sweep(rows, ["tip"], outcomes))
+
+
 def within(value: Any, depth: int = 0) -> Iterator[Any]:
     """A value and the Corota objects in it."""
     if depth > 4:
@@ -85,7 +93,7 @@ def test_no_representation_is_long(results: ct.Results) -> None:
     things: list[Any] = [
         large_model(), results, results.history("U2"), results.at(node=3),
         results.along([(0.0, 1.0), (20.0, 1.0)]), ct.Findings(messages), ct.DeckError(messages),
-        ct.JobFiles("."), *errors,
+        ct.JobFiles("."), results.body_motion("right"), sought(), *errors,
     ]  # fmt: skip
     seen = [item for thing in things for item in within(thing)]
     assert len({type(item).__name__ for item in seen}) > 30

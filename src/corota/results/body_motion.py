@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.display import Brief
 from corota.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ LEAST_ROTATION = 1e-9
 
 
 @dataclass
-class BodyMotion:
+class BodyMotion(Brief):
     """Best-fit rigid motion of a group of nodes, by frame.
 
     Parameters

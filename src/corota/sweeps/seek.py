@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from corota.display import Brief
 from corota.errors import CorotaError, InputError
 from corota.sweeps.run import named
 from corota.sweeps.store import Store
@@ -27,7 +28,7 @@ MOST_RUNS = 40
 
 
 @dataclass
-class Sought:
+class Sought(Brief):
     """Result of a goal seek.
 
     Parameters
