@@ -264,7 +264,12 @@ left, 1, 2
     }
     model = ct.Model(mesh)
     model.section(
-        "all", element="Q8", material=ct.Elastic(E=300.0, nu=0.3), thickness=0.8, plane="strain"
+        "all",
+        element="Q8",
+        material=ct.Elastic(E=300.0, nu=0.3),
+        thickness=0.8,
+        plane="strain",
+        local_strain="green_lagrange",
     )
     model.fix("left")
     model.pressure("top", 0.4)

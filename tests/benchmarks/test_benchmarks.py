@@ -25,7 +25,7 @@ def test_deck_and_driver_are_the_same_problem(name: str, tmp_path: Path) -> None
     read = ct.read(tmp_path / "job.inp")
     read.sections[0].element = "Q4"
     by_deck = ct.solve(read, threads=1).frames[-1].U
-    driven = model_of(p, "Q4", "logarithmic" if name == "P2" else "linear")
+    driven = model_of(p, "Q4", "logarithmic" if name == "P2" else "green_lagrange")
     for item in (*driven.supports, *driven.loads):
         item.value *= p.last / p.increments
     found = ct.solve(driven, ct.Static(increments=1), threads=1).frames[-1].U

@@ -145,12 +145,14 @@ A, 1, 1., B, 1, -1.
 
 def test_one_node_may_be_named_by_a_set(tmp_path: Path) -> None:
     extra = "*NSET, NSET=tip\n3\n*NSET, NSET=top\n5, 6\n"
-    for card in (
-        "*EQUATION\n2\ntip, 1, 1., top, 1, -1.\n",
-        "*RIGID BODY, NSET=top, REF NODE=nall\n",
-    ):
-        found = faults(tmp_path, DECK.replace("*MATERIAL", extra + card + "*MATERIAL", 1))
-        assert any("one node is expected" in d.message for d in found)
+    card = "*RIGID BODY, NSET=top, REF NODE=nall\n"
+    found = faults(tmp_path, DECK.replace("*MATERIAL", extra + card + "*MATERIAL", 1))
+    assert any("one node is expected" in d.message for d in found)
+    # In equations between sets a single node is in each of them, as in Abaqus.
+    card = "*EQUATION\n2\ntip, 1, 1., top, 1, -1.\n"
+    model = read(tmp_path, DECK.replace("*MATERIAL", extra + card + "*MATERIAL", 1))
+    terms = [[(n, d) for n, d, _ in e.terms] for e in model.constraints]
+    assert terms == [[(2, 0), (4, 0)], [(2, 0), (5, 0)]]
     model = read(
         tmp_path,
         DECK.replace("*MATERIAL", extra + "*RIGID BODY, NSET=top, REF NODE=tip\n*MATERIAL", 1),

@@ -174,7 +174,7 @@ def test_damaged_checkpoints_are_refused_and_the_other_is_used(done, tmp_path):
 
 def test_checkpoint_of_another_version_is_refused(done, tmp_path, monkeypatch):
     folder = damaged(done, tmp_path)
-    monkeypatch.setattr(ct, "__version__", "0.0.0")
+    monkeypatch.setattr("corota._core.__version__", "0.0.0")
     with pytest.raises(FileError, match="written by version"):
         load(folder / "beam.ckpt")
 
