@@ -175,3 +175,26 @@ def test_load_that_turns_in_another_step_unloads_elastically(element: str) -> No
             np.testing.assert_allclose(stretch, sign * change, rtol=0.02)
             assert after.scalars["iterations"] <= 3.0
     assert max(frame.scalars.get("negative pivots", 0.0) for frame in results.frames) == 0.0
+
+
+@pytest.mark.parametrize("increments", [12, 30])
+def test_load_that_turns_within_a_step(increments: int) -> None:
+    """The same by an amplitude, logarithmic beside linear strain: half a percent of strain apart.
+
+    In thirty increments the strip was pulled to twelve times its length.
+    """
+    law = ct.Mises(E=YOUNG, nu=0.3, yield_stress=YIELD, chaboche=[(6e4, 400.0), (4e3, 10.0)])
+    found = []
+    for measure in ("linear", "logarithmic"):
+        model = ct.Model(ct.mesh.rectangle(2.0 * LENGTH, 4.0, 10, 2))
+        model.section(element="Q4I", material=law, local_strain=measure)
+        model.fix("left", y=None)
+        model.fix([0], x=None)
+        model.amplitudes["c"] = ct.Amplitude(range(7), [0, 340, -240, 340, -240, 340, -240])
+        step = ct.Static(period=6.0, increments=increments)
+        step.traction("right", x=1.0, amplitude="c")
+        results = ct.solve(model, step, threads=1)
+        assert results.frames[-1].step_time == pytest.approx(6.0)
+        right = results.model.mesh.node_indices("right")
+        found.append([frame.U[right, 0].mean() for frame in results.frames])
+    np.testing.assert_allclose(*found, atol=0.05 * np.max(found[0]))

@@ -92,6 +92,8 @@ class StaticStepper(NewtonStepper):
         self.settings = Settings(step.tolerance, step.max_iterations)
         #: Displacement per time, of the first increment and the last.
         self.rates = (0.0, 0.0)
+        #: Displacement over the last increment, if any material remembers it.
+        self.moved: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
         self.path_took_over = False
@@ -109,11 +111,12 @@ class StaticStepper(NewtonStepper):
     def resume(self) -> None:
         """Take the state of a checkpoint."""
         loop = self.state.resume(self.kind, control=self.control)
-        self.rates = loop["first"], loop["rate"]
+        self.rates, self.moved = (loop["first"], loop["rate"]), loop["moved"]
 
     def memory(self) -> dict[str, Any]:
         """What a checkpoint holds beside the committed state."""
-        return {"control": self.control, "first": self.rates[0], "rate": self.rates[1]}
+        first, rate = self.rates
+        return {"control": self.control, "first": first, "rate": rate, "moved": self.moved}
 
     # -- attempts ----------------------------------------------------------------------
 
@@ -122,11 +125,11 @@ class StaticStepper(NewtonStepper):
         system, state, step = self.system, self.state, self.step
         known = state.at if system.holds(target) else None
         may_unload = self.remembers and self.control.attempt == 1
-        turns = may_unload and self.control.number == 0 and self.loop.number > 1
+        turns = may_unload and self.load_may_turn(target)
         before = 0
         if turns:
-            # The load of another step may turn: the first correction with the tangent of flow
-            # would lead far away, and from there to another equilibrium path.
+            # The first correction with the tangent of flow would lead far away, and from there to
+            # another equilibrium path.
             outcome, contact = self.equilibrium(target, None, ELASTIC)
             before = outcome.iterations
         if not turns or outcome.reason:
@@ -153,6 +156,17 @@ class StaticStepper(NewtonStepper):
         outcome.converged = outcome.converged and not outcome.reason
         reason = "" if outcome.converged else outcome.reason or "no convergence"
         return Attempt(target, outcome, contact, reason)
+
+    def load_may_turn(self, target: float) -> bool:
+        """Whether the change of the load works against the last increment.
+
+        Of the first increment of a later step it is not known.
+        """
+        if self.moved is None:
+            return self.loop.number > 1
+        conditions, u = self.system.conditions, self.state.u
+        now, then = (conditions.external(t, u)[0] for t in (self.control.time, target))
+        return bool((then - now) @ self.moved < 0.0)
 
     def equilibrium(
         self,
@@ -256,8 +270,10 @@ class StaticStepper(NewtonStepper):
         assert state.energies is not None
         state.notes += attempt.contact.accept(outcome.u, attempt.target)
         dt = attempt.target - control.time
-        rate = float(np.abs(outcome.u - state.u).max(initial=0.0)) / dt
+        moved = outcome.u - state.u
+        rate = float(np.abs(moved).max(initial=0.0)) / dt
         self.rates = self.rates[0] or rate, rate
+        self.moved = moved if self.remembers else None
         state.energies.add_quasi_static(outcome.u, state.u, outcome.at)
         if state.at is not None:
             system.return_tangent(state.at)
