@@ -112,10 +112,15 @@ def test_contact_flow_and_heat_in_other_words(element: str, change: str) -> None
     for k, (one, two) in enumerate(zip(*frames, strict=True)):
         u = (two.U[match] / unit) @ R
         assert np.allclose(u, one.U, atol=close * np.abs(one.U).max() + 1e-9), k
-        for name in ("ALLSE", "ALLPD", "ALLFD", "ALLWK", "ALLTH"):
+        names = ("ALLSE", "ALLPD", "ALLFD", "ALLWK", "ALLTH")
+        # Works are integrals over the increments: where these differ (3 beside 10 in the last
+        # step at 37 degrees) so do their errors, by parts of the largest energy.
+        part_of = 2e-3 * max(abs(one.scalars[name]) for name in names)
+        slack = 1e-6 if counts[0] == counts[1] else part_of
+        for name in names:
             want = one.scalars[name]
             assert two.scalars[name] / (unit * force) == pytest.approx(
-                want, rel=100 * close, abs=1e-6
+                want, rel=100 * close, abs=slack
             )
         f = np.array([two.scalars["g: force x"], two.scalars["g: force y"]]) @ R / force
         want = [one.scalars["g: force x"], one.scalars["g: force y"]]
