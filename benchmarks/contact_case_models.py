@@ -99,7 +99,7 @@ def belt(element: str, n: int, method: str, mu: float) -> tuple[ct.Model, list[S
     model.section("all", element=element, material=ct.Elastic(E=2000.0, nu=0.3), thickness=10.0)
     drum = ct.RigidCurve.circle((0.0, 0.0), 50.0)
     model.contact("inner", drum, friction=mu, name="drum", method=method)
-    model.fix("start", y=0.0)
+    model.fix("start")
     model.traction("end", x=-10.0)
     return model, [ct.Static()]
 

@@ -253,7 +253,7 @@ def test_numbers_that_are_none_are_refused(what: str, bad: float) -> None:
         cells: Any = [0, 1] if what in ("spring", "area") else "all"
         if what != "beta0":
             model.section(cells, element="Q4I", material=material, **options)
-        model.fix("left", x=0.0)
+        model.fix("left")
         amplitude = ""
         if what == "amplitude":
             model.amplitudes["a"] = ct.Amplitude(np.array([0.0, 1.0]), np.array([0.0, bad]))

@@ -156,7 +156,7 @@ def test_lines_expand_and_carry_initial_stress(kind: str) -> None:
             model.beam([0], material=material, area=2.0, inertia=0.1)
         model.fix([0], rotation=True)
         model.local_axes([1], angle=np.arctan2(4.0, 3.0))
-        model.fix([1], x=0.0 if held else None)
+        model.fix([1], x=0.0 if held else None, y=0.0)
         model.temperature([10.0, 30.0])
         model.initial_stress(xx=7.0)
         frame = ct.solve(model, ct.Static(), threads=1).frames[-1]

@@ -167,14 +167,17 @@ def test_velocities_are_a_history_from_the_first_dynamic_step_on(model: ct.Model
 
 
 def test_every_name_that_the_page_of_results_lists_is_a_history() -> None:
-    from corota.results.variables import COMPONENTS, INVARIANTS, NODAL
+    from corota.results.table import COMPONENTS, INVARIANTS, NODAL
 
     moving = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=4, ny=1))
-    moving.section(element="Q4D", material=ct.Mises(E=1.0, nu=0.3, rho=1.0, yield_stress=1.0))
+    moving.section(
+        element="Q4D", material=ct.Mises(E=1.0, nu=0.3, rho=1.0, yield_stress=1.0, expansion=1e-5)
+    )
     moving.fix("left")
     moving.contact("right", ct.RigidCurve.line((11.0, -5.0), (11.0, 5.0)))
     step = ct.Dynamic(period=0.1, increments=1)
     step.force("right", y=1e-3)
+    step.temperature(1.0)
     results = ct.solve(moving, step, threads=1)
     for name in [*NODAL, *(c for c in COMPONENTS if c[0] in "SE"), *INVARIANTS, "PEEQ", "ENER"]:
         assert np.isfinite(results.history(name)[-1]), name

@@ -177,7 +177,7 @@ def test_output_that_is_not_written_is_noted(tmp_path: Path) -> None:
     assert [(o.kind, o.variables, o.where) for o in model.steps[0].outputs] == [
         ("node file", ("U",), ""), ("el print", ("S",), ""),
     ]  # fmt: skip
-    assert any("CF, FOO is not written; there are U, RF, UR" in note for note in model.notes)
+    assert any("CF, FOO is not written; there are U, UR, RF, V, NT" in note for note in model.notes)
 
 
 def test_heat_beside_a_mechanical_material_is_noted(tmp_path: Path) -> None:

@@ -395,7 +395,7 @@ def test_output_requests(tmp_path: Path) -> None:
     assert found == [
         ("node print", ("RF",), "nall", 5),
         ("el print", ("S", "E"), "eall", 1),
-        ("node file", ("U", "RF"), "", 1),
+        ("node file", ("U", "RF", "NT"), "", 1),
         ("el file", ("S",), "", 3),
         ("node file", ("U",), "", 3),
         ("node file", ("U", "RF"), "", 1),

@@ -57,7 +57,7 @@ def test_pictures_from_a_result_file(results: ct.Results, tmp_path: Path) -> Non
     with read_results(path) as stored:
         (pair,) = stored.model.contacts
         assert pair.name == "disc"
-        np.testing.assert_array_equal(pair.slave, results.mesh.edge_sets["top"])
+        assert pair.slave == "top"
         assert isinstance(pair.master, ct.RigidCurve)
         assert pair.master.reference == results.mesh.n_nodes - 1
     for options in (["--contact"], ["--field", "CSTATUS"], ["--field", "CPRESS"]):

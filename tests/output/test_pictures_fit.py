@@ -12,7 +12,8 @@ import corota as ct
 from corota import plots
 from corota.io.result_reader import read_results
 from corota.plots.contour import Drawing
-from corota.results.sampling import NEVER_NEGATIVE, sampled
+from corota.results.sampling import sampled
+from corota.results.table import POSITIVE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -89,7 +90,7 @@ def test_axes_of_others_are_left_alone(results: ct.Results) -> None:
 
 def test_no_variable_is_drawn_below_zero_that_cannot_be(results: ct.Results) -> None:
     undershoot = False
-    for name in {*NEVER_NEGATIVE} & {*results.variables()}:
+    for name in {*POSITIVE} & {*results.variables()}:
         for per_cell in (False, True):
             if per_cell and name in ("U", "RF", "F"):
                 continue

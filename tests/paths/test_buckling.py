@@ -263,7 +263,7 @@ def test_all_that_perturbs_adds_to_the_preload(share):
         material = ct.Elastic(E=young, expansion=alpha)
         model.beam(np.arange(n), material=material, area=area, inertia=inertia)
         model.fix([0], rotation=True)
-        model.fix([n], x=0.0 if hot else None, rotation=True)
+        model.fix([n], x=0.0 if hot else None, y=0.0, rotation=True)
         model.initial_temperature(start)
         steps = [ct.Static(**give(0.5 * critical)), ct.Buckle(**give(share * critical))]
         return ct.solve(model, steps, threads=1, fields=False).modes[-1].factors[0]

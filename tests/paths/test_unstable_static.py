@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import warnings
+
 import pytest
 
 import corota as ct
@@ -21,7 +23,10 @@ def test_a_driven_column_that_stays_straight_is_named_unstable(shortening, unsta
     """Clamped and free, it buckles when it is pi^2 h^2 / (48 L) = 0.0206 shorter (Euler)."""
     step = ct.Static(increments=10)
     step.fix("right", x=-shortening, y=None)
-    results = ct.solve(column(), step, threads=1)
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        results = ct.solve(column(), step, threads=1)
+    assert any("unstable" in str(w.message) for w in warned) == unstable
     said = [note for note in results.notes if "unstable" in note]
     assert bool(said) == unstable
     assert bool(min(f.scalars.get("stable", 1.0) for f in results.frames) == 0.0) == unstable

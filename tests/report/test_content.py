@@ -222,5 +222,5 @@ def test_units_stand_beside_names(tmp_path: Path) -> None:
         assert (units["time"], units["ALLSE"], units["energy"]) == ("s", "mJ", "mJ")
         found, _ = unpack(content.chunks["model"])
         assert found["units"]["force/length^2"] == "MPa"
-        assert found["meaning"]["S11"] == "Cauchy stress xx [MPa]"
+        assert found["meaning"]["S11"] == "Cauchy stress xx [MPa], nodal"
     assert unpack(of_files.chunks["history"])[0]["units"]["U2 right"] == "mm"

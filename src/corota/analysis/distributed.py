@@ -23,7 +23,7 @@ from corota.arrays import distinct
 from corota.errors import InputError, ModelError
 from corota.mesh.data import EDGES
 from corota.model import elements
-from corota.model.loads import BodyForce, EdgeLoad, NodalForce, kind_of
+from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
     from corota.errors import Location
-    from corota.model.loads import LoadKind
 
     Ints = NDArray[np.int64]
     Floats = NDArray[np.float64]
@@ -107,10 +106,10 @@ class DistributedLoads:
                 load.end, load.amplitude = load.begin, 0
         self.loads = [load for load in self.loads if load.begin != 0.0 or load.end != 0.0]
 
-    def remove(self, kind: LoadKind = "distributed") -> None:
-        """Remove all loads of a kind: distributed ones, or follower forces."""
+    def remove(self, ends: Callable[[Item], bool]) -> None:
+        """Remove all loads that end: distributed ones, or follower forces."""
         for load in self.loads:
-            if kind_of(load.item) == kind:
+            if ends(load.item):
                 load.end, load.amplitude, load.removed = 0.0, 0, True
 
     def set(self, items: Sequence[Item], amplitude: Callable[[str, Location | None], int]) -> None:
@@ -134,7 +133,9 @@ class DistributedLoads:
         for old in self.loads:
             if old.faces is None or new.faces is None:
                 same = old.faces is new.faces and _same_body(old.item, new.item)
-                if same:
+                if old.faces is new.faces and _ends_body(old.item, new.item):
+                    kept += self._without(old, new)
+                elif same:
                     kept += _fading(old, new)
                 else:
                     kept.append(old)
@@ -158,6 +159,23 @@ class DistributedLoads:
             values = tuple(np.asarray(load.traction)[chosen].tolist())
             return self._at_nodes(replace(load, faces=faces, traction=values))
         return self._edge_load(replace(load, faces=faces))
+
+    def _without(self, old: DistributedLoad, zero: DistributedLoad) -> list[DistributedLoad]:
+        """A body force that ends in some elements; elsewhere it acts on."""
+        assert isinstance(old.force, BodyLoad)
+        assert isinstance(zero.force, BodyLoad)
+        found: list[DistributedLoad] = []
+        both = old.force.inside & zero.force.inside
+        if (both == old.force.inside).all():
+            return _fading(old, zero)
+        for inside, left in ((old.force.inside & ~both, False), (both, True)):
+            if not inside.any():
+                continue
+            item = replace(old.item, cells=np.flatnonzero(inside))  # type: ignore[arg-type]
+            part = replace(old, item=item)
+            part.force = BodyLoad(self.system, item, self.mass)  # type: ignore[arg-type]
+            found += _fading(part, zero) if left else [part]
+        return found
 
     # -- building -----------------------------------------------------------------------
 
@@ -355,6 +373,13 @@ def _same_body(old: Item, new: Item) -> bool:
     one, other = old.axis, new.axis
     # Gravity of size zero ends gravity in every direction.
     return one is None or other is None or float(np.dot(one, other)) > 1.0 - SAME
+
+
+def _ends_body(old: Item, new: Item) -> bool:
+    """Whether a body force of zero ends every earlier one of its kind in its elements."""
+    if not (isinstance(old, BodyForce) and isinstance(new, BodyForce)) or old.kind != new.kind:
+        return False
+    return new.every
 
 
 def _name(item: BodyForce) -> object:

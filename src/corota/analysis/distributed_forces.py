@@ -112,12 +112,15 @@ class BodyLoad:
                 raise ModelError(error.message, item.where) from None
             inside[:] = False
             inside[mesh.cell_sets[name]] = True
+        #: Cells that it acts on, shape (n_cells,).
+        self.inside = inside
         self.masks = [inside[b.cells] for b in system.own_blocks]
         self.inertial = item.kind in ("gravity", "centrifugal")
+        sized = any(item.value[: 1 if item.kind == "centrifugal" else 2])
         for block in system.blocks:
             if not inside[block.cells].any() or elements.find(block.section.element).spring:
                 continue
-            if self.inertial and block.section.material.rho <= 0.0:
+            if self.inertial and sized and block.section.material.rho <= 0.0:
                 name = block.section.material.name or block.section.material.law
                 raise ModelError(
                     f"material {name!r} has no density for a body force; add one (*DENSITY)",

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from corota.analysis.checkpoint import Checkpoint
     from corota.analysis.parallel.communicator import Communicator
     from corota.model.model import Model
-    from corota.model.steps import Step
+    from corota.model.steps import Output, Step
     from corota.results.observer import Iteration, Observer
     from corota.results.results import Frame, Results
 
@@ -37,6 +37,8 @@ class Observers:
                     )
         #: Processes whose observers decide together.
         self.communicator: Communicator = ALONE
+        #: Requests for output in the current step.
+        self.requests: list[Output] = []
 
     @property
     def stop_requested(self) -> bool:

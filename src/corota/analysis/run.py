@@ -28,6 +28,7 @@ from corota.analysis.terms.contact.output import output as contact_output
 from corota.analysis.terms.moving_mass import mass_of_step
 from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
+from corota.model.steps import in_force
 from corota.results.results import Frame, Results
 
 if TYPE_CHECKING:
@@ -289,7 +290,8 @@ class Analysis:
         def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
             self._save(number, state, increment, factor, scalars)
 
-        stops = self._stops(step)
+        self.observers.requests = in_force(self.steps, number)
+        stops = self._stops()
         if state.resumption is not None and state.resumption.checkpoint.leave_step:
             self._leave(state)
         else:
@@ -428,12 +430,11 @@ class Analysis:
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)
 
-    def _stops(self, step: Step) -> list[float]:
-        """Step times requested by outputs."""
+    def _stops(self) -> list[float]:
+        """Step times requested by the outputs of a step, those that it keeps among them."""
         tables = getattr(self.model, "time_points", {})
-        return [
-            float(t) for out in step.outputs if out.time_points for t in tables[out.time_points]
-        ]
+        requests = [o for o in self.observers.requests if o.time_points]
+        return [float(t) for out in requests for t in tables[out.time_points]]
 
     def _save(
         self, number: int, state: State, increment: int, factor: float, scalars: dict[str, float]
@@ -494,6 +495,7 @@ class Analysis:
             contact,
             held,
             pairs,
+            T=system.free.now.copy() if system.free.responds else None,
         )
         self.results.add(frame)
         with system.timed("write"):

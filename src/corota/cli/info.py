@@ -6,7 +6,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from corota.cli.reading import is_result, read_input
+from corota.errors import InputError
 from corota.model.summary import joint_lines, material_lines, model_lines
+from corota.results.table import NODAL
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
@@ -76,9 +78,17 @@ def result_lines(results: Results) -> list[str]:
     lines = [
         f"{len(frames)} frames, time {first.time:g} ... {last.time:g}; last: step {last.step}, "
         f"increment {last.increment}, load factor {last.factor:g}",
-        f"  {'variable':<10}{'smallest':>14}{'largest':>14}   (last frame, at nodes)",
+        f"  {'last frame':<10}{'smallest':>14}  {'where':<26}{'largest':>14}  where",
     ]
     for name in results.variables():
-        values = results.nodal(name)
-        lines.append(f"  {name:<10}{values.min():>14.6g}{values.max():>14.6g}")
+        try:
+            found = results.extremes(name)
+        except InputError:  # files with nodal values only
+            found = results.extremes(name, at="nodes")
+        low, high = found.smallest, found.largest
+        kind = " (nodal)" if found.at == "nodes" and name not in NODAL else ""
+        lines.append(
+            f"  {name:<10}{low.value:>14.6g}  {low.place:<26}{high.value:>14.6g}  "
+            f"{high.place}{kind}"
+        )
     return lines

@@ -1,14 +1,16 @@
-"""Contact pairs in result files: the data for pictures."""
+"""Contact pairs in result files: surfaces, rigid curves and settings."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import json
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.io.datasets import store
-from corota.model.contact import ContactPair, RigidCurve, edges_or_nodes
+from corota.model.contact import ContactPair, PressureLaw, RigidCurve, edges_or_nodes
 
 if TYPE_CHECKING:
     from corota.model.model import Model
@@ -19,6 +21,8 @@ def store_contacts(group: Any, model: Model) -> None:
     for number, pair in enumerate(model.contacts):
         own = group.create_group(str(number))
         own.attrs["name"] = pair.name
+        own.attrs["settings"] = json.dumps(_settings(pair))
+        own.attrs["sides"] = json.dumps([_name(pair.slave), _name(pair.master)])
         edges, nodes = edges_or_nodes(model.mesh, pair.slave)
         store(own, "slave", nodes if len(nodes) else edges)
         if isinstance(pair.master, RigidCurve):
@@ -29,17 +33,41 @@ def store_contacts(group: Any, model: Model) -> None:
             store(own, "master", edges_or_nodes(model.mesh, pair.master)[0])
 
 
+def _settings(pair: ContactPair) -> dict[str, Any]:
+    """Every setting of a pair that is a number, a word or its pressure law."""
+    found = {item.name: getattr(pair, item.name) for item in fields(pair)}
+    plain = {k: v for k, v in found.items() if isinstance(v, bool | int | float | str)}
+    sides = ("name", "slave", "master")
+    settings: dict[str, Any] = {k: v for k, v in plain.items() if k not in sides}
+    if pair.law is not None:
+        kind, pressure, overclosure = pair.law.constants
+        settings["law"] = {"kind": kind, "pressure": pressure, "overclosure": overclosure}
+    return settings
+
+
+def _name(side: Any) -> str:
+    return side if isinstance(side, str) else str(getattr(side, "name", ""))
+
+
 def contacts_of_results(file: Any) -> list[ContactPair]:
     """Contact pairs of a result file; none in those of versions without."""
     pairs = []
     group = file.get("contacts", {})
     for number in sorted(group, key=int):
         own = group[number]
-        master: Any = own["master"][:] if "master" in own else None
-        if master is None:
+        names = json.loads(own.attrs.get("sides", '["", ""]'))
+        known = [name.replace("/", "|") in file["edge sets"] for name in names]
+        slave: Any = names[0] if known[0] else own["slave"][:]
+        if "master" in own:
+            master: Any = names[1] if known[1] else own["master"][:]
+        else:
             reference = own.attrs.get("reference")
-            master = RigidCurve(own["segments"][:], None if reference is None else int(reference))
-        pairs.append(ContactPair(own["slave"][:], master, name=str(own.attrs["name"])))
+            node = None if reference is None else int(reference)
+            master = RigidCurve(own["segments"][:], node, names[1])
+        settings = json.loads(own.attrs.get("settings", "{}"))
+        if "law" in settings:
+            settings["law"] = PressureLaw(**settings["law"])
+        pairs.append(ContactPair(slave, master, name=str(own.attrs["name"]), **settings))
     return pairs
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from corota.errors import InputError
-from corota.results import variables as vf
 from corota.results.derived import DERIVED
+from corota.results.table import MEANING, TABLE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,20 +16,14 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
 
 #: Fields by the names of decks, and the arrays that they are in files.
-FIELDS: dict[str, tuple[str, ...]] = {
-    "U": ("displacement", "rotation"),
-    "RF": ("reaction", "reaction moment"),
-    "F": ("external force", "external moment"),
-    "V": ("velocity", "angular velocity"),
-    "A": ("acceleration", "angular acceleration"),
-    "S": ("stress", "principal stress", "Mises"),
-    "E": ("strain", "principal strain"),
-    "CSTR": ("CPRESS", "CSHEAR"),
-    "CDIS": ("COPEN", "CSLIP", "CSTATUS"),
-}
+FIELDS: dict[str, tuple[str, ...]] = {}
+for _row in TABLE.values():
+    _arrays = dict.fromkeys([_row.stored, *(item.array for item in _row.invariants)])
+    _request = "U" if _row.name == "UR" else _row.request or _row.name
+    FIELDS[_request] = FIELDS.get(_request, ()) + tuple(_arrays)
 #: Other names of fields in requests.
 ALIASES = {
-    "ELSE": "ENER", "PEEQ": "PEEQ", "LE": "E", "CSTRESS": "CSTR", "CDISP": "CDIS", "UR": "U",
+    "ELSE": "ENER", "NT11": "NT", "LE": "E", "CSTRESS": "CSTR", "CDISP": "CDIS", "UR": "U",
     "SF": "N", "ENERGY": "ENER", "RFM": "RF", "CF": "F",
 }  # fmt: skip
 #: Always written: it is needed to draw the shape.
@@ -77,7 +71,7 @@ class FileOptions:
                     f"fields={self.fields!r}: give 'all', 'requested' or a list such as ['U', 'S']"
                 )
             return
-        known = {*FIELDS, *ALIASES, *vf.TENSORS, *vf.MEANING, *DERIVED}
+        known = {*FIELDS, *ALIASES, *MEANING, *DERIVED}
         known |= {array for arrays in FIELDS.values() for array in arrays}
         for name in self.fields:
             if name not in known and name.upper() not in known:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from corota.errors import InputError
 from corota.io.atomic_file import replace_text
 from corota.io.result_reader import read_results
+from corota.results.table import NODAL, POSITIVE
 from corota.results.variables import labelled, match_name, stored_as
 
 if TYPE_CHECKING:
@@ -68,11 +69,14 @@ if COMPONENT:
 else:
     ColorBy(shown, ("POINTS", ARRAY))
 colors = GetColorTransferFunction(ARRAY)
-colors.ApplyPreset("Viridis (matplotlib)", True)
+colors.ApplyPreset({preset!r}, True)
 shown.RescaleTransferFunctionToDataRangeOverTime()
+if {signed!r}:  # white is zero
+    size = max(abs(colors.RGBPoints[0]), abs(colors.RGBPoints[-4]))
+    colors.RescaleTransferFunction(-size, size)
 shown.SetScalarBarVisibility(view, True)
 bar = GetScalarBar(colors, view)
-bar.Title, bar.ComponentTitle = {label!r}, ""
+bar.Title, bar.ComponentTitle = {label!r}, {kind!r}
 
 clock = AnnotateTimeFilter(Input=results)
 Show(clock, view)
@@ -133,6 +137,9 @@ def write_paraview(
         array=array,
         component=component,
         scale=float(scale),
+        kind="nodal" * (name not in NODAL),
+        signed=name not in POSITIVE,
+        preset="Viridis (matplotlib)" if name in POSITIVE else "Cool to Warm",
     )
     replace_text(script, text)
     return script

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.model.steps import in_force
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -16,19 +18,6 @@ if TYPE_CHECKING:
 
 #: Two times closer than this share of the step's period are the same.
 SAME_TIME = 1e-9
-
-
-def in_force(steps: Sequence[Step], number: int) -> list[Output]:
-    """Active requests of a step (from 1), earlier ones first.
-
-    As in CalculiX: a card kind that the step does not use keeps the requests of the step before;
-    one that it uses replaces them.
-    """
-    held: list[Output] = []
-    for step in steps[:number]:
-        new = {o.kind for o in step.outputs}
-        held = [o for o in held if o.kind not in new] + list(step.outputs)
-    return held
 
 
 def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
@@ -43,6 +32,8 @@ def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
         times = np.asarray(model.time_points[output.time_points], dtype=np.float64)
         near = np.abs(times - frame.step_time) <= SAME_TIME * step.period
         return bool(near.any())
+    if frame.scalars.get("between increments"):
+        return False
     return output.frequency > 0 and frame.increment % output.frequency == 0
 
 

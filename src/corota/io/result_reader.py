@@ -21,8 +21,10 @@ from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
 from corota.model.model import Model
 from corota.model.units import Units
-from corota.results import variables as vf
+from corota.results.extremes import places_of
 from corota.results.results import Frame, PointFields, Results
+from corota.results.table import CONTACT, TABLE
+from corota.results.variables import FORCES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,13 +37,9 @@ if TYPE_CHECKING:
 
 _KINDS = {number: kind for kind, number in VTK_TYPES.items()}
 #: Arrays at nodes that a frame holds in its own attributes.
-_NODAL_ARRAYS = {
-    "displacement", "rotation", "reaction", "reaction moment", "external force",
-    "external moment", "velocity", "angular velocity", "acceleration", "angular acceleration",
-    *vf.CONTACT,
-}  # fmt: skip
+_NODAL_ARRAYS = {row.stored for row in TABLE.values() if row.frame}
 #: Arrays of a block of point values that are no variables.
-AT_POINTS = ("cells", "shape functions", "reference volume", "position", vf.FORCES)
+AT_POINTS = ("cells", "shape functions", "reference volume", "position", FORCES)
 #: Scalars of a frame that are its own attributes.
 _OWN = ("step", "increment", "time", "step time", "load factor")
 
@@ -224,6 +222,7 @@ class FileFrames(Sequence[Frame]):
             inside = len(cells) and cells.min() >= 0 and cells.max() < len(types)
             _whole(bool(inside) and len(set(run[cells].tolist())) == 1, "elements of a block")
         self._cells_with = _cells_with(every, self._cells)
+        self._places = places_of(file["corota"].get("extremes", ()))
         self._last: tuple[int, Frame] | None = None
 
     def __len__(self) -> int:
@@ -295,8 +294,10 @@ class FileFrames(Sequence[Frame]):
                 at = self.at_points(name, number)
                 at[:, 2] = self.at_points(f"angular {name}", number)
                 moving[attribute] = at
-        if any(name in self._file["VTKHDF/PointData"] for name in vf.CONTACT):
-            columns = [self._or_zero(name, number) for name in vf.CONTACT]
+        if "temperature" in self._file["VTKHDF/PointData"]:
+            moving["T"] = self.at_points("temperature", number)
+        if any(name in self._file["VTKHDF/PointData"] for name in CONTACT):
+            columns = [self._or_zero(name, number) for name in CONTACT]
             moving["C"] = np.column_stack(columns)
         fields = [self._fields(block, number) for block in range(len(self._blocks))]
         return Frame(
@@ -330,18 +331,18 @@ class FileFrames(Sequence[Frame]):
 
     def _pairs(self, number: int) -> dict[str, Floats]:
         """Contact of each pair, where pairs share nodes."""
-        head = f"{vf.CONTACT[0]}: "
+        head = f"{CONTACT[0]}: "
         names = [n.removeprefix(head) for n in self._file["VTKHDF/PointData"] if n.startswith(head)]
         return {
             pair.replace("|", "/"): np.column_stack(
-                [self._or_zero(f"{column}: {pair}", number) for column in vf.CONTACT]
+                [self._or_zero(f"{column}: {pair}", number) for column in CONTACT]
             )
             for pair in names
         }
 
     def _averages(self, number: int) -> dict[str, Any]:
         """What the file holds of values whose points it does not hold; read when requested."""
-        of_pairs = tuple(f"{column}: " for column in vf.CONTACT)
+        of_pairs = tuple(f"{column}: " for column in CONTACT)
         at_nodes = [
             name
             for name in self._file["VTKHDF/PointData"]
@@ -357,7 +358,15 @@ class FileFrames(Sequence[Frame]):
                 for section, group in self._sections.items()
             },
             "cells_with": self._cells_with,
+            "extremes": Arrays(list(self._places), lambda name: self._extreme(name, number)),
         }
+
+    def _extreme(self, name: str, number: int) -> Floats:
+        """Smallest and largest value of a variable at points, not numbers where it has none."""
+        array, row = self._places[name]
+        data = self._file["corota/extremes"][array]
+        rows = len(data) // max(self._count, 1)
+        return np.asarray(data[number * rows + row], np.float64)
 
     def _fields(self, block: int, number: int) -> PointFields:
         group = self._blocks[block]
@@ -372,7 +381,7 @@ class FileFrames(Sequence[Frame]):
         for name, part in values.items():
             _whole(part.shape[:2] == (n, points) and part.dtype.kind == "f", f"{name} at points")
         position = group["position"][number * n : (number + 1) * n]
-        forces = group[vf.FORCES][number * n : (number + 1) * n] if vf.FORCES in group else None
+        forces = group[FORCES][number * n : (number + 1) * n] if FORCES in group else None
         turns = self._file["VTKHDF/CellData/frame rotation"]
         rows = len(turns) // self._count
         every = turns[number * rows : (number + 1) * rows][self._rows.cells]
@@ -415,6 +424,8 @@ class FileResults(Results):
         self._section = file["VTKHDF/CellData/section"][:][_Rows(file).cells]
         self.frames = FileFrames(file)  # type: ignore[assignment]
 
+    __repr__ = Results.__repr__
+
     def sections(self) -> Ints:
         return np.asarray(self._section)
 
@@ -437,6 +448,13 @@ class FileResults(Results):
     def times(self) -> Floats:
         assert isinstance(self.frames, FileFrames)
         return self.frames.scalars("time")
+
+    @property
+    def stable(self) -> Floats:
+        assert isinstance(self.frames, FileFrames)
+        if "stable" not in self._file["corota/frames"]:
+            return np.full(len(self.frames), np.nan)
+        return self.frames.scalars("stable")
 
     def __enter__(self) -> FileResults:
         return self

@@ -3,19 +3,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from corota.errors import InputError, number
 from corota.mesh import selection
 from corota.model.loads import BodyForce, EdgeLoad, Fixed, Force, Temperature, selected
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from corota.model.loads import Load
 
     Ints = NDArray[np.int64]
+
+
+#: Default of directions: fixed, and distinct from a 0 that is given.
+FIXED = np.float64(0.0)
 
 
 class Loading:
@@ -43,8 +49,8 @@ class Loading:
         self,
         nodes: str | ArrayLike,
         *,
-        x: float | None = 0.0,
-        y: float | None = 0.0,
+        x: float | None = FIXED,
+        y: float | None = FIXED,
         rotation: float | bool | None = None,
         amplitude: str = "",
     ) -> None:
@@ -55,7 +61,8 @@ class Loading:
         nodes : str, sequence of str or array_like of int
             Node, edge or cell set, a list of them, node indices, or a mask of nodes.
         x, y : float or None
-            Displacement at the end of a step [length].
+            Displacement at the end of a step [length]; both are 0 unless told otherwise. ``x=0.0``
+            alone fixes y as well, with a warning: write ``y=None`` to leave it free.
         rotation : float, bool or None
             ``True`` fixes the drilling rotation, a number prescribes it [rad]. Nodes of beams, of
             ``OPT``, ``Q4D`` and ``Q4DI``, and reference nodes have one; where no node of the
@@ -78,11 +85,25 @@ class Loading:
         [('left', 0, 0.0), ('left', 1, 0.0), ('pin', 0, -0.5)]
         """
         places = [self._nodes(place) for place in selection.names(nodes) or [nodes]]
+        for name, value, other, rest in (("x", x, "y", y), ("y", y, "x", x)):
+            if (
+                rest is FIXED
+                and value is not FIXED
+                and isinstance(value, int | float)
+                and value == 0
+            ):
+                warnings.warn(
+                    f"fix(..., {name}=0.0) fixes {other} as well; write {other}=None to leave it "
+                    f"free, or {other}=0.0 to fix both",
+                    stacklevel=2,
+                )
         turn = 0.0 if rotation is True else None if rotation is False else rotation
         for where in places:
             for dof, value in enumerate((x, y, turn)):
                 if value is not None:
-                    self.supports.append(Fixed(where, dof, value, amplitude))
+                    self.supports.append(
+                        Fixed(where, dof, 0.0 if value is FIXED else value, amplitude)
+                    )
 
     def force(
         self,
@@ -173,9 +194,13 @@ class Loading:
         cells: str | ArrayLike = "",
         amplitude: str = "",
     ) -> None:
-        """Apply an acceleration field [length/time^2] to cells (default all)."""
+        """Apply an acceleration field [length/time^2] to cells (default all).
+
+        Fields of zero end gravity of every direction in these cells.
+        """
         where = "" if isinstance(cells, str) and not cells else self._cells(cells)
-        self.loads.append(BodyForce(where, "gravity", (x, y), amplitude))
+        every = x == 0.0 and y == 0.0
+        self.loads.append(BodyForce(where, "gravity", (x, y), amplitude, every=every))
 
     def line_load(
         self,
@@ -216,7 +241,7 @@ class Loading:
     def centrifugal(
         self,
         omega: float,
-        about: tuple[float, float] = (0.0, 0.0),
+        about: tuple[float, float] | None = None,
         cells: str | ArrayLike = "",
         amplitude: str = "",
     ) -> None:
@@ -231,16 +256,19 @@ class Loading:
         ----------
         omega : float
             Angular velocity [rad/time]; its sign does not matter.
-        about : tuple of float
-            Point where the axis meets the plane [length].
+        about : tuple of float, optional
+            Point where the axis meets the plane [length]; the origin by default. A spin of zero
+            without it ends those about every axis.
         cells : str or array_like of int
             Cell set ("" for all), cell indices, or a mask of cells.
         amplitude : str
             Scales the force, that is omega squared, as the ramp of a static step does.
         """
         where = "" if isinstance(cells, str) and not cells else self._cells(cells)
-        value = (number(omega, "omega") ** 2, float(about[0]), float(about[1]))
-        self.loads.append(BodyForce(where, "centrifugal", value, amplitude))
+        x, y = about or (0.0, 0.0)
+        value = (number(omega, "omega") ** 2, float(x), float(y))
+        every = value[0] == 0.0 and about is None
+        self.loads.append(BodyForce(where, "centrifugal", value, amplitude, every=every))
 
     def temperature(
         self, value: ArrayLike, nodes: str | ArrayLike = "", amplitude: str = ""

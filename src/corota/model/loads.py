@@ -316,6 +316,29 @@ class Force(Brief):
             if value != 0.0
         ]
 
+    def ends(self, mesh: Mesh) -> list[NodalForce | EdgeLoad]:
+        """Loads of zero that end the components of an earlier force at the same place.
+
+        A force is one vector: given again, it replaces both components. A moment is another load;
+        a force that is zero altogether ends both.
+
+        Parameters
+        ----------
+        mesh : Mesh
+        """
+        pushes, turns = self.x != 0.0 or self.y != 0.0, self.moment != 0.0
+        probe = replace(self, x=1.0, y=1.0, moment=1.0)
+        found: list[NodalForce | EdgeLoad] = []
+        for load in probe.on(mesh):
+            if isinstance(load, EdgeLoad):
+                if not pushes and not turns:
+                    found.append(replace(load, value=(0.0, 0.0)))
+                continue
+            value = (self.x, self.y, self.moment)[load.dof]
+            if value == 0.0 and ((pushes or not turns) if load.dof < 2 else (turns or not pushes)):
+                found.append(replace(load, value=0.0))
+        return found
+
     def _on_edges(self, mesh: Mesh, name: str | Ints) -> list[NodalForce | EdgeLoad]:
         edges = mesh.edge_pairs(name)
         if not len(edges):
@@ -398,6 +421,9 @@ class BodyForce(Brief):
     direction : tuple of float or None
         Of uniform loads, as given: also kept for a negative or zero size.
         That of the value by default.
+    every : bool
+        Whether a load of zero ends those of every direction, axis and set in its cells. In decks it
+        ends that of its set, and direction or axis.
     masses : ndarray of int, optional
         Indices of the model's point masses that gravity and spin act on. By default those at
         nodes of the cells, or all where the load acts on all cells.
@@ -410,6 +436,7 @@ class BodyForce(Brief):
     where: Location | None = field(default=None, compare=False, repr=False)
     direction: tuple[float, float] | None = None
     masses: Ints | None = None
+    every: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         if self.masses is None or len(self.cells):
@@ -537,6 +564,11 @@ def kind_of(load: AppliedLoad) -> LoadKind:
     if isinstance(load, NodalForce):
         return "force"
     return "temperature" if isinstance(load, Temperature) else "distributed"
+
+
+def given_as(load: AppliedLoad) -> LoadKind:
+    """The kind of a load as the methods of models and steps name it: resultants are forces."""
+    return "force" if isinstance(load, EdgeLoad) and load.total else kind_of(load)
 
 
 def check_loads(loads: object, where: Location | None = None) -> None:

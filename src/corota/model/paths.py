@@ -12,6 +12,7 @@ import numpy as np
 from corota.display import Brief
 from corota.errors import InputError
 from corota.model.dofs import dof_index
+from corota.model.settings import Settings
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -25,7 +26,7 @@ class Label(int):
 
 
 @dataclass(kw_only=True, repr=False)
-class ArcLength(Brief):
+class ArcLength(Brief, Settings):
     """Follow the path by arc length: through limit points and snap-back, without tuning.
 
     The step ends where the first of the named ends is reached. With none named it ends at

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from corota.arrays import distinct
 from corota.display import Brief
@@ -14,13 +14,14 @@ from corota.errors import InputError, number
 from corota.model.loading import Loading
 from corota.model.loads import LOAD_KINDS, check_loads, check_supports
 from corota.model.paths import ArcLength, DisplacementControl
+from corota.model.settings import Settings
 from corota.names import choose
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from corota.errors import Location
     from corota.model.loads import Fixed, Load, LoadKind
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
     #: Share of critical damping of all modes, or (first, last, share) of ranges of modes.
     ModalDamping = float | Sequence[tuple[int, int, float]]
 
+#: What :meth:`Step.remove` ends.
+REMOVED = ("all", *LOAD_KINDS, "traction", "pressure", "shear", "gravity", "centrifugal")
+#: Actions at bifurcation points.
+AT_BIFURCATION = ("warn", "stop", "follow")
 #: Kinds of mass matrices.
 MASSES = ("consistent", "constant", "lumped")
 
@@ -45,6 +50,9 @@ class Output(Brief):
         Node or cell set, or name of a contact pair; empty for all.
     frequency : int
         Every n increments; 0 for the end of the step only.
+    every : bool
+        Whether all increments count, also those of explicit steps that are no frames otherwise;
+        they do with a frequency of 2 or more.
     totals : {"no", "yes", "only"}
         Sums over the set in addition to, or instead of, the rows.
     time_points : str
@@ -61,10 +69,24 @@ class Output(Brief):
     time_points: str = ""
     source: Location | None = field(default=None, compare=False, repr=False)
     in_global: bool = False
+    every: bool = False
+
+
+def in_force(steps: Sequence[Step], number: int) -> list[Output]:
+    """Active requests of a step (from 1), earlier ones first.
+
+    As in CalculiX: a card kind that the step does not use keeps the requests of the step before;
+    one that it uses replaces them.
+    """
+    kept: list[Output] = []
+    for step in steps[:number]:
+        new = {o.kind for o in step.outputs}
+        kept = [o for o in kept if o.kind not in new] + list(step.outputs)
+    return kept
 
 
 @dataclass(kw_only=True, repr=False)
-class Step(Brief, Loading):
+class Step(Brief, Loading, Settings):
     """Common data of all steps.
 
     Supports and loads of a step are given by its methods ``fix``, ``force``, ``traction``,
@@ -88,6 +110,8 @@ class Step(Brief, Loading):
         Remove the supports of earlier steps (``OP=NEW``) instead of adding and modifying.
     new_loads : bool or collection of {"force", "distributed", "temperature"}
         Remove the loads of earlier steps: all, or those of some kinds.
+    ended : set of {"force", "distributed", "temperature"}
+        Kinds of loads that end, those of the model too; see :meth:`remove`.
     outputs : list of Output
     restart : int
         Keep a checkpoint every n increments and at the end of the step; 0 for none.
@@ -104,12 +128,14 @@ class Step(Brief, Loading):
     loads: list[Load] = field(default_factory=list)
     new_supports: bool = False
     new_loads: bool | Collection[LoadKind] = False
+    ended: set[LoadKind] = field(default_factory=set)
     outputs: list[Output] = field(default_factory=list)
     restart: int = 0
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
 
     procedure = ""
+    excludes: ClassVar[dict[str, tuple[str, Any]]] = {"first_increment": ("increments", 0)}
     #: Whether the procedure computes velocities and forces of the initial state.
     starts_in_motion = False
 
@@ -162,6 +188,62 @@ class Step(Brief, Loading):
             )
         self.new_loads = frozenset(wanted)
 
+    def remove(self, kind: str = "all", at: str | ArrayLike | None = None) -> None:
+        """End loads of earlier steps and of the model, as loads of zero do.
+
+        They fall to zero over a static step, and at once in a dynamic one. Loads that the step
+        itself defines act.
+
+        Parameters
+        ----------
+        kind : str
+            ``"all"``, or ``"force"`` (with moments), ``"distributed"`` (tractions, pressures,
+            shear, gravity, centrifugal forces) or ``"temperature"``, anywhere. With a place also
+            ``"traction"``, ``"pressure"``, ``"shear"``; ``"gravity"`` and ``"centrifugal"`` with an
+            element set or without a place.
+        at : str or array_like, optional
+            Set, or as the method of that load takes it; everywhere by default.
+
+        Raises
+        ------
+        InputError
+            If there is no such kind, or it needs a place.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> step = ct.Static()
+        >>> step.remove("pressure", "top")
+        >>> step.remove("force")
+        >>> step.loads[0].value, step.ended
+        ((0.0,), {'force'})
+        """
+        choose(kind, REMOVED, "kind of load", self.where)
+        if at is None and kind in ("all", *LOAD_KINDS):
+            self.ended |= set(LOAD_KINDS) if kind == "all" else {kind}  # type: ignore[arg-type]
+        elif kind == "gravity":
+            self.gravity(cells="" if at is None else at)
+        elif kind == "centrifugal":
+            self.centrifugal(0.0, cells="" if at is None else at)
+        elif at is None or kind == "distributed":
+            raise InputError(
+                f"{kind}: give kind and place, as in remove('pressure', 'top'); without a place "
+                f"there are all, {', '.join(LOAD_KINDS)}, gravity and centrifugal",
+                self.where,
+            )
+        elif kind == "force":
+            self.force(at)
+        elif kind == "temperature":
+            self.temperature(0.0, at)
+        elif kind == "all":
+            self.force(at)
+            for name in ("traction", "shear", "pressure"):
+                self.remove(name, at)
+        elif kind == "traction":
+            self.traction(at)
+        else:
+            getattr(self, kind)(at, 0.0)
+
     def renews(self, kind: LoadKind) -> bool:
         """Whether the step removes earlier loads of a kind."""
         return not isinstance(self.new_loads, bool) and kind in self.new_loads
@@ -185,6 +267,10 @@ class Static(Step):
         Follow the equilibrium path instead of raising the load; see :mod:`corota.model.paths`.
         Increments are then arcs, in units in which a linear structure takes one for a load
         factor of one; the first is a twentieth of the period by default.
+    at_bifurcation : {"warn", "stop", "follow"}
+        Action where an increment of load control ends on an unstable equilibrium, because it passed
+        a bifurcation or limit point: accept it with a warning, refuse it and stop before the point,
+        or go on by arc length from there, with a switch to the branch that leaves a bifurcation.
     at_limit : {"stop", "follow"}
         Action where load control cannot increase the load further: end there with the
         reason, or continue by arc length until the full load is reached.
@@ -199,6 +285,7 @@ class Static(Step):
     max_iterations: int = 16
     path: ArcLength | DisplacementControl | None = None
     at_limit: Literal["stop", "follow"] = "stop"
+    at_bifurcation: Literal["warn", "stop", "follow"] = "warn"
     plastic_increment: float = 0.0
 
     procedure = "static"
@@ -213,6 +300,7 @@ class Static(Step):
                 f"at_limit must be 'stop' or 'follow', not {self.at_limit!r}", self.where
             )
         self._control_numbers()
+        choose(self.at_bifurcation, AT_BIFURCATION, "at_bifurcation", self.where)
         if self.path is not None:
             if not isinstance(self.path, (ArcLength, DisplacementControl)):
                 raise InputError(

@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.model import elements
 from corota.model.constraints import Coupling
+from corota.model.contact import RigidCurve
 from corota.model.material_table import MaterialTable
 
 if TYPE_CHECKING:
@@ -149,4 +150,4 @@ def _thickness(section: Section) -> str:
 
 def _named(where: object) -> str:
     name = where if isinstance(where, str) else getattr(where, "name", "")
-    return str(name) or "edges"
+    return str(name) or ("rigid curve" if isinstance(where, RigidCurve) else "edges")

@@ -15,6 +15,7 @@ from corota.plots.rigid import draw_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
 from corota.results import variables as vf
 from corota.results.sampling import sampled
+from corota.results.table import NODAL, POSITIVE
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -70,7 +71,7 @@ class Drawing:
         none = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
         #: Trusses, beams and springs: their cells and nodes.
         self.lines = tuple(np.concatenate(part) for part in zip(none, *of_lines, strict=True))
-        jumps = not self.per_cell and self.name not in vf.NODAL
+        jumps = not self.per_cell and self.name not in NODAL
         self.parts: list[tuple[int | None, Surface]] = [
             (int(g) if jumps else None, surface(results.mesh, (self.groups == g) & planar))
             for g in np.unique(self.groups[planar])
@@ -89,7 +90,7 @@ class Drawing:
     def line_values(self, frame: int) -> Floats:
         """Value of each line, not a number where it has none."""
         cells, nodes = self.lines
-        if self.name in vf.NODAL:
+        if self.name in NODAL:
             return np.asarray(self.results.nodal(self.name, frame)[nodes].mean(axis=1))
         own = np.full(self.results.mesh.n_cells, np.nan)
         try:
@@ -110,18 +111,27 @@ class Drawing:
         return min(float(v.min()) for v in values), max(float(v.max()) for v in values)
 
 
-def color_scale(mpl: Any, low: float, high: float) -> tuple[Any, Floats]:
-    """Color map and levels: diverging about zero for values of both signs, else pale for low."""
+def color_scale(mpl: Any, low: float, high: float, signed: bool) -> tuple[Any, Floats]:
+    """Color map and levels.
+
+    A signed variable has red for positive and blue for negative values, pale near zero: about zero
+    for values of both signs, else that half of the map. Others are pale where they are small.
+    """
     size = max(abs(low), abs(high))
     if high - low <= 1e-9 * size or size == 0.0:
         pad = 0.5 * size or 1.0
         low, high = low - pad, high + pad
         size = size or pad
-    if low < -0.02 * size and high > 0.02 * size:
+    if signed and low < -0.02 * size and high > 0.02 * size:
         levels = np.linspace(-size, size, BANDS + 1)
         colors = mpl.colormaps["RdBu_r"]
         used = levels[(levels >= low - 2 * size / BANDS) & (levels <= high + 2 * size / BANDS)]
         return colors, used if len(used) > 2 else levels
+    if signed:
+        ends = (0.0, 0.48) if high + low < 0.0 else (0.52, 1.0)
+        half = mpl.colormaps["RdBu_r"](np.linspace(*ends, 256))
+        name = f"RdBu_r, {'negative' if high + low < 0.0 else 'positive'} half"
+        return mpl.colors.ListedColormap(half, name=name), np.linspace(low, high, BANDS + 1)
     return mpl.colormaps["YlOrRd"], np.linspace(low, high, BANDS + 1)
 
 
@@ -185,7 +195,7 @@ def contour(
     scale = scale if deformed else 0.0
     state = results.frame(frame)
     name = vf.match_name(name, results.variables(frame))
-    if per_cell and name in vf.NODAL:
+    if per_cell and name in NODAL:
         raise InputError(
             f"{name} is defined at nodes; only stress and strain are averaged over elements"
         )
@@ -208,7 +218,11 @@ def contour(
             aspect=38 if below else 28,
             pad=0.04,
         )
-        label_bar(bar, name, per_cell, drawing.range(frame), results.model.unit_system)
+        shown = drawing.range(frame)
+        if not per_cell and len(drawing.parts) and not len(drawing.lines[0]):
+            found = results.extremes(name, frame, at="nodes")
+            shown = found.smallest.value, found.largest.value
+        label_bar(bar, name, per_cell, shown, results.model.unit_system)
         pad = 0.04 * float((high - low).max())
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
@@ -223,8 +237,8 @@ def label_bar(
     from matplotlib.ticker import MaxNLocator
 
     meaning = vf.described(name, units)
-    plain = name in vf.NODAL or name in LINE_ONLY
-    how = ", element averages" if per_cell else "" if plain else ", averaged at nodes"
+    plain = name in NODAL or name in LINE_ONLY
+    how = ", element averages" if per_cell else "" if plain else ", nodal"
     label = f"{name}: {meaning}{how}" if meaning else name + how
     size = max(abs(v) for v in limits)
     low, high = (0.0 if abs(v) < 1e-6 * size else v for v in limits)
@@ -268,7 +282,7 @@ def paint(
     mesh = results.mesh
     positions = mesh.points + scale * results.frame(frame).U
     low, high = limits or drawing.range(frame)
-    colors, levels = color_scale(mpl, low, high)
+    colors, levels = color_scale(mpl, low, high, drawing.name not in POSITIVE)
     if colors.name == "RdBu_r":
         size = max(abs(low), abs(high))
         norm = BoundaryNorm(np.linspace(-size, size, BANDS + 1), colors.N)

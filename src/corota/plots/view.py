@@ -10,11 +10,22 @@ import numpy as np
 from corota.plots.figure import INK
 from corota.results import variables as vf
 from corota.results.arrays import require
+from corota.results.table import NODAL, POSITIVE
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from corota.results.results import Results
+
+
+def color_map(name: str, low: float, high: float) -> tuple[str, tuple[float, float]]:
+    """Color map and limits: red is positive and blue negative where a variable is signed."""
+    if name in POSITIVE:
+        return "viridis", (low, high)
+    size = max(abs(low), abs(high))
+    if low < -0.02 * size and high > 0.02 * size:
+        return "RdBu_r", (-size, size)
+    return ("Blues_r" if low + high < 0.0 else "Reds"), (low, high)
 
 
 class Viewer:
@@ -76,7 +87,8 @@ class Viewer:
         self._grid.points = moved
         self._grid.point_data["shown"] = self.results.nodal(self.name, self.frame)
         units = self.results.model.unit_system
-        title = vf.labelled(self.name, units)
+        title = vf.labelled(self.name, units) + " (nodal)" * (self.name not in NODAL)
+        colors, limits = color_map(self.name, *self.limits())
         if self._actor is not None:
             self.plotter.remove_actor(self._actor, render=False)
             for bar in list(self.plotter.scalar_bars.keys()):
@@ -84,8 +96,8 @@ class Viewer:
         self._actor = self.plotter.add_mesh(
             self._grid,
             scalars="shown",
-            cmap="viridis",
-            clim=self.limits(),
+            cmap=colors,
+            clim=limits,
             show_edges=self.edges and self._grid.n_cells <= 20_000,
             line_width=1.0,
             lighting=False,

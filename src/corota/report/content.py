@@ -24,6 +24,7 @@ from corota.report.records import ITERATION, Records, records_of_files, records_
 from corota.results import variables as vf
 from corota.results.averaging import AVERAGING
 from corota.results.derived import DERIVED
+from corota.results.table import MEANING, NODAL, POSITIVE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -233,12 +234,18 @@ def model_chunk(results: Results, level: int = 9) -> bytes:
         "pairs": surfaces,
         "rigid": rigid_curves(model),
         "description": described,
-        "meaning": {n: vf.described(n, units) for n in (*vf.MEANING, *derived)},
+        "meaning": {n: _meaning(n, units) for n in (*MEANING, *derived)},
+        "positive": sorted(POSITIVE),
         "units": {of: units.label(of) for of in DIMENSIONS},
         "averaging": AVERAGING,
         "line elements": list(elements.line_names()),
     }
     return pack(header, arrays, level)
+
+
+def _meaning(name: str, units: Units) -> str:
+    """Description of a field of the page, which shows nodal values."""
+    return vf.described(name, units) + ", nodal" * (name not in NODAL)
 
 
 def _ends(results: Results, pairs: Any) -> Ints:

@@ -10,7 +10,7 @@ import numpy as np
 from corota.io.result_reader import FileResults
 from corota.io.vtk.frame_arrays import point_data
 from corota.report.chunk import rounded
-from corota.results import variables as vf
+from corota.results.table import CONTACT, TABLE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,12 +28,12 @@ VECTORS = {
     "ACC": ("acceleration", "angular acceleration"),
 }
 #: Tensors: name in files to the name in the page.
-TENSOR_FILES = {"stress": "S", "strain": "E", "PE": "PE", "ALPHA": "ALPHA"}
+TENSOR_FILES = {row.stored: name for name, row in TABLE.items() if row.tensor}
 #: Variables that the page computes.
-DERIVED_FILES = {"principal stress", "principal strain", "Mises"}
+DERIVED_FILES = {item.array for row in TABLE.values() for item in row.invariants}
 #: Order of importance; other names come last.
 ORDER = (
-    "U", "S", *vf.CONTACT, "RF", "PEEQ", "N", "M1", "M2", "UR", "VEL", "E", "YRATIO", "ENER", "F",
+    "U", "S", *CONTACT, "RF", "PEEQ", "N", "M1", "M2", "UR", "VEL", "E", "YRATIO", "ENER", "F",
     "PE", "ACC", "ALPHA", "PWORK", "PDISS", "STH",
 )  # fmt: skip
 #: Share of the largest force below which a reaction is rounding.

@@ -13,20 +13,15 @@ from corota.results import variables as vf
 from corota.results.averaging import AVERAGING
 from corota.results.history import History
 from corota.results.reduction import variable_name
+from corota.results.table import COMPONENTS, TABLE, TENSORS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.results.source import ResultSource
 
-#: Vectors of frames: attribute, names of the components, their variables.
-VECTORS = {
-    "U": (("x", "y"), ("U1", "U2")),
-    "RF": (("x", "y"), ("RF1", "RF2")),
-    "F": (("x", "y"), ("F1", "F2")),
-    "V": (("x", "y"), ("V1", "V2")),
-    "A": (("x", "y"), ("A1", "A2")),
-}
+#: Vectors of frames: name and its components.
+VECTORS = {n: tuple(part for part, _ in r.parts) for n, r in TABLE.items() if r.size[0]}
 #: Components of stress and strain.
 TENSOR = ("11", "22", "33", "12")
 
@@ -64,10 +59,10 @@ def to_xarray(
 
     for name in names:
         if name in VECTORS:
-            parts = [_stack(results, part, chosen) for part in VECTORS[name][1]]
+            parts = [_stack(results, part, chosen) for part in VECTORS[name]]
             dims: tuple[str, ...] = ("frame", "node", "component")
             data[name] = (dims, np.stack(parts, axis=-1), attributes(name))
-        elif name in vf.TENSORS:
+        elif name in TENSORS:
             parts = [_stack(results, name + part, chosen) for part in TENSOR]
             data[name] = (("frame", "node", "tensor"), np.stack(parts, axis=-1), attributes(name))
         else:
@@ -98,10 +93,10 @@ def to_xarray(
 def _every(results: ResultSource) -> list[str]:
     """Vectors, then tensors, then scalars, each once."""
     known = list(dict.fromkeys([*results.variables(-1), *results.variables(0)]))
-    parts = {part for _, names in VECTORS.values() for part in names}
-    found = [name for name, (_, names) in VECTORS.items() if names[0] in known]
-    found += [name for name in vf.TENSORS if f"{name}11" in known]
-    skip = parts | set(VECTORS) | set(vf.COMPONENTS)
+    parts = {part for names in VECTORS.values() for part in names}
+    found = [name for name, names in VECTORS.items() if names[0] in known]
+    found += [name for name in TENSORS if f"{name}11" in known]
+    skip = parts | set(VECTORS) | set(COMPONENTS)
     return found + [name for name in known if name not in skip]
 
 

@@ -7,14 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.results.variables import (
-    COMPONENTS,
-    INVARIANTS,
-    STORED,
-    averaged_value,
-    invariant,
-    stored_as,
-)
+from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
+from corota.results.variables import STORED, averaged_value, invariant, stored_as
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,9 +22,11 @@ if TYPE_CHECKING:
 
 #: The order of operations, written into result files.
 AVERAGING = (
-    "Components at the quadrature points are extrapolated to the nodes of each cell (linear fit in "
-    "triangles, bilinear in quadrilaterals, least squares), averaged over the cells at a node with "
-    "equal weights, and invariants are taken from the averaged components."
+    "Nodal values: components at the quadrature points are extrapolated to the nodes of each cell "
+    "(linear fit in triangles, bilinear in quadrilaterals, least squares) and averaged over the "
+    "cells of one section at a node with equal weights; numbers that cannot be negative are cut "
+    "off at 0, and invariants are taken from the averaged components. At a border of sections the "
+    "larger by size is taken."
 )
 
 
@@ -103,10 +99,12 @@ class Averaging:
     Parameters
     ----------
     mesh : Mesh
+    sections : ndarray of int, shape (n_cells,)
+        Section group of each cell (:func:`section_of_cells`).
     """
 
-    def __init__(self, mesh: Mesh) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: Mesh, sections: Ints) -> None:
+        self.mesh, self.sections = mesh, sections
         self._nodes: dict[tuple[int, int, int], tuple[Ints, Ints]] = {}
 
     def cell_nodes(self, cells: Ints) -> Ints:
@@ -163,9 +161,6 @@ class Averaging:
                 values = block.values[name][pick]
                 if values.ndim == 2:
                     at = np.einsum("np,kp->nk", values, matrix)
-                    if (values >= 0.0).all():
-                        # Energy densities and similar: linear extrapolation must not make them < 0.
-                        np.maximum(at, 0.0, out=at)
                     sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
                     continue
                 for column in range(values.shape[2]):
@@ -174,19 +169,50 @@ class Averaging:
                     at = np.einsum("np,kp->nk", values[..., column], matrix)
                     sums[name][:, column] += np.bincount(flat, at.ravel(), minlength=n)
         share = 1.0 / np.maximum(count, 1.0)
-        return {k: (v.T * share).T for k, v in sums.items()}
+        found = {k: (v.T * share).T for k, v in sums.items()}
+        for name in POSITIVE & found.keys():
+            np.maximum(found[name], 0.0, out=found[name])  # extrapolation must not make them < 0
+        return found
 
     def nodal(
-        self, fields: list[PointFields], name: str, chosen: NDArray[np.bool_] | None = None
-    ) -> Floats:
+        self, fields: list[PointFields], names: list[str], section: int | None = None
+    ) -> dict[str, Floats]:
+        """Nodal values of tensors and scalars, averaged within one section.
+
+        Parameters
+        ----------
+        fields : list of PointFields
+        names : list of str
+        section : int, optional
+            The group; by default all, and at nodes of several the larger by size.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (n_nodes, 4) or (n_nodes,)
+        """
+        if section is not None:
+            return self.average(fields, names, self.sections == section)
+        groups = sorted({int(g) for b in fields for g in np.unique(self.sections[b.cells])})
+        if len(groups) < 2:
+            return self.average(fields, names)
+        found: dict[str, Floats] = {}
+        for group in groups:
+            for name, values in self.average(fields, names, self.sections == group).items():
+                if name not in found:
+                    found[name] = values
+                    continue
+                both = np.stack([found[name], values]).reshape(2, len(values), -1)
+                larger = (both[1] ** 2).sum(axis=1) > (both[0] ** 2).sum(axis=1)
+                found[name][larger] = values[larger]
+        return found
+
+    def values(self, fields: list[PointFields], name: str, section: int | None = None) -> Floats:
         """One component, invariant or scalar at the nodes, shape (n_nodes,)."""
-        if name in COMPONENTS:
-            tensor, column = COMPONENTS[name]
-            return self.average(fields, [tensor], chosen)[tensor][:, column]
+        stored, column = COMPONENTS.get(name, (INVARIANTS.get(name, (name,))[0], -1))
+        values = self.nodal(fields, [stored], section)[stored]
         if name in INVARIANTS:
-            tensor = INVARIANTS[name][0]
-            return invariant(name, self.average(fields, [tensor], chosen)[tensor])
-        return self.average(fields, [name], chosen)[name]
+            return invariant(name, values)
+        return values if column < 0 else values[:, column]
 
 
 def cell_weights(block: PointFields) -> Floats:

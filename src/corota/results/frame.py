@@ -95,6 +95,11 @@ class Frame(Brief):
         The same at the cells, rows of all cells: ``cell stress``, ``cell N``, ...
     section_averages : dict of int to mapping
         The same at the nodes of each section group: ``nodes``, ``S``, ``E``, scalars.
+    extremes : mapping of str to ndarray, shape (10,)
+        Smallest and largest value at points: value, index of the cell, point from 0, position x
+        and y; of frames of files that hold no values at quadrature points.
+    T : ndarray, shape (n_nodes,), or None
+        Temperature, of models with temperatures.
     cells_with : dict of str to ndarray of bool, shape (n_cells,)
         Cells that have a variable, where there are no values at points.
     absent : frozenset of str
@@ -120,6 +125,8 @@ class Frame(Brief):
     averages: Mapping[str, Floats] = field(default_factory=dict)
     cell_averages: Mapping[str, Floats] = field(default_factory=dict)
     section_averages: dict[int, Mapping[str, Floats]] = field(default_factory=dict)
+    extremes: Mapping[str, Floats] = field(default_factory=dict)
+    T: Floats | None = None
     cells_with: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
     absent: frozenset[str] = frozenset()
 

@@ -8,16 +8,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.mesh.geometric import is_selection
 from corota.mesh.selection import names
 from corota.names import choose
+from corota.results.extremes import WIDTH, no_points, row_of
 from corota.results.history import History
-from corota.results.variables import NODAL, UNKNOWN, match_name, point_value
+from corota.results.table import NODAL, TABLE
+from corota.results.variables import (
+    ALIASES,
+    UNKNOWN,
+    available,
+    match_name,
+    nodal_value,
+    point_value,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
+    from corota.results.frame import Frame
     from corota.results.source import ResultSource
 
     Ints = NDArray[np.int64]
@@ -32,7 +43,16 @@ OF_FRAMES = {
     "increment": "increment",
 }
 #: Reducers over the nodes.
-REDUCERS = ("auto", "sum", "mean", "max")
+REDUCERS = ("auto", "sum", "mean", "max", "min", "size")
+#: Vectors of forces by the names of their sizes: several nodes have a resultant.
+RESULTANTS = {r.size[0]: r.frame for r in TABLE.values() if r.force and r.size[0]}
+#: Variables that several nodes have the sum of.
+SUMMED = {name for r in TABLE.values() if r.force for name in r.names}
+
+
+def is_summed(name: str) -> bool:
+    """Whether several nodes have the sum of a variable: a force or a moment."""
+    return ALIASES.get(name.lower(), name.upper()) in SUMMED
 
 
 def history(
@@ -49,9 +69,17 @@ def history(
         return History(name, np.array(values), results)
     choose(combine, REDUCERS, "way to combine")
     name = variable_name(results, name)
-    nodes = None if at is None else results.mesh.node_indices(at)
-    values = [_one(results, name, i, nodes, combine) for i in range(len(frames))]
     where = "" if at is None else f" at {_place(at)}"
+    if name in NODAL or not _at_points(results, at):
+        nodes = None if at is None or _all_nodes(results, at) else results.mesh.node_indices(at)
+        label = f"{name}{where}" if name in NODAL else f"{name}{where} (nodal)"
+        values = [_nodal(results, name, i, nodes, combine) for i in range(len(frames))]
+        return History(label.replace(" at nodes (nodal)", " (nodal)"), np.array(values), results)
+    cells = None
+    if at is not None:
+        cells = np.zeros(results.mesh.n_cells, dtype=bool)
+        cells[results.mesh.cell_indices(at)] = True
+    values = [_of_points(f, name, cells, combine) for f in frames]
     return History(name + where, np.array(values), results)
 
 
@@ -77,26 +105,64 @@ def variable_name(results: ResultSource, name: str) -> str:
         ) from None
 
 
-def _one(results: ResultSource, name: str, index: int, at: Ints | None, combine: str) -> float:
-    """A variable of a frame at nodes, or everywhere."""
+def _all_nodes(results: ResultSource, at: Any) -> bool:
+    """Whether a place is the word for all nodes, not the name of a set."""
+    mesh = results.mesh
+    names_of_sets = {*mesh.node_sets, *mesh.edge_sets, *mesh.cell_sets}
+    return isinstance(at, str) and at == "nodes" and at not in names_of_sets
+
+
+def _at_points(results: ResultSource, at: Any) -> bool:
+    """Whether a place has quadrature points: everywhere, or an element set."""
+    mesh = results.mesh
+    if at is None:
+        return True
+    if not isinstance(at, str) or is_selection(at) or _all_nodes(results, at):
+        return False
+    name = mesh.set_name(at)
+    return name in mesh.cell_sets and name not in mesh.node_sets and name not in mesh.edge_sets
+
+
+def _of_points(frame: Frame, name: str, cells: Any, combine: str) -> float:
+    """A variable at the points of a frame; not a number in frames without it."""
+    if combine in ("sum", "mean"):
+        parts = [
+            point_value(b, name)[slice(None) if cells is None else cells[b.cells]].ravel()
+            for b in frame.fields
+            if name in available([b])
+        ]
+        if not parts:
+            raise no_points(name)
+        every = np.concatenate(parts)
+        return float(every.sum() if combine == "sum" else every.mean())
+    row = row_of(frame, name, cells)
+    if row is None:
+        known = frame.fields or (cells is None and frame.extremes)
+        if known:
+            return float("nan")
+        raise no_points(name)
+    low, high = float(row[0]), float(row[WIDTH])
+    if combine == "min":
+        return low
+    return high if combine == "max" or abs(high) >= abs(low) else low
+
+
+def _nodal(results: ResultSource, name: str, index: int, at: Ints | None, combine: str) -> float:
+    """A variable of a frame at nodes, or at all of them."""
     frame = results.frame(index)
     if name in NODAL and getattr(frame, NODAL[name][0]) is None:
         return float("nan")  # such as a velocity before the first dynamic step
-    if at is None and name not in NODAL and combine in ("auto", "max"):
-        if not frame.fields:
-            return float(results.nodal(name, index).max())
-        return max(float(point_value(b, name).max()) for b in frame.fields)
-    values = results.nodal(name, index)
+    if name in RESULTANTS and combine in ("auto", "sum"):
+        force = getattr(frame, RESULTANTS[name])[:, :2]
+        return float(np.hypot(*(force if at is None else force[at]).sum(axis=0)))
+    values = nodal_value(frame, name) if name in NODAL else results.nodal(name, index)
     if at is not None:
         values = values[at]
     if combine == "auto":
-        force = name in NODAL and name[0] in "RFM"
-        combine = "sum" if force else "mean" if at is not None else "size"
+        combine = "sum" if name in SUMMED else "mean" if at is not None else "size"
     if combine == "size":
         return float(values[np.argmax(np.abs(values))])
-    if combine == "sum":
-        return float(values.sum())
-    return float(values.mean() if combine == "mean" else values.max())
+    return float(getattr(values, combine)())
 
 
 def _place(at: Any) -> str:

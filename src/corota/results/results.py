@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
     from corota.results.averaging import Averaging
     from corota.results.body_motion import BodyMotion
+    from corota.results.extremes import Extremes
     from corota.results.history import History
     from corota.results.members import Members
     from corota.results.probe import Line, Place
@@ -79,6 +80,13 @@ class Results(Brief):
     last_iterate: Frame | None = None
     steps: list[Step] = field(default_factory=list)
 
+    @property
+    def stable(self) -> Floats:
+        """1 for frames in stable equilibrium, 0 for unstable ones, nan if unknown; (n_frames,)."""
+        import numpy as np
+
+        return np.array([f.scalars.get("stable", np.nan) for f in self.frames])
+
     def add(self, frame: Frame) -> None:
         """Take a frame; with ``keep="last"`` it replaces the one before."""
         if self.keep == "last":
@@ -103,7 +111,7 @@ class Results(Brief):
         if self._averaging is None:
             from corota.results.averaging import Averaging
 
-            self._averaging = Averaging(self.model.mesh)
+            self._averaging = Averaging(self.model.mesh, self.sections())
         return self._averaging
 
     _averaging: Averaging | None = field(default=None, init=False, repr=False, compare=False)
@@ -127,10 +135,12 @@ class Results(Brief):
         return names_of(self.frame(index))
 
     def nodal(self, name: str, index: int = -1, section: int | None = None) -> Floats:
-        """Values at the nodes, shape (n_nodes,).
+        """Nodal values, shape (n_nodes,).
 
-        Quantities of points are extrapolated and averaged
-        (:data:`corota.results.averaging.AVERAGING`).
+        Stress, strain and other results are computed at the quadrature points: their nodal values
+        are extrapolated and averaged within one section, and at a border of sections the larger by
+        size (:data:`corota.results.averaging.AVERAGING`). :meth:`extremes` and :meth:`history`
+        take the values at the points.
 
         Parameters
         ----------
@@ -147,7 +157,8 @@ class Results(Brief):
             If there is no such variable.
         """
         from corota.results.averaging import stored_at_nodes
-        from corota.results.variables import NODAL, canonical, nodal_value
+        from corota.results.table import NODAL
+        from corota.results.variables import canonical, nodal_value
 
         frame = self.frame(index)
         name = canonical(name, frame)
@@ -155,8 +166,7 @@ class Results(Brief):
             return nodal_value(frame, name)
         if not frame.fields:
             return stored_at_nodes(frame, name, section)
-        chosen = None if section is None else self.sections() == section
-        return self.averaging.nodal(frame.fields, name, chosen)
+        return self.averaging.values(frame.fields, name, section)
 
     def sections(self) -> Ints:
         """Section group of each cell, -1 without; shape (n_cells,)."""
@@ -175,6 +185,39 @@ class Results(Brief):
         frame = self.frame(index)
         return cell_values(frame, canonical(name, frame), self.mesh.n_cells)
 
+    def extremes(
+        self, name: str, frame: int = -1, at: Literal["points", "nodes"] = "points"
+    ) -> Extremes:
+        """Smallest and largest value of a variable, and the larger by size, with their places.
+
+        Parameters
+        ----------
+        name : str
+        frame : int
+        at : {"points", "nodes"}
+            The values at quadrature points, or the nodal ones (:meth:`nodal`). Displacements,
+            forces and contact are at the nodes in any case.
+
+        Raises
+        ------
+        InputError
+            If there is no such variable, or a file has no values at points.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=10, ny=1))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+        >>> model.fix("left")
+        >>> model.force("right", x=-1.0)
+        >>> found = ct.solve(model, ct.Static(), threads=1).extremes("U1")
+        >>> found.by_size is found.smallest, found.largest.value
+        (True, 0.0)
+        """
+        from corota.results.extremes import extremes
+
+        return extremes(self, name, frame, at)
+
     def cells_with(self, name: str, index: int = -1) -> NDArray[np.bool_]:
         """Whether each cell has a variable at its points, shape (n_cells,)."""
         from corota.results.averaging import cells_with
@@ -185,7 +228,7 @@ class Results(Brief):
         self,
         name: str,
         at: str | int | Sequence[int] | None = None,
-        combine: Literal["auto", "sum", "mean", "max"] = "auto",
+        combine: Literal["auto", "sum", "mean", "max", "min", "size"] = "auto",
     ) -> History:
         """One number for each frame.
 
@@ -195,11 +238,14 @@ class Results(Brief):
             A nodal or point variable, ``"time"``, ``"load factor"``, ``"step"``, ``"increment"``,
             or a scalar of the frames such as ``"strain energy"``.
         at : str, int or array_like, optional
-            Set, node index or indices, or a mask of nodes; everywhere by default.
-        combine : {"auto", "sum", "mean", "max"}
-            Reducer over the nodes. ``"auto"``: forces are summed; displacements at a
-            place are averaged, those of the whole model take the value of the largest size;
-            point variables take the largest point value (at a place: the mean of the nodes).
+            Set, node index or indices, or a mask of nodes; everywhere by default. Stress, strain
+            and other variables at points are taken at the quadrature points: of the whole model, or
+            of an element set. At nodes they are nodal values (:meth:`nodal`), which the name of the
+            history says; ``"nodes"`` are those of all nodes.
+        combine : {"auto", "sum", "mean", "max", "min", "size"}
+            Reducer: ``"size"`` is the value of the largest size, with its sign. ``"auto"``: forces
+            are summed (``RF`` and ``F`` are the size of the resultant), at nodes other variables
+            are averaged; everywhere and in element sets the value of the largest size is taken.
 
         Raises
         ------
@@ -591,12 +637,42 @@ class Results(Brief):
     def __exit__(self, *raised: object) -> None:
         self.close()
 
+    def _instability(self) -> str:
+        """Which frames are unstable, in a few words; empty for none."""
+        unstable = (self.stable == 0.0).nonzero()[0]
+        if not len(unstable):
+            return ""
+        return f"unstable in {len(unstable):,} frames from time {self.times[unstable[0]]:g} on"
+
+    def summary(self) -> str:
+        """The results in a few lines: extremes of displacement and stress, stability, notes.
+
+        Returns
+        -------
+        str
+        """
+        lines = [repr(self)]
+        if self.frames:
+            names = [name for name in ("U", "MISES", "S11", "S22") if name in self.variables()]
+            for name in names:
+                lines.append(f"  {self.extremes(name, at=self._places)}")
+            if unstable := self._instability():
+                lines.append(f"  {unstable}: a real structure snaps or buckles before")
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+
+    @property
+    def _places(self) -> Literal["points", "nodes"]:
+        """Where the last frame has its stress."""
+        last = self.frames[-1]
+        return "points" if last.fields or last.extremes else "nodes"
+
     def __repr__(self) -> str:
         frames = len(self.frames)
         text = f"Results({brief(self.model.name)}: {frames:,} frames"
         if frames:
             last = self.frames[-1]
             text += f", last step {last.step} increment {last.increment} time {last.time:g}"
+            text += f", {self._instability()}" * bool(self._instability())
         return text + f", {len(self.modes)} sets of modes)" if self.modes else text + ")"
 
     def _repr_html_(self) -> str:
@@ -610,6 +686,8 @@ class Results(Brief):
         if self.frames:
             last = self.frames[-1]
             rows["last"] = f"step {last.step}, increment {last.increment}, time {last.time:g}"
+            if unstable := self._instability():
+                rows["stability"] = unstable
             unit = self.model.unit_system.label("length")
             rows["largest displacement"] = f"{self.history('U').max():.6g} {unit}"
             rows["variables"] = ", ".join(self.variables()[:40])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.results import variables as vf
+from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,12 +18,6 @@ if TYPE_CHECKING:
     from corota.results.source import ResultSource
 
     Floats = NDArray[np.float64]
-
-#: Variables that are not negative anywhere. Parabolas through their nodal values may be.
-NEVER_NEGATIVE = (
-    *("MISES", "PEEQ", "YRATIO", "ENER", "PWORK", "PDISS", "ELKE", "STH"),
-    *("U", "V", "A", "RF", "F", "CPRESS"),
-)
 
 
 def sampled(
@@ -55,18 +50,18 @@ def sampled(
     """
     state = results.frame(frame)
     name = vf.canonical(name, state)
-    if name in vf.INVARIANTS:
-        tensor = vf.INVARIANTS[name][0]
-        components = [n for n, (of, _) in vf.COMPONENTS.items() if of == tensor]
+    if name in INVARIANTS:
+        tensor = INVARIANTS[name][0]
+        components = [n for n, (of, _) in COMPONENTS.items() if of == tensor]
         if state.fields:
-            chosen = None if section is None else results.sections() == section
-            nodal = results.averaging.average(state.fields, [tensor], chosen)[tensor]
+            nodal = results.averaging.nodal(state.fields, [tensor], section)[tensor]
             return vf.invariant(name, onto(nodal))
         if set(components) <= set(results.variables(frame)):
             nodal = np.stack([results.nodal(n, frame, section) for n in components], axis=-1)
             return vf.invariant(name, onto(nodal))
     values = onto(results.nodal(name, frame, section))
-    return np.maximum(values, 0.0) if name in NEVER_NEGATIVE else values
+    # Parabolas through nodal values may be negative where the variable is not.
+    return np.maximum(values, 0.0) if name in POSITIVE else values
 
 
-__all__ = ["NEVER_NEGATIVE", "sampled"]
+__all__ = ["sampled"]

@@ -40,6 +40,22 @@ SCALARS: dict[str, tuple[str, str]] = {
     "contact energy": ("ALLCL", "energy"),
     "stabilisation energy": ("ALLSD", "energy"),
     "modal strain energy": ("strain energy of the modes that are superposed", "energy"),
+    "between increments": ("1 at a requested time within an explicit increment", ""),
+    **{
+        f"{which} {name}{i}": ("of all nodes and increments since the frame before", of)
+        for name, of in (("U", "length"), ("V", "length/time"))
+        for i in (1, 2)
+        for which in ("smallest", "largest")
+    },
+    **{
+        f"{which} total {name}{i}": (
+            "of the sums in the increments since the frame before",
+            "force",
+        )
+        for name in ("F", "RF")
+        for i in (1, 2)
+        for which in ("smallest", "largest")
+    },
     "momentum x": ("linear momentum along x", "force*time"),
     "momentum y": ("linear momentum along y", "force*time"),
     "angular momentum": ("about the origin, at current positions", "force*length*time"),

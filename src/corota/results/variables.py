@@ -1,8 +1,9 @@
-"""Names of result variables, their meaning and dimension; invariants."""
+"""Values of output variables in frames: components, invariants, and their names."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,16 @@ import numpy as np
 from corota.errors import InputError
 from corota.results.derived import DERIVED
 from corota.results.scalars import SCALARS, general
+from corota.results.table import (
+    COMPONENTS,
+    DIMENSIONS,
+    INVARIANTS,
+    MEANING,
+    NODAL,
+    TABLE,
+    TENSORS,
+    variables,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -22,67 +33,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Nodal variables: name to (attribute of a frame, component); -1 is the magnitude.
-NODAL: dict[str, tuple[str, int]] = {
-    "U1": ("U", 0),
-    "U2": ("U", 1),
-    "U": ("U", -1),
-    "UR3": ("UR", 0),
-    "RF1": ("RF", 0),
-    "RF2": ("RF", 1),
-    "RF": ("RF", -1),
-    "RM3": ("RF", 2),
-    "F1": ("F", 0),
-    "F2": ("F", 1),
-    "F": ("F", -1),
-    "M3": ("F", 2),
-    "V1": ("V", 0),
-    "V2": ("V", 1),
-    "V": ("V", -1),
-    "VR3": ("V", 2),
-    "A1": ("A", 0),
-    "A2": ("A", 1),
-    "A": ("A", -1),
-    "AR3": ("A", 2),
-    "CPRESS": ("C", 0),
-    "CSHEAR": ("C", 1),
-    "COPEN": ("C", 2),
-    "CSLIP": ("C", 3),
-    "CSTATUS": ("C", 4),
-}
-
 #: Scalars of frames that are undefined where missing; others are 0 there.
 UNKNOWN = ("stable", "negative pivots")
-
-#: Columns of the contact values at nodes.
-CONTACT = ("CPRESS", "CSHEAR", "COPEN", "CSLIP", "CSTATUS")
 
 #: Forces of the nodes on the elements, in files.
 FORCES = "nodal forces"
 
-#: Tensors at points, rows xx, yy, zz, xy: stress, strain, plastic strain, back-stress deviator.
-TENSORS = ("S", "E", "PE", "ALPHA")
-
-#: Components of the tensors at points: name to (tensor, column).
-COMPONENTS: dict[str, tuple[str, int]] = {
-    f"{tensor}{name}": (tensor, column)
-    for tensor in TENSORS
-    for column, name in enumerate(("11", "22", "33", "12"))
-}
-
-#: Invariants: name to (tensor, which); computed from averaged components at nodes.
-INVARIANTS: dict[str, tuple[str, str]] = {
-    "MISES": ("S", "mises"),
-    "SP1": ("S", "1"),
-    "SP2": ("S", "2"),
-    "SP3": ("S", "3"),
-    "EP1": ("E", "1"),
-    "EP2": ("E", "2"),
-    "EP3": ("E", "3"),
-}
-
 #: Tensors by their names in files; other values have their own.
-STORED = {"S": "stress", "E": "strain"}
+STORED = {name: row.array for name, row in TABLE.items() if row.tensor and row.array}
 
 #: Other spellings that :func:`canonical` accepts (compared in lower case).
 ALIASES = {
@@ -91,6 +49,8 @@ ALIASES = {
     "ur": "UR3",
     "reaction": "RF",
     "rf3": "RM3",
+    "temperature": "NT",
+    "nt11": "NT",
     "von mises": "MISES",
     "principal": "SP1",
     "sxx": "S11",
@@ -103,83 +63,12 @@ ALIASES = {
     "exy": "E12",
 }
 
-#: Description of each variable, with its dimension; used in labels, file metadata and documents.
-MEANING = {
-    "U1": "displacement x [length]",
-    "U2": "displacement y [length]",
-    "U": "size of the displacement [length]",
-    "UR3": "drilling rotation [rad]",
-    "RF1": "reaction x [force]",
-    "RF2": "reaction y [force]",
-    "RF": "size of the reaction [force]",
-    "RM3": "reaction moment [force*length]",
-    "F1": "external force x [force]",
-    "F2": "external force y [force]",
-    "F": "size of the external force [force]",
-    "M3": "external moment [force*length]",
-    "V1": "velocity x",
-    "V2": "velocity y",
-    "V": "speed",
-    "VR3": "angular velocity",
-    "A1": "acceleration x",
-    "A2": "acceleration y",
-    "A": "size of the acceleration",
-    "AR3": "angular acceleration",
-    "S11": "Cauchy stress xx",
-    "S22": "Cauchy stress yy",
-    "S33": "Cauchy stress zz",
-    "S12": "Cauchy stress xy",
-    "MISES": "von Mises stress",
-    "SP1": "largest principal stress",
-    "SP2": "middle principal stress",
-    "SP3": "smallest principal stress",
-    "E11": "strain xx",
-    "E22": "strain yy",
-    "E33": "strain zz",
-    "E12": "shear strain (angle)",
-    "EP1": "largest principal strain",
-    "EP2": "middle principal strain",
-    "EP3": "smallest principal strain",
-    "ENER": "strain energy density",
-    "PEEQ": "equivalent plastic strain",
-    "YRATIO": "equivalent over yield stress",
-    "PE11": "plastic strain xx",
-    "PE22": "plastic strain yy",
-    "PE33": "plastic strain zz",
-    "PE12": "plastic shear strain (angle)",
-    "ALPHA11": "back-stress deviator xx",
-    "ALPHA22": "back-stress deviator yy",
-    "ALPHA33": "back-stress deviator zz",
-    "ALPHA12": "back-stress deviator xy",
-    "PWORK": "plastic work density",
-    "PDISS": "plastic dissipation density",
-    "STH": "current thickness [length]",
-    "N": "axial force [force]",
-    "M1": "moment at the first end [force*length]",
-    "M2": "moment at the second end [force*length]",
-    "CPRESS": "contact pressure",
-    "CSHEAR": "contact shear traction",
-    "COPEN": "contact gap [length]",
-    "CSLIP": "contact slip [length]",
-    "CSTATUS": "contact status: 0 open, 1 closed, 2 slipping",
-}
-
 
 def meaning(name: str) -> str:
     """Description of a variable, with its dimension; empty if unknown."""
     return MEANING.get(name) or (DERIVED[name].meaning if name in DERIVED else "")
 
 
-#: Dimension of variables, by their names without the numbers of components.
-_DIMENSIONS = {
-    "U": "length", "UR": "rad", "RF": "force", "RM": "force*length", "F": "force",
-    "M": "force*length", "V": "length/time", "VR": "rad/time", "A": "length/time^2",
-    "AR": "rad/time^2", "S": "force/length^2", "MISES": "force/length^2", "SP": "force/length^2",
-    "ALPHA": "force/length^2", "E": "", "EP": "", "PE": "", "YRATIO": "", "ENER": "energy/length^3",
-    "PWORK": "energy/length^3", "PDISS": "energy/length^3", "STH": "length", "N": "force",
-    "CPRESS": "force/length^2", "CSHEAR": "force/length^2", "COPEN": "length", "CSLIP": "length",
-    "CSTATUS": "", "STATUS": "",
-}  # fmt: skip
 #: Dimension of quantities of the whole model.
 _OF_THE_WHOLE = {
     "plastic work": "energy", "section N": "force", "section V": "force",
@@ -203,23 +92,19 @@ def dimension(name: str) -> str:
         return SCALARS[scalar][1]
     if name.endswith((" energy", " dissipation")) or (name.startswith("ALL") and name.isupper()):
         return "energy"
-    variable = name.removeprefix("largest ").split(" ")[0].rstrip(":")
+    variable = re.sub("^(largest|smallest) ", "", name).split(" ")[0].rstrip(":")
     if variable in DERIVED:
-        found = DERIVED[variable].meaning.partition("[")[2].partition("]")[0]
-        return found if found in ("length", "force", "force/length^2", "rad") else ""
-    stem = variable.rstrip("0123456789")
-    return _DIMENSIONS.get(stem, "") if variable.isupper() else ""
+        return variables()[variable].dimension
+    return DIMENSIONS.get(variable, DIMENSIONS.get(f"{variable}1", ""))
 
 
 #: Dimensions of arrays of files.
 _OF_ARRAYS = {
-    "displacement": "length", "rotation": "rad", "reaction": "force", "external force": "force",
-    "reaction moment": "force*length", "external moment": "force*length",
-    "velocity": "length/time", "angular velocity": "rad/time", "acceleration": "length/time^2",
-    "angular acceleration": "rad/time^2", "stress": "force/length^2", "frame rotation": "rad",
-    "principal stress": "force/length^2", "Mises": "force/length^2", "position": "length",
-    "strain": "", "principal strain": "",
-}  # fmt: skip
+    **{row.stored: row.dimension for row in TABLE.values()},
+    **{item.array: TABLE[of].dimension for of, item in INVARIANTS.values()},
+    "frame rotation": "rad",
+    "position": "length",
+}
 
 
 def dimension_of_array(name: str) -> str:
@@ -233,19 +118,16 @@ def stored_as(name: str) -> tuple[str, int]:
     if name in COMPONENTS:
         tensor, column = COMPONENTS[name]
         return STORED.get(tensor, tensor), column
-    if name == "MISES":
-        return "Mises", -1
     if name in INVARIANTS:
-        tensor, which = INVARIANTS[name]
-        return f"principal {STORED[tensor]}", int(which) - 1
+        item = INVARIANTS[name][1]
+        return item.array, item.column
     return name, -1
 
 
 def averaged_names(averages: Mapping[str, Floats]) -> list[str]:
     """Components, invariants and scalars that arrays of a file hold."""
-    tensors = {*TENSORS, *STORED.values()}
     found = [n for n in (*COMPONENTS, *INVARIANTS) if stored_as(n)[0] in averages]
-    skip = {"Mises", "principal stress", "principal strain", *tensors}
+    skip = {*TENSORS, *STORED.values(), *(item.array for _, item in INVARIANTS.values())}
     return found + sorted(n for n in averages if n not in skip)
 
 
@@ -308,10 +190,10 @@ def principal(tensor: Floats, shear: float = 1.0) -> Floats:
 
 def invariant(name: str, tensor: Floats) -> Floats:
     """Values of an invariant of :data:`INVARIANTS` from its tensor, (..., 4) to (...)."""
-    kind, which = INVARIANTS[name]
-    if which == "mises":
+    kind, item = INVARIANTS[name]
+    if item.column < 0:
         return mises(tensor)
-    return np.asarray(principal(tensor, 1.0 if kind == "S" else 0.5)[..., int(which) - 1])
+    return np.asarray(principal(tensor, TABLE[kind].shear)[..., item.column])
 
 
 def available(fields: Iterable[PointFields]) -> list[str]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import ast
 import operator
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.errors import InputError
 from corota.mesh.geometric import is_selection
+from corota.results.reduction import is_summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,11 +27,13 @@ if TYPE_CHECKING:
 REDUCERS: dict[str, Callable[[Floats], float]] = {
     "last": lambda values: float(values[-1]),
     "first": lambda values: float(values[0]),
-    "max": lambda values: float(values.max()),
-    "min": lambda values: float(values.min()),
-    "absmax": lambda values: float(np.abs(values).max()),
-    "mean": lambda values: float(values.mean()),
+    "max": lambda values: float(np.nanmax(values)),
+    "min": lambda values: float(np.nanmin(values)),
+    "absmax": lambda values: float(np.nanmax(np.abs(values))),
+    "mean": lambda values: float(np.nanmean(values)),
 }
+#: How each combines the values of one increment by default.
+COMBINED = {"max": "max", "min": "min"}
 _OPERATORS: dict[type[ast.AST], Callable[..., float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -49,9 +53,11 @@ class Measure:
     text : str
         ``REDUCER(VARIABLE@PLACE)`` with ``last``, ``first``, ``max``, ``min``, ``absmax`` or
         ``mean``; a variable as in :meth:`Results.history`; a place is a set, a selection such as
-        ``near(10, 0.5)``, or a node number, and may be omitted. Names that are not identifiers
-        are quoted. A history without a reducer is its last value. ``+ - * / **`` and ``abs``
-        combine measures.
+        ``near(10, 0.5)``, or a node number, and may be omitted; ``nodes`` takes the nodal values
+        of stress and strain. Names may have blanks, ``max(load factor)``; others that are not
+        identifiers are quoted. Without a place ``max`` and ``min`` are the largest and smallest
+        value anywhere at any time, the others take the value of the largest size of each increment.
+        A history without a reducer is its last value. ``+ - * / **`` and ``abs`` combine measures.
 
     Raises
     ------
@@ -68,7 +74,7 @@ class Measure:
     def __init__(self, text: str) -> None:
         self.text = text.strip()
         try:
-            self._tree = ast.parse(self.text, mode="eval").body
+            self._tree = ast.parse(_quoted(self.text), mode="eval").body
         except (SyntaxError, RecursionError, MemoryError, ValueError):
             raise self._fault() from None
         self._check(self._tree)
@@ -110,7 +116,7 @@ class Measure:
             name = node.func.id if isinstance(node.func, ast.Name) else ""
             if name == "abs":
                 return abs(self._value(node.args[0], results))
-            return REDUCERS[name](self._series(node.args[0], results))
+            return REDUCERS[name](self._series(node.args[0], results, COMBINED.get(name, "auto")))
         if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
             a, b = self._value(node.left, results), self._value(node.right, results)
             try:
@@ -121,9 +127,9 @@ class Measure:
             return _OPERATORS[type(node.op)](self._value(node.operand, results))
         if isinstance(node, ast.Constant) and not isinstance(node.value, str):
             return float(node.value)  # type: ignore[arg-type]
-        return float(self._series(node, results)[-1])
+        return float(self._series(node, results, "auto")[-1])
 
-    def _series(self, node: ast.AST, results: Results) -> Floats:
+    def _series(self, node: ast.AST, results: Results, combine: Any) -> Floats:
         found = _history(node)
         assert found is not None
         name, place = found
@@ -134,7 +140,21 @@ class Measure:
                 raise InputError(f"measure {self.text!r}: there is no node {place}")
         if name.upper() == "RM3" and at is not None:
             return total_moment(results, at)
-        return np.asarray(results.history(name, at=at), dtype=float)
+        everywhere = at is None or at == "nodes"
+        combine = combine if everywhere and not is_summed(name) else "auto"
+        return np.asarray(results.history(name, at=at, combine=combine), dtype=float)
+
+
+def _quoted(text: str) -> str:
+    """An expression with quotes around names of several words.
+
+    Examples
+    --------
+    >>> _quoted("max(load factor) / last(MISES)"), _quoted("last('a b@c')")
+    ("max('load factor') / last(MISES)", "last('a b@c')")
+    """
+    words = r"""("[^"]*"|'[^']*')|([A-Za-z_]\w*(?:[ \t]+\w+)+)"""
+    return re.sub(words, lambda m: m[1] or repr(" ".join(m[2].split())), text)
 
 
 def total_moment(results: Results, at: Any) -> Floats:

@@ -38,10 +38,12 @@ ROUND_OFF = 1e-12
 BALANCED = 1e-9
 #: Largest number of kept frames of a step, unless outputs request times.
 FRAMES = 200
+#: Two times closer than this share of the period are the same.
+SAME_TIME = 1e-9
 #: Attributes of the stepper that a checkpoint holds.
 MEMORY = (
     *("known", "done", "n", "keep", "wanted", "dt", "stable", "u", "v", "at"),
-    *("begin", "work", "internal", "told", "driven", "contact"),
+    *("begin", "work", "internal", "told", "driven", "contact", "force", "between"),
 )
 
 
@@ -167,7 +169,16 @@ class ExplicitStepper:
         self.n = max(int(np.ceil(step.period / dt * (1.0 - 1e-12))), 1)
         self.dt = dt = step.period / self.n
         self.keep = max(self.n // FRAMES, 1)
-        self.wanted = {*(round(s / dt) for s in stops), step.max_increments}
+        grid = [(s, round(s / dt)) for s in stops if 0.0 < s <= step.period]
+        on = [i for s, i in grid if abs(i * dt - s) <= SAME_TIME * step.period]
+        #: Requested times within increments.
+        self.between = sorted({s for s, i in grid if i not in on})
+        peaks = [round(t / dt) for t in peak_times(loop, step)]
+        self.wanted = {*on, *peaks, step.max_increments}
+        #: Every so many increments is a frame by request.
+        self.every = [o.frequency for o in loop.observers.requests if o.every or o.frequency > 1]
+        self.save, self.number = loop.save, loop.number
+        self.envelope = Envelope(system)
         state.counters["stable increment"] = self.stable  # type: ignore[assignment]
         if state.v is None:
             state.v = initial_velocity(system, state.u)
@@ -187,6 +198,8 @@ class ExplicitStepper:
         still, force = np.zeros_like(free), np.zeros_like(free)
         if not resumes:
             force = self._contact(still, state.v, free, 0.5, 0.0)
+        #: Contact forces of the last increment.
+        self.force = force
         residual = self.at.residual - force
         a = -self.inverse * residual
         account.drive(self.at.external, residual)
@@ -270,6 +283,8 @@ class ExplicitStepper:
         i = self.done + 1
         time = i * dt
         before = self.at
+        while self.between and self.between[0] < time:
+            self._show_between(self.between.pop(0))
         du = np.where(
             constrained, system.conditions.supports.at(time, self.u) - self.u, dt * self.v
         )
@@ -280,6 +295,7 @@ class ExplicitStepper:
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
         given_v, given_a = system.conditions.supports.rates(time, dt)
         force = self._contact(du, self.v, self.v - dt * self.inverse * at.residual, 1.0, time)
+        self.force = force
         residual = at.residual - force
         a = -self.inverse * residual
         account.add_work(du, at.external, residual)
@@ -304,7 +320,9 @@ class ExplicitStepper:
                 f"smaller than {dt:g}: use automatic increments with a smaller first one"
             )
         self.done = i
-        if i % self.keep and i != self.n and i not in self.wanted:
+        self.envelope.add(self.u, whole, at.external, np.where(constrained, residual, 0.0))
+        requested = i in self.wanted or any(f and i % f == 0 for f in self.every)
+        if i % self.keep and i != self.n and not requested:
             return None
         state.u, state.v = self.u, whole
         state.at = replace(at, internal=at.internal - force)
@@ -319,9 +337,53 @@ class ExplicitStepper:
             "external work": account.work,
             "internal work": account.internal,
             "kinetic energy": kinetic,
+            **momenta(system, mass, self.u, whole),
+            **(self.envelope.scalars() if self.keep > 1 else {}),
             **self.contact.sums(),
         }
+        self.envelope.clear()
         return Accepted(i, time / self.step.period, scalars)
+
+    def _show_between(self, time: float) -> None:
+        """Output a requested time within the next increment, which stays as it is.
+
+        The motion of central differences is linear within an increment; stress and forces are
+        those of the position, contact forces those of its start.
+        """
+        system, state, account = self.system, self.state, self.account
+        kept = dict(vars(state))
+        sums = account.kinetic, account.work, account.internal
+        constrained = system.conditions.constrained
+        lag = time - self.done * self.dt
+        moved = np.where(
+            constrained, system.conditions.supports.at(time, self.u) - self.u, lag * self.v
+        )
+        at = system.evaluate(self.u + moved, time)
+        residual = at.residual - self.force
+        acceleration = -self.inverse * residual
+        given_v, given_a = system.conditions.supports.rates(time, self.dt)
+        # The velocity of the middle of the increment is `v`.
+        velocity = self.v + (lag - 0.5 * self.dt) * acceleration
+        state.u, state.v = self.u + moved, np.where(constrained, given_v, velocity)
+        state.at = replace(at, internal=at.internal - self.force)
+        state.a = np.where(constrained, given_a, acceleration)
+        state.reaction = np.where(constrained, residual + self.mass * given_a, 0.0)
+        state.step_time, state.loop = time, None
+        account.kinetic = 0.5 * float(state.v @ (self.mass * state.v))
+        account.add_work(moved, at.external, residual)
+        account.internal += float(0.5 * (self.at.internal + at.internal) @ moved)
+        scalars = {
+            "between increments": 1.0,
+            "dt": lag,
+            "iterations": 1.0,
+            "external work": account.work,
+            "kinetic energy": account.kinetic,
+            **momenta(system, self.mass, state.u, state.v),
+        }
+        self.save(state, self.done + 1, time / self.step.period, scalars)
+        vars(state).update(kept)
+        account.kinetic, account.work, account.internal = sums
+        account.drive(self.at.external, self.at.residual - self.force)
 
     def _contact(
         self, du: Floats, before: Floats, free: Floats, share: float, time: float
@@ -360,6 +422,81 @@ class ExplicitStepper:
                 "energy (ALLPW): in central differences nodes in contact stop at once and lose "
                 "their kinetic energy; finer meshes lose less"
             )
+
+
+class Envelope:
+    """Smallest and largest values of the increments between two frames.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System) -> None:
+        self.columns = [np.flatnonzero(system.component == i) for i in (0, 1)]
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin another interval."""
+        self.low: list[Floats] = []
+        self.high: list[Floats] = []
+        self.totals: list[list[float]] = []
+
+    def add(self, u: Floats, v: Floats, external: Floats, reaction: Floats) -> None:
+        """Take an increment: displacement, velocity, loads and reactions, shape (n_dofs,)."""
+        if self.low:
+            for low, high, values in zip(self.low, self.high, (u, v), strict=True):
+                np.minimum(low, values, out=low)
+                np.maximum(high, values, out=high)
+        else:
+            self.low, self.high = [u.copy(), v.copy()], [u.copy(), v.copy()]
+        self.totals.append([float(f[c].sum()) for f in (external, reaction) for c in self.columns])
+
+    def scalars(self) -> dict[str, float]:
+        """Extremes by the names of scalars of frames."""
+        found: dict[str, float] = {}
+        for name, low, high in zip("UV", self.low, self.high, strict=True):
+            for i, column in enumerate(self.columns, start=1):
+                found[f"smallest {name}{i}"] = float(low[column].min(initial=0.0))
+                found[f"largest {name}{i}"] = float(high[column].max(initial=0.0))
+        totals = np.array(self.totals)
+        for i, name in enumerate(("F1", "F2", "RF1", "RF2")):
+            found[f"smallest total {name}"] = float(totals[:, i].min())
+            found[f"largest total {name}"] = float(totals[:, i].max())
+        return found
+
+
+def momenta(system: System, mass: Floats, u: Floats, v: Floats) -> dict[str, float]:
+    """Linear momenta, and the angular one about the origin at current positions."""
+    component, push = system.component, mass * v
+    at = system.model.mesh.points[system.node_of_dof]
+    moved = np.zeros((system.model.mesh.n_nodes, 2))
+    for i in (0, 1):
+        own = component == i
+        moved[system.node_of_dof[own], i] = u[own]
+    place = at + moved[system.node_of_dof]
+    x, y, turn = (component == i for i in (0, 1, 2))
+    return {
+        "momentum x": float(push[x].sum()),
+        "momentum y": float(push[y].sum()),
+        "angular momentum": float(place[y, 0] @ push[y] - place[x, 1] @ push[x] + push[turn].sum()),
+    }
+
+
+def peak_times(loop: IncrementLoop, step: Dynamic) -> list[float]:
+    """Step times of the peaks of the amplitudes that loads and supports of a step name."""
+    model = loop.system.model
+    items = (*model.loads, *model.supports, *step.loads, *step.supports)
+    named = {item.amplitude for item in items}
+    found: list[float] = []
+    for name in named - {""}:
+        table = model.amplitudes[name]
+        shift = loop.state.time if table.total_time else 0.0
+        rise = np.sign(np.diff(table.value))
+        peaks = np.flatnonzero(rise[:-1] != rise[1:]) + 1
+        found += (table.time[peaks] - shift).tolist()
+    inside = [t for t in found if 0.0 < t < step.period]
+    return inside if len(inside) <= FRAMES else []
 
 
 class Known:

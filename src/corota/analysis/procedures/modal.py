@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: Two times closer than this share of the period are the same.
+SAME_TIME = 1e-9
 #: Share of the start that modes may miss without a note.
 LOST = 0.05
 
@@ -51,7 +53,7 @@ def modal_step(
         If there are no modes.
     """
     loop = IncrementLoop(system, step, number, state, observers, save)
-    loop.run(ModalStepper(loop, step))
+    loop.run(ModalStepper(loop, step, stops))
     state.recover = None
     leave(system, state, step.period)
 
@@ -67,7 +69,7 @@ class ModalStepper:
 
     kind, advice = "", ""
 
-    def __init__(self, loop: IncrementLoop, step: ModalDynamic) -> None:
+    def __init__(self, loop: IncrementLoop, step: ModalDynamic, stops: list[float]) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step
         system, state, number = loop.system, loop.state, loop.number
         _, lin = last_modes(system, state, step, number)
@@ -89,6 +91,11 @@ class ModalStepper:
         self.fields = LinearFields(system, lin.u)
         self.x = np.concatenate([p, v])
         self.taken = 0
+        grid = [s for s in stops if 0.0 < s < step.period]
+        #: Requested times within increments.
+        self.between = sorted(
+            {s for s in grid if abs(s / dt - round(s / dt)) * dt > SAME_TIME * step.period}
+        )
 
     @property
     def finished(self) -> bool:
@@ -105,31 +112,43 @@ class ModalStepper:
         return {}
 
     def advance(self) -> Accepted:
-        """Take one increment."""
-        system, state, model, lin = self.system, self.state, self.model, self.lin
-        c, s, dt = self.c, self.s, self.dt
-        self.taken = i = self.taken + 1
-        slope_c = (c[i] - c[i - 1]) / dt
-        inputs = np.concatenate([c[i - 1], s[i - 1], slope_c, self.slope_s[i - 1]])
-        self.x = self.propagator @ np.concatenate([self.x, inputs])
-        p, v = np.split(self.x, 2)
-        rate, bend = self.rates[i], self.bends[i]
-        q, q_rate = p - model.carried @ s[i], v - model.carried @ rate
-        a = model.load @ c[i] - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
-        z = model.unknowns(q, s[i])
+        """Take one increment, or the part of it up to a requested time."""
+        system, state, model, lin, dt = self.system, self.state, self.model, self.lin, self.dt
+        i = self.taken
+        lag = self.between[0] - i * dt if self.between else dt
+        slope_c = (self.c[i + 1] - self.c[i]) / dt
+        inputs = np.concatenate([self.c[i], self.s[i], slope_c, self.slope_s[i]])
+        inside = 0.0 < lag < dt * (1.0 - SAME_TIME)
+        propagator = _advance(model, lag) if inside else self.propagator
+        x = propagator @ np.concatenate([self.x, inputs])
+        if inside:
+            self.between.pop(0)
+        else:
+            self.taken, self.x, lag = i + 1, x, dt
+        share, time = lag / dt, i * dt + lag
+        c, s, rate, bend = (
+            (1.0 - share) * f[i] + share * f[i + 1]
+            for f in (self.c, self.s, self.rates, self.bends)
+        )
+        p, v = np.split(x, 2)
+        q, q_rate = p - model.carried @ s, v - model.carried @ rate
+        a = model.load @ c - model.stiffness @ q - model.damping @ q_rate - model.dragged @ rate
+        z = model.unknowns(q, s)
         change = lin.expand(z)
         state.u = lin.u + change
         state.v = model.displacement(q_rate, rate)
         state.a = model.displacement(a - model.carried @ bend, bend)
-        external = system.conditions.external(i * dt, lin.u)[0]
+        external = system.conditions.external(time, lin.u)[0]
         state.at = linear_evaluation(model, z, state.v, state.a, external)
-        state.step_time = i * dt
+        state.step_time = time
         state.recover = lambda: self.fields.at(change)
         strain = 0.5 * float(q @ (model.stiffness @ q))
         inertia = lin.mass @ lin.restrict(state.v)
         kinetic = 0.5 * float(lin.restrict(state.v) @ inertia)
-        scalars = {"dt": dt, "kinetic energy": kinetic, "modal strain energy": strain}
-        return Accepted(i, i / self.n, scalars)
+        scalars = {"dt": lag, "kinetic energy": kinetic, "modal strain energy": strain}
+        if inside:
+            scalars["between increments"] = 1.0
+        return Accepted(i + 1, time / self.step.period, scalars)
 
 
 def leave(system: System, state: State, step_time: float) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +33,7 @@ at_limit = lazy("corota.analysis.procedures.stopping:at_limit")
 collapse = lazy("corota.analysis.procedures.stopping:collapse")
 driven = lazy("corota.analysis.procedures.stopping:driven")
 explained = lazy("corota.analysis.procedures.stopping:explained")
+passed = lazy("corota.analysis.procedures.stopping:passed")
 unstable = lazy("corota.analysis.procedures.stopping:unstable")
 ways = lazy("corota.analysis.procedures.stopping:ways")
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
@@ -97,6 +99,10 @@ class StaticStepper(NewtonStepper):
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
         self.path_took_over = False
+        #: Step times between which the last attempt lost stability.
+        self.passed: tuple[float, float] | None = None
+        #: Whether a warning said that the equilibrium is unstable.
+        self.warned = False
         #: Where and why load control stalled.
         self.stalled = ""
         blocks = loop.system.blocks
@@ -153,6 +159,8 @@ class StaticStepper(NewtonStepper):
                     f"the equivalent plastic strain grew by {self.grown:.3g}, "
                     f"{step.plastic_increment:g} is allowed in one increment"
                 )
+        if outcome.converged and not outcome.reason:
+            self.check_stability(outcome, target)
         outcome.converged = outcome.converged and not outcome.reason
         reason = "" if outcome.converged else outcome.reason or "no convergence"
         return Attempt(target, outcome, contact, reason)
@@ -167,6 +175,23 @@ class StaticStepper(NewtonStepper):
         conditions, u = self.system.conditions, self.state.u
         now, then = (conditions.external(t, u)[0] for t in (self.control.time, target))
         return bool((then - now) @ self.moved < 0.0)
+
+    def check_stability(self, outcome: Outcome[Evaluation], target: float) -> None:
+        """Refuse an unstable equilibrium behind a stable one, unless the step only warns of it.
+
+        The inertia is that of the last tangent of Newton's method. After one iteration that is the
+        tangent of the start, and the one of the end is factorized too.
+        """
+        system, step = self.system, self.step
+        if outcome.iterations == 1 and step.nlgeom and not system.joined:
+            try:
+                still = np.zeros(system.n_dofs)
+                _, outcome.negative = system.predict(system.evaluate(outcome.u, target), still)
+            except SingularError:
+                outcome.negative = 1  # at a critical point
+        if outcome.negative > 0 >= self.state.negative and step.at_bifurcation != "warn":
+            self.passed = (self.control.time, target)
+            outcome.reason = passed(self.loop.number, self.passed, outcome.negative)
 
     def equilibrium(
         self,
@@ -204,6 +229,7 @@ class StaticStepper(NewtonStepper):
         """
         system, state = self.system, self.state
         settings, report, contact = self.settings, self.report, None
+        self.passed = None
         if first is not None:
             settings = replace(settings, search=True, first=first)
         if first is not None or before:
@@ -233,6 +259,10 @@ class StaticStepper(NewtonStepper):
     def rescue(self, failed: Attempt, end: str) -> Attempt | None:
         """The increment by relaxation, or the rest of the step along the path."""
         control, outcome = self.control, failed.outcome
+        if self.passed is not None:
+            if self.step.at_bifurcation == "follow" and not self.step.fixed_increments:
+                self.path_took_over = self.go_along_path(switch=True)
+            return None
         early = control.attempt == RESTS and not end
         if end or early:
             relaxed = by_relaxation(self, early)
@@ -251,6 +281,11 @@ class StaticStepper(NewtonStepper):
 
     def refusal(self, failed: Attempt, end: str) -> str:
         """Why the step stopped."""
+        if self.passed is not None:
+            return (
+                f"{passed(self.loop.number, self.passed, failed.outcome.negative)}. All increments "
+                f"before are kept; to continue, {ways(driven(self.system, self.step, self.state))}"
+            )
         text: str = explained(
             self.system,
             self.loop.number,
@@ -281,13 +316,18 @@ class StaticStepper(NewtonStepper):
         state.u, state.at, state.failed = outcome.u, outcome.at, None
         state.step_time = attempt.target
         if outcome.negative > 0 >= state.negative:
-            state.notes.append(
-                f"step time {attempt.target:.6g}: from here on the equilibrium is unstable "
-                f"(negative pivots of the tangent: {outcome.negative}): a limit or bifurcation "
-                "point was passed, where a real structure snaps or buckles. path=ArcLength() or "
-                "DisplacementControl(...) locates the point and can switch to the other branch; "
-                "'stable' in the history marks the stable frames"
+            between = (attempt.target - dt, attempt.target)
+            text = (
+                f"increment {control.number + 1}: "
+                + passed(self.loop.number, between, outcome.negative)
+                + ". From here on the equilibrium is unstable: a real structure snaps or buckles. "
+                "at_bifurcation='stop' or 'follow', path=ArcLength() or DisplacementControl(...) "
+                "find the stable path; 'stable' in the history marks the stable frames"
             )
+            if not self.warned:
+                warnings.warn(text, stacklevel=2)
+                self.warned = True
+            state.notes.append(text)
         state.negative = outcome.negative
         attempts = control.attempt
         control.accept(attempt.target, outcome.iterations)
@@ -313,8 +353,13 @@ class StaticStepper(NewtonStepper):
             return False
         return not np.any(self.system.load_rate(self.state.u)[0])
 
-    def go_along_path(self) -> bool:
+    def go_along_path(self, switch: bool = False) -> bool:
         """Continue by arc length from where load control stalls; False where that does not help.
+
+        Parameters
+        ----------
+        switch : bool
+            Whether load control is left before a bifurcation, to follow the branch that leaves it.
 
         Raises
         ------
@@ -331,7 +376,8 @@ class StaticStepper(NewtonStepper):
             return False
         from corota.model.paths import ArcLength
 
-        path = ArcLength(factor=1.0, stop_at_limit=step.at_limit == "stop")
+        stops = step.at_limit == "stop" and not switch
+        path = ArcLength(factor=1.0, switch=switch, stop_at_limit=stops)
         along = replace(
             step,
             path=path,
@@ -348,8 +394,9 @@ class StaticStepper(NewtonStepper):
 
         def keep(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
             if len(kept) == 1:
+                what = "the equilibrium loses its stability behind" if switch else "stalls at"
                 text = (
-                    f"load control stalls at load factor {kept[0]:.6g}; arc length takes over "
+                    f"load control: {what} load factor {kept[0]:.6g}; arc length takes over "
                     f"from increment {before + 1} (column 'arc length' of the histories): from "
                     "there the load factor is an unknown, and step time only counts the "
                     "increments within the period"

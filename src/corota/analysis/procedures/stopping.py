@@ -88,6 +88,14 @@ def collapse(
     )
 
 
+def passed(number: int, between: tuple[float, float], negative: int) -> str:
+    """Where an increment lost stability, from the inertia at its ends."""
+    return (
+        f"between step times {between[0]:.6g} and {between[1]:.6g} of step {number} a bifurcation "
+        f"or limit point was passed (negative pivots of the tangent: {negative})"
+    )
+
+
 def unstable(state: State) -> str:
     """Message on an unstable last equilibrium; empty if it is stable."""
     if state.negative <= 0:

@@ -26,7 +26,17 @@ from corota.analysis.terms.supports import Supports
 from corota.analysis.terms.temperatures import Temperatures
 from corota.analysis.terms.term import Term
 from corota.errors import ModelError, UnsupportedError
-from corota.model.loads import BodyForce, NodalForce, Temperature, applied, check_loads, kind_of
+from corota.model.loads import (
+    LOAD_KINDS,
+    BodyForce,
+    Force,
+    NodalForce,
+    Temperature,
+    applied,
+    check_loads,
+    given_as,
+    kind_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -178,15 +188,19 @@ class Conditions(Term):
 
     def _change_loads(self, step: Step) -> None:
         """Remove the loads that the step does not keep, and set those that it defines."""
-        if step.renews("force"):
+        renewed = {kind for kind in LOAD_KINDS if step.renews(kind)}
+        gone = renewed | step.ended
+        if "force" in gone:
             self.forces.remove()
-            self.distributed.remove("force")
-        if step.renews("distributed"):
-            self.distributed.remove()
-        if step.renews("temperature"):
+        if "temperature" in gone:
             self.temperatures.remove()
+        self.distributed.remove(lambda x: kind_of(x) in renewed or given_as(x) in step.ended)
         model = applied(self.system.model.loads, self.system.model.mesh)
-        again = [x for x in model if not self._loaded or step.renews(kind_of(x))]
+        again = [
+            x
+            for x in model
+            if given_as(x) not in step.ended and (not self._loaded or step.renews(kind_of(x)))
+        ]
         self._loaded = True
         self._set_loads([*again, *step.loads])
 
@@ -366,7 +380,9 @@ class Conditions(Term):
 
     def _set_loads(self, given: Sequence[Load]) -> None:
         check_loads(given)
-        loads = applied(given, self.system.model.mesh)
+        mesh = self.system.model.mesh
+        loads = applied(given, mesh)
+        loads += [zero for item in given if isinstance(item, Force) for zero in item.ends(mesh)]
         self.forces.set([item for item in loads if isinstance(item, NodalForce)])
         for heated in loads:
             if isinstance(heated, Temperature):

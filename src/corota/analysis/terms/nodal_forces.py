@@ -79,7 +79,7 @@ class NodalForces:
                 target = self.history.end
                 if amplitude:
                     target = self.timed.setdefault(amplitude, np.zeros(self.system.n_dofs))
-                np.add.at(target, dofs, item.value)
+                np.add.at(target, dofs, item.value if np.any(item.value) else 0.0)
 
     def at(self, step_time: float) -> Floats:
         """Forces at a time, shape (n_dofs,)."""
@@ -106,6 +106,8 @@ class NodalForces:
     def _dofs(self, item: NodalForce) -> Ints:
         nodes = self.system.model.mesh.node_indices(item.nodes)
         dofs = self.system.dofs(nodes, item.dof)
+        if not np.any(item.value):
+            return dofs[dofs >= 0]  # zero ends a force; it needs no place for one
         if (dofs < 0).any():
             label = self.system.model.mesh.node_labels[nodes[dofs < 0][0]]
             what = (

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from corota.results.table import variables
+
 #: Our kinds: type number in the file, and nodes of it that the type has.
 ELEMENTS = {
     "tri3": (7, 3),
@@ -60,7 +62,17 @@ def _scalars(name: str, names: tuple[str, ...], request: str) -> Block:
     return Block(name, tuple((part, 1, 0, 0) for part in names), request)
 
 
-DISP = _vector("DISP", "D", "U")
+def _block(name: str) -> Block:
+    """The block of an output variable, or one of its name."""
+    row = variables()[name]
+    if row.tensor:
+        return _tensor(row.block, row.letter, row.request or name)
+    if row.size[0]:
+        return _vector(row.block, row.letter, row.request or name)
+    return _scalars(row.block, (row.letter or row.block,), row.request or name)
+
+
+DISP, VELO, FORC, STRESS, TOSTRAIN, NDTEMP = map(_block, ("U", "V", "RF", "S", "E", "NT"))
 #: Size and phase in degrees of complex modes.
 PDISP = Block(
     "PDISP",
@@ -69,17 +81,20 @@ PDISP = Block(
     ),
     "PU",
 )
-VELO = _vector("VELO", "V", "V")
-FORC = _vector("FORC", "F", "RF")
-STRESS = _tensor("STRESS", "S", "S")
-TOSTRAIN = _tensor("TOSTRAIN", "E", "E")
-PE = _scalars("PE", ("PE",), "PEEQ")
-ENER = _scalars("ENER", ("ENER",), "ENER")
 CONTACT = _scalars("CONTACT", ("COPEN", "CSLIP1", "CSLIP2", "CPRESS", "CSHEAR1", "CSHEAR2"), "CSTR")
-#: In the order in which they are written, which is CalculiX's.
-BLOCKS = (DISP, VELO, STRESS, TOSTRAIN, FORC, PE, ENER, CONTACT)
+
+
+def blocks() -> list[Block]:
+    """Blocks in the order in which they are written, which is CalculiX's; ours come last."""
+    first = [DISP, VELO, NDTEMP, STRESS, TOSTRAIN, FORC]
+    numbers = [row.name for row in variables().values() if row.block and not row.frame]
+    scalars = [_block(name) for name in numbers if not variables()[name].tensor]
+    known = ("PE", "ENER")  # as CalculiX orders them
+    scalars.sort(key=lambda block: known.index(block.name) if block.name in known else len(known))
+    return [*first, *scalars[:2], CONTACT, *scalars[2:]]
+
 
 __all__ = [
-    "BLOCKS", "CONTACT", "DISP", "ELEMENTS", "ENER", "FORC", "KINDS", "NODES", "PDISP", "PE",
-    "STRESS", "TOSTRAIN", "VELO", "Block",
+    "CONTACT", "DISP", "ELEMENTS", "FORC", "KINDS", "NDTEMP", "NODES", "PDISP", "STRESS",
+    "TOSTRAIN", "VELO", "Block", "blocks",
 ]  # fmt: skip

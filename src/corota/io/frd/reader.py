@@ -10,10 +10,11 @@ import numpy as np
 from corota.errors import FileError, UnsupportedError
 from corota.io.frd.layout import KINDS, NODES
 from corota.io.regular_file import read_bytes
+from corota.io.vtk.frame_arrays import tensor_arrays
 from corota.mesh import Cells, Mesh
 from corota.model.model import Model
-from corota.results import variables as vf
 from corota.results.results import Frame, Results
+from corota.results.table import variables
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -221,18 +222,13 @@ class _Reader:
 def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Frame:
     shift, force, speed = (at_nodes(name) for name in ("DISP", "FORC", "VELO"))
     averages: dict[str, Floats] = {}
-    stress, strain = at_nodes("STRESS"), at_nodes("TOSTRAIN")
-    if stress is not None:
-        averages["stress"] = stress
-        averages["principal stress"] = vf.principal(stress[:, :4])
-        averages["Mises"] = vf.mises(stress[:, :4])
-    if strain is not None:
-        averages["strain"] = strain * [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]  # the angle
-        averages["principal strain"] = vf.principal(averages["strain"][:, :4], 0.5)
-    for name, stored in (("PE", "PEEQ"), ("ENER", "ENER")):
-        values = at_nodes(name)
-        if values is not None:
-            averages[stored] = values[:, 0]
+    for name, row in variables().items():
+        values = at_nodes(row.block) if row.block and not row.frame else None
+        if values is not None and row.tensor:
+            averages |= tensor_arrays(name, values[:, :4] / [1.0, 1.0, 1.0, row.shear])
+        elif values is not None:
+            averages[name] = values[:, 0]
+    heat = at_nodes("NDTEMP")
     contact, traction = at_nodes("CONTACT"), None
     if contact is not None:
         gap, slip, _, pressure, shear, _ = contact.T
@@ -251,6 +247,7 @@ def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Fra
         nothing,
         V=None if speed is None else np.column_stack([speed[:, :2], np.zeros(n)]),
         C=traction,
+        T=None if heat is None else heat[:, 0],
         averages=averages,
         absent=frozenset({"F"} if force is not None else {"RF", "F"}),
     )

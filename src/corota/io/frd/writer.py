@@ -13,23 +13,22 @@ from corota.io.atomic_file import TextFile
 from corota.io.file_options import FileOptions
 from corota.io.finite import check_frame
 from corota.io.frd.layout import (
-    BLOCKS,
     CONTACT,
     DISP,
     ELEMENTS,
-    ENER,
     FORC,
+    NDTEMP,
     PDISP,
-    PE,
     STRESS,
     TOSTRAIN,
     VELO,
+    blocks,
 )
-from corota.io.requests import in_force
 from corota.io.tables.dat import internal_force
 from corota.io.vtk.frame_arrays import point_data
 from corota.model.contact import edges_or_nodes
-from corota.results.averaging import Averaging
+from corota.model.steps import in_force
+from corota.results.averaging import Averaging, section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
 if TYPE_CHECKING:
@@ -88,6 +87,8 @@ class FrdWriter:
     binary : bool
     resume : dict, optional
         Continue the existing file from such a :attr:`state`.
+    sections : ndarray of int, shape (n_cells,), optional
+        Section group of each cell; those of the model by default.
     """
 
     def __init__(
@@ -98,11 +99,13 @@ class FrdWriter:
         options: FileOptions | None = None,
         binary: bool = False,
         resume: dict[str, Any] | None = None,
+        sections: Ints | None = None,
     ) -> None:
         self.path, self._model, self._steps, self._binary = path, model, steps, binary
         fields = (options or FileOptions()).fields
         self._fields = None if isinstance(fields, str) else {name.upper() for name in fields}
-        self._averaging = Averaging(model.mesh)
+        groups = section_of_cells(model) if sections is None else sections
+        self._averaging = Averaging(model.mesh, groups)
         self._curves = rigid_curves(model)
         lines = [np.concatenate(rigid_lines(curve)) for curve in self._curves]
         self._lines = lines
@@ -290,7 +293,7 @@ class FrdWriter:
             rest = np.concatenate(lines) - np.concatenate(self._lines)
             shift[len(labels) :, :2] = rest
         found: list[tuple[Block, Ints, Floats]] = []
-        for block in BLOCKS:
+        for block in blocks():
             if not self._wanted(block, frame):
                 continue
             if block is DISP:
@@ -305,7 +308,9 @@ class FrdWriter:
             elif block is TOSTRAIN and "strain" in data:
                 tensor = data["strain"] * [1.0, 1.0, 1.0, 0.5, 0.5, 0.5]
                 found.append((block, every, longer(tensor)))
-            elif block in (PE, ENER) and block.request in data:
+            elif block is NDTEMP and frame.T is not None:
+                found.append((block, every, longer(frame.T[:, None])))
+            elif block.request in data and len(block.components) == 1:
                 found.append((block, every, longer(data[block.request][:, None])))
             elif block is CONTACT and frame.C is not None:
                 slaves = np.flatnonzero(self._slaves(frame))
@@ -361,7 +366,8 @@ def write_frd(results: Results, path: Path, binary: bool = False, **options: Any
     from corota.io.file_options import from_keywords
 
     model = results.model
-    writer = FrdWriter(path, model, model.steps, from_keywords(options), binary)
+    chosen = from_keywords(options)
+    writer = FrdWriter(path, model, model.steps, chosen, binary, sections=results.sections())
     try:
         for frame in results.frames:
             writer.add(frame)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import csv
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +12,11 @@ from corota.arrays import distinct
 from corota.errors import FileError, InputError
 from corota.io.atomic_file import TextFile, full, replace_text
 from corota.model.units import Units
-from corota.results.variables import NODAL, labelled, mises, nodal_value
+from corota.results.derived import DERIVED
+from corota.results.extremes import WIDTH, row_of
+from corota.results.results import Results
+from corota.results.table import DIMENSIONS, NODAL
+from corota.results.variables import labelled, nodal_value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +26,7 @@ if TYPE_CHECKING:
 
     from corota.model.model import Model
     from corota.model.steps import Step
-    from corota.results.results import Frame
+    from corota.results.frame import Frame
 
     Ints = NDArray[np.int64]
 
@@ -49,30 +53,40 @@ def support_sets(model: Model, steps: Sequence[Step]) -> dict[str, Ints]:
 
 def requested_nodes(
     model: Model, steps: Sequence[Step], extra: Sequence[str] = ()
-) -> list[tuple[str, str, Ints]]:
-    """Columns for nodes: (heading, variable, nodes to sum or average).
+) -> list[tuple[str, str, Any, Any]]:
+    """Columns of requests: (heading, variable, place, reducer).
 
     Parameters
     ----------
     extra : sequence of str
-        ``VARIABLE@SET`` or ``VARIABLE@node number``, such as ``U2@TIP``.
+        ``VARIABLE@SET`` or ``VARIABLE@node number``, such as ``U2@TIP``, as
+        :meth:`~corota.results.results.Results.history` takes them; without a place two columns, the
+        smallest and the largest value anywhere.
     """
-    mesh, found = model.mesh, []
+    mesh = model.mesh
+    found: list[tuple[str, str, Any, Any]] = []
     for request in extra:
-        name, _, where = request.partition("@")
-        name = name.strip().upper()
-        if name not in NODAL or not where:
+        name, _, where = (part.strip() for part in request.partition("@"))
+        name = name.upper()
+        bare = name in NODAL or "@" in request
+        if (name not in DIMENSIONS and name not in DERIVED) or (bare and not where):
             raise InputError(
-                f"history {request!r}: write VARIABLE@SET or VARIABLE@NODE with one of "
-                + ", ".join(NODAL)
+                f"history {request!r}: write VARIABLE@SET or VARIABLE@NODE, or a variable at "
+                "points, with one of " + ", ".join([*DIMENSIONS, *DERIVED])
             )
+        if not where or where == "nodes":
+            everywhere, kind = where or None, " (nodal)" if where and name not in NODAL else ""
+            found.append((f"smallest {name}{kind}", name, everywhere, "min"))
+            found.append((f"largest {name}{kind}", name, everywhere, "max"))
+            continue
+        place: Any = where
         if where.isdigit() and where not in mesh.node_sets:
-            nodes = np.flatnonzero(mesh.node_labels == int(where))
-            if not len(nodes):
+            place = np.flatnonzero(mesh.node_labels == int(where))
+            if not len(place):
                 raise InputError(f"history {request!r}: there is no node {where}")
         else:
-            nodes = mesh.nodes_of(where)
-        found.append((f"{name} {where}", name, nodes))
+            mesh.nodes_of(where)
+        found.append((f"{name} {where}", name, place, "auto"))
     for output in (o for step in steps for o in step.outputs):
         if output.kind != "node print" or not output.where:
             continue
@@ -83,9 +97,9 @@ def requested_nodes(
             label = int(mesh.node_labels[node])
             for name in (v.upper() for v in output.variables):
                 parts = {"U": ("U1", "U2"), "RF": ("RF1", "RF2")}.get(name, ())
-                found += [(f"{part} node {label}", part, np.array([node])) for part in parts]
-    unique = {heading: (heading, name, nodes) for heading, name, nodes in found}
-    return list(unique.values())
+                at = np.array([node])
+                found += [(f"{part} node {label}", part, at, "auto") for part in parts]
+    return list({column[0]: column for column in found}.values())
 
 
 def balance_error(scalars: dict[str, float]) -> float:
@@ -118,6 +132,7 @@ class Histories:
         self._labels = model.mesh.node_labels
         self._turns = [getattr(step, "nlgeom", True) for step in steps]
         self._nodes = requested_nodes(model, steps, extra)
+        self._one = Results(model)
         self._before: tuple[int, float] = (0, 0.0)
 
     @property
@@ -147,16 +162,19 @@ class Histories:
         row |= frame.scalars
         row["energy balance error"] = balance_error(frame.scalars)
         row["largest U"] = float(nodal_value(frame, "U").max(initial=0.0))
-        stressed = [mises(b.values["S"]) for b in frame.fields if "S" in b.values]
-        row["largest MISES"] = max((float(m.max(initial=0.0)) for m in stressed), default=0.0)
+        found = row_of(frame, "MISES")
+        row["largest MISES"] = 0.0 if found is None else float(found[WIDTH])
         for name, nodes in self._supports.items() if "RF" not in frame.absent else ():
             total = frame.RF[nodes].sum(axis=0)
             row[f"RF1 {name}"], row[f"RF2 {name}"] = total[:2].tolist()
             heading, moment = self.moment(frame, nodes)
             row[f"RM3 {name} {heading}"] = moment
-        for heading, name, nodes in self._nodes:
-            values = nodal_value(frame, name)[nodes]
-            row[heading] = float(values.sum() if name[0] in "RFM" else values.mean())
+        self._one.frames = [frame]
+        for heading, name, place, combine in self._nodes:
+            try:
+                row[heading] = float(self._one.history(name, place, combine)[0])
+            except InputError:  # a frame without the variable, such as a velocity at rest
+                row[heading] = 0.0
         return row
 
     def moment(self, frame: Frame, nodes: Ints) -> tuple[str, float]:

@@ -18,6 +18,7 @@ from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
 from corota.io.tables.dat_numbers import fortran, rows
 from corota.mesh.parts import cells_of
+from corota.results.table import TABLE, variables
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -31,21 +32,16 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Node tables: variable to (title, title of the sum or "").
-NODE_TITLES = {
-    "U": ("displacements (vx,vy,vz)", ""),
-    "UR": ("rotations (rx,ry,rz)", ""),
-    "V": ("velocities (vx,vy,vz)", ""),
-    "RF": ("forces (fx,fy,fz)", "total force (fx,fy,fz)"),
-}
 
-#: Tables of values at points: variable to (title with its own spacing, stored name).
-POINT_TITLES = {
-    "S": ("stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) ", "S"),
-    "E": ("strains (elem, integ.pnt.,exx,eyy,ezz,exy,exz,eyz) ", "E"),
-    "PEEQ": ("equivalent plastic strain (elem, integ.pnt.,pe)", "PEEQ"),
-    "ENER": ("internal energy density (elem, integ.pnt.,energy) ", "ENER"),
-}
+def node_titles() -> dict[str, tuple[str, str]]:
+    """Tables at nodes: variable to (title, title of the sum or "")."""
+    return {n: (r.title, r.total) for n, r in variables().items() if r.frame and r.title}
+
+
+def point_titles() -> dict[str, str]:
+    """Tables of values at points: variable to title with its own spacing."""
+    return {n: r.title for n, r in variables().items() if not r.frame and r.title}
+
 
 #: Tables of one number an element: variable to (title, title of the sum).
 ELEMENT_TITLES = {
@@ -72,8 +68,8 @@ def check_requests(steps: list[Step]) -> None:
             if not output.kind.endswith("print"):
                 continue
             valid = {
-                "node print": [*NODE_TITLES],
-                "el print": [*POINT_TITLES, *ELEMENT_TITLES],
+                "node print": [*node_titles()],
+                "el print": [*point_titles(), *ELEMENT_TITLES],
                 "contact print": [*CONTACT_VARIABLES],
             }[output.kind]
             for name in output.variables:
@@ -115,12 +111,14 @@ def _node_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
     labels = mesh.node_labels[nodes]
     axes = {} if output.in_global or not model.axes else local_axes(model)
     for name in (v.upper() for v in output.variables):
-        title, total = NODE_TITLES[name]
+        title, total = node_titles()[name]
         values = _node_values(model, frame, name)[nodes] + 0.0  # no negative zeros
         only = output.totals == "only" and total
         if not only:
             yield _head(title + " ", output, frame)
-            if axes and name != "UR":
+            if name == "NT":
+                yield rows("%10d %13.6E\n", labels, values[:, 0])
+            elif axes and name != "UR":
                 yield _turned_rows(nodes, labels, values, axes)
             else:
                 yield rows(_VECTOR + "\n", labels, *values.T)
@@ -149,6 +147,8 @@ def _node_values(model: Model, frame: Frame, name: str) -> Floats:
     internal force is none there.
     """
     zero = np.zeros(len(frame.U))
+    if name == "NT":
+        return np.column_stack([zero if frame.T is None else frame.T, zero, zero])
     if name == "UR":
         return np.column_stack([zero, zero, frame.UR])
     if name == "U":
@@ -172,10 +172,11 @@ def internal_force(model: Model, frame: Frame) -> Floats:
 def _element_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
     mesh = model.mesh
     cells = mesh.cell_sets.get(output.where)
+    titles = point_titles()
     for name in (v.upper() for v in output.variables):
-        if name in POINT_TITLES:
-            title, stored = POINT_TITLES[name]
-            owner, point, values = _at_points(model, frame, cells, stored)
+        if name in titles:
+            title = titles[name]
+            owner, point, values = _at_points(model, frame, cells, name)
             yield _head(title, output, frame)
             if not len(owner):
                 continue
@@ -183,9 +184,7 @@ def _element_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]
             if values.ndim == 1:
                 yield rows("%10d %3d %13.6E\n", *columns, values)
                 continue
-            values = values.copy()
-            if name == "E":
-                values[:, 3] *= 0.5  # CalculiX prints tensor components
+            values = values * [1.0, 1.0, 1.0, TABLE[name].shear]  # CalculiX prints components
             form = "%10d %3d" + 4 * " %13.6E" + 2 * "  0.000000E+00" + "\n"
             yield rows(form, *columns, *values.T)
             continue

@@ -11,6 +11,7 @@ from corota.arrays import distinct
 from corota.io.finite import check
 from corota.results import variables as vf
 from corota.results.averaging import Averaging, cell_mean, cell_weights, section_of_cells
+from corota.results.table import CONTACT, INVARIANTS, TABLE, TENSORS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-_REACTION = ("reaction", "reaction moment")
-_EXTERNAL = ("external force", "external moment")
-
 
 def six(tensor: Floats) -> Floats:
     """Rows xx, yy, zz, xy as xx, yy, zz, xy, yz, xz, the order ParaView names itself."""
@@ -32,39 +30,33 @@ def six(tensor: Floats) -> Floats:
 
 def point_data(frame: Frame, averaging: Averaging) -> dict[str, Floats]:
     """Arrays at the nodes by the names they have in files."""
-    n = len(frame.U)
-    data = {
-        "displacement": np.column_stack([frame.U, np.zeros(n)]),
-        "rotation": frame.UR,
-        "reaction": np.column_stack([frame.RF[:, :2], np.zeros(n)]),
-        "reaction moment": frame.RF[:, 2],
-        "external force": np.column_stack([frame.F[:, :2], np.zeros(n)]),
-        "external moment": frame.F[:, 2],
-    }
-    for attribute, names in (("RF", _REACTION), ("F", _EXTERNAL)):
-        if attribute in frame.absent:
-            data = {name: values for name, values in data.items() if name not in names}
-    for title, moving in (("velocity", frame.V), ("acceleration", frame.A)):
-        if moving is not None:
-            data[title] = np.column_stack([moving[:, :2], np.zeros(n)])
-            data[f"angular {title}"] = moving[:, 2]
-    if frame.C is not None:
-        data |= dict(zip(vf.CONTACT, frame.C.T, strict=True))
+    zero = np.zeros(len(frame.U))
+    data: dict[str, Floats] = {}
+    for row in TABLE.values():
+        values = getattr(frame, row.frame) if row.frame else None
+        if values is None or row.frame in frame.absent:
+            continue
+        columns = values.reshape(len(zero), -1)[:, row.first : row.first + len(row.parts)]
+        data[row.stored] = np.column_stack([columns, zero]) if row.size[0] else columns[:, 0]
     for pair, values in frame.pairs.items():
-        data |= {f"{n}: {pair}": v for n, v in zip(vf.CONTACT, values.T, strict=True)}
+        data |= {f"{n}: {pair}": v for n, v in zip(CONTACT, values.T, strict=True)}
     if not frame.fields and frame.averages:
         return data | dict(frame.averages)
-    stored = sorted({k for b in frame.fields for k in b.values} - {"MISES"})
-    mean = averaging.average(frame.fields, stored)
-    if "S" in mean:
-        data["stress"] = six(mean["S"])
-        data["principal stress"] = vf.principal(mean["S"])
-        data["Mises"] = vf.mises(mean["S"])
-    if "E" in mean:
-        data["strain"] = six(mean["E"])
-        data["principal strain"] = vf.principal(mean["E"], 0.5)
-    rest = {k: v for k, v in mean.items() if k not in ("S", "E")}
-    return data | {k: six(v) if k in vf.TENSORS else v for k, v in rest.items()}
+    stored = sorted({k for b in frame.fields for k in b.values} - INVARIANTS.keys())
+    for name, values in averaging.nodal(frame.fields, stored).items():
+        data |= tensor_arrays(name, values) if name in TENSORS else {name: values}
+    return data
+
+
+def tensor_arrays(name: str, values: Floats) -> dict[str, Floats]:
+    """Arrays of a tensor, rows xx, yy, zz, xy, and of its invariants."""
+    row = TABLE[name]
+    data = {row.stored: six(values)}
+    for item in row.invariants:
+        if item.array not in data:
+            whole = vf.mises(values) if item.column < 0 else vf.principal(values, row.shear)
+            data[item.array] = whole
+    return data
 
 
 def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
@@ -75,18 +67,14 @@ def cell_data(frame: Frame, n_cells: int) -> dict[str, Floats]:
     for block in frame.fields:
         data["frame rotation"][block.cells] = block.frame_rotation
         weights = cell_weights(block)
-        for name in block.values:
-            if name == "MISES":
-                continue
+        for name in (n for n in block.values if n not in INVARIANTS):
             mean = cell_mean(block, name, weights)
-            label = {"S": "stress", "E": "strain"}.get(name, name)
-            if name in vf.TENSORS:
-                mean = six(mean)
-            data.setdefault(f"cell {label}", np.zeros((n_cells, *mean.shape[1:])))
-            data[f"cell {label}"][block.cells] = mean
+            arrays = {vf.STORED.get(name, name): six(mean) if name in TENSORS else mean}
             if name == "S":
-                data.setdefault("cell Mises", np.zeros(n_cells))
-                data["cell Mises"][block.cells] = vf.mises(mean[:, :4])
+                arrays["Mises"] = vf.mises(mean)
+            for label, values in arrays.items():
+                data.setdefault(f"cell {label}", np.zeros((n_cells, *values.shape[1:])))
+                data[f"cell {label}"][block.cells] = values
     return data
 
 
@@ -134,4 +122,12 @@ def cells_and_nodes(model: Model) -> dict[int, tuple[NDArray[np.bool_], Ints]]:
     return found
 
 
-__all__ = ["cell_data", "cells_and_nodes", "halved", "point_data", "scalars", "six"]
+__all__ = [
+    "cell_data",
+    "cells_and_nodes",
+    "halved",
+    "point_data",
+    "scalars",
+    "six",
+    "tensor_arrays",
+]

@@ -23,7 +23,9 @@ from corota.io.vtk.frame_arrays import cell_data, cells_and_nodes, halved, point
 from corota.io.vtk.grid import Grid
 from corota.lazy import lazy
 from corota.results import variables as vf
-from corota.results.averaging import AVERAGING, Averaging
+from corota.results.averaging import AVERAGING, Averaging, section_of_cells
+from corota.results.extremes import rows_of
+from corota.results.table import INVARIANTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +54,8 @@ SLOTS = 7
 FORMAT = ("v108", "v108")
 #: The array that other programs need to turn components back into the frames of elements.
 TURN = "frame rotation"
+#: Group of the smallest and largest values at points (:func:`corota.results.extremes.rows_of`).
+EXTREMES = "corota/extremes"
 
 
 def _section(group: int) -> str:
@@ -70,7 +74,8 @@ def _offsets(place: str) -> str:
 
 def _missing(place: str, name: str) -> float:
     """Fill value of an array that a frame does not have."""
-    return np.nan if place == "corota/frames" and name in vf.UNKNOWN else 0.0
+    unknown = place == EXTREMES or (place == "corota/frames" and name in vf.UNKNOWN)
+    return np.nan if unknown else 0.0
 
 
 class VtkhdfWriter:
@@ -110,7 +115,8 @@ class VtkhdfWriter:
         self._steps = model.steps if steps is None else steps
         self._chosen = self._options.chosen(self._steps)
         self._twin = AtomicFile(path, keep=resume is not None)
-        self._averaging = Averaging(model.mesh)
+        groups = section_of_cells(model) if sections is None else sections
+        self._averaging = Averaging(model.mesh, groups)
         self._sections = cells_and_nodes(model)
         count = self._options.parts
         self._grid = Grid(model, sections, process_of_cells(model, count) if count > 1 else None)
@@ -177,7 +183,7 @@ class VtkhdfWriter:
         }
         rows = {(p, n.replace("/", "|")): like.shape[0] for (p, n), like in self._known.items()}
         fixed = {"cells", "shape functions", "reference volume", "nodes", *self._still}
-        places = ["VTKHDF/PointData", "VTKHDF/CellData", "corota/frames"]
+        places = ["VTKHDF/PointData", "VTKHDF/CellData", "corota/frames", EXTREMES]
         for parent in ("corota/points", "corota/sections"):
             places += [f"{parent}/{name}" for name in self._file.get(parent, ())]
         for place in places:
@@ -243,6 +249,7 @@ class VtkhdfWriter:
         store_contacts(self._make_group("corota/contacts"), self.model)
         store_description(own, self.model, self._steps)
         self._make_group("corota/frames")
+        self._make_group(EXTREMES)
         self._make_group("corota/points")
         if grid.rows:
             parts = self._make_group("corota/parts")
@@ -314,6 +321,7 @@ class VtkhdfWriter:
         if self._options.single:
             data = {place: halved(frame, arrays) for place, arrays in data.items()}
         data["corota/frames"] = scalars(frame)
+        data[EXTREMES] = rows_of(frame)
         self._taken.append((frame.time, data))
 
     def _of_sections(self, frame: Frame) -> dict[str, dict[str, Floats]]:
@@ -330,7 +338,7 @@ class VtkhdfWriter:
             }
         if self._options.points or len(self._sections) < 2:
             return {}
-        names = sorted({k for b in frame.fields for k in b.values} - {"MISES"})
+        names = sorted({k for b in frame.fields for k in b.values} - INVARIANTS.keys())
         found = {}
         for group, (cells, nodes) in self._sections.items():
             mean = self._averaging.average(frame.fields, names, cells)

@@ -18,8 +18,7 @@ from corota.io.atomic_file import full, replace_text, sync
 from corota.io.finite import check_frame
 from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import Grid
-from corota.results import variables as vf
-from corota.results.averaging import Averaging
+from corota.results.averaging import Averaging, section_of_cells
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,11 +27,13 @@ if TYPE_CHECKING:
     from corota.model.paths import Modes
     from corota.results.results import Frame, Results
 
+    Ints = np.typing.NDArray[np.int64]
+
 _NAMES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 
 
 def vtu_bytes(
-    model: Model, frame: Frame, averaging: Averaging, sections: vf.Ints | None = None
+    model: Model, frame: Frame, averaging: Averaging, sections: Ints | None = None
 ) -> bytes:
     """Bytes of one ``.vtu`` file.
 
@@ -128,10 +129,11 @@ class PvdWriter:
         path: Path,
         model: Model,
         resume: dict[str, Any] | None = None,
-        sections: vf.Ints | None = None,
+        sections: Ints | None = None,
     ) -> None:
         self.path, self.model, self._sections = path, model, sections
-        self._averaging = Averaging(model.mesh)
+        groups = section_of_cells(model) if sections is None else sections
+        self._averaging = Averaging(model.mesh, groups)
         self._entries: list[str] = [] if resume is None else list(resume["entries"])
 
     @property

@@ -16,17 +16,13 @@ from corota.io.vtk.grid import POLY_LINE, VTK_TYPES
 from corota.mesh import Cells, Mesh
 from corota.mesh.data import N_NODES
 from corota.model.model import Model
-from corota.results import variables as vf
 from corota.results.results import Frame, Results
+from corota.results.table import CONTACT, TABLE
 
 _TYPES = {"Float64": np.float64, "Float32": np.float32, "Int64": np.int64, "UInt8": np.uint8}
 _KINDS = {number: kind for kind, number in VTK_TYPES.items()}
 #: Arrays at nodes that a frame holds in its own attributes.
-_OWN = {
-    "displacement", "rotation", "reaction", "reaction moment", "external force",
-    "external moment", "velocity", "angular velocity", "acceleration", "angular acceleration",
-    *vf.CONTACT,
-}  # fmt: skip
+_OWN = {row.stored for row in TABLE.values() if row.frame}
 
 #: Forces that a file may leave out.
 _FORCES = {"RF": "reaction", "F": "external force"}
@@ -131,7 +127,7 @@ def _frame(mesh: Mesh, data: dict[str, Any], number: int) -> Frame:
     pairs: dict[str, Floats] = {}
     for name in [k for k in at if k.startswith("CPRESS: ")]:
         pair = name.removeprefix("CPRESS: ")
-        pairs[pair] = np.column_stack([at[f"{column}: {pair}"] for column in vf.CONTACT])
+        pairs[pair] = np.column_stack([at[f"{column}: {pair}"] for column in CONTACT])
 
     def force(name: str, moment: str) -> Floats:
         if name not in at:
@@ -143,9 +139,11 @@ def _frame(mesh: Mesh, data: dict[str, Any], number: int) -> Frame:
     moving: dict[str, Any] = {
         key: force(name, f"angular {name}") for key, name in there.items() if name in at
     }
-    if vf.CONTACT[0] in at:
-        moving["C"] = np.column_stack([at[name] for name in vf.CONTACT])
-    stems = tuple(f"{column}: " for column in vf.CONTACT)
+    if "temperature" in at:
+        moving["T"] = at["temperature"]
+    if CONTACT[0] in at:
+        moving["C"] = np.column_stack([at[name] for name in CONTACT])
+    stems = tuple(f"{column}: " for column in CONTACT)
     return Frame(
         1,
         number,

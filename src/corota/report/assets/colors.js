@@ -15,6 +15,10 @@ const STOPS = {
     "eee4deebd6cbe6c8b8e1bba6dcae94d6a183cf9473c78763bf7b54b66f45ad6337a35829994d1a8e4208833800772e00",
 };
 
+// Its halves, for values of one sign: pale near zero.
+STOPS.blue = STOPS["blue–orange"].slice(0, 6 * 16);
+STOPS.orange = STOPS["blue–orange"].slice(6 * 17);
+
 export const MAPS = Object.keys(STOPS);
 /** For values on both sides of zero; its middle is white. */
 export const DIVERGING = "blue–orange";

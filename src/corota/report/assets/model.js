@@ -9,6 +9,7 @@ export class Model {
     this.lines = chunk.lines;
     this.description = chunk.description || {};
     this.meaning = chunk.meaning || {};
+    this.positive = chunk.positive || [];
     this.units = chunk.units || {};
     this.averaging = chunk.averaging;
     this.sets = chunk.sets;

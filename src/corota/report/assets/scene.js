@@ -120,13 +120,14 @@ export class Scene extends EventTarget {
     return found;
   }
 
-  /** The chosen map; by default the one for both signs where a field has both. */
+  /** The chosen map; by default blue for negative and orange for positive values of signed fields. */
   get mapName() {
     if (this.map) return this.map;
+    if (this.model.positive.includes(this.field?.name)) return "viridis";
     const known = this.ranges.get(this.field?.name);
-    if (known) return known[0] < -0.02 * known[1] && known[1] > -0.02 * known[0] ? DIVERGING : "viridis";
-    const own = this.field && this.frame ? this.rangeOf(this.field, this.frame) : [0, 1];
-    return own[0] < -0.02 * own[1] && own[1] > -0.02 * own[0] ? DIVERGING : "viridis";
+    const [low, high] = known ?? (this.field && this.frame ? this.rangeOf(this.field, this.frame) : [0, 1]);
+    if (low < -0.02 * high && high > -0.02 * low) return DIVERGING;
+    return low + high < 0 ? "blue" : "orange";
   }
 
   /** Largest displacement of the frames. */

@@ -9,6 +9,7 @@ from corota.io.deck import numerals
 from corota.io.deck.deck import nearest
 from corota.io.deck.lexer import key
 from corota.model.steps import Output
+from corota.results.table import variables
 
 if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
@@ -16,14 +17,21 @@ if TYPE_CHECKING:
 
 Kind = Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
 
-#: Variables that are written, by their location.
+#: Variables that are written, by their location; of the tables of nodes and points see `written`.
 WRITTEN = {
-    "node": ("U", "RF", "UR"),
-    "el": ("S", "E", "PEEQ", "ENER", "ELSE", "ELKE", "EVOL"),
+    "node": (),
+    "el": ("ELSE", "ELKE", "EVOL"),
     "contact": ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS"),
 }
 #: Names of Abaqus for the same.
-ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF"}
+ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF", "NT11": "NT"}
+
+
+def written(place: str) -> tuple[str, ...]:
+    """Variables that are written at nodes, in elements or of contact."""
+    rows = {n: r for n, r in variables().items() if r.title and place != "contact"}
+    own = tuple(n for n, r in rows.items() if bool(r.frame) == (place == "node"))
+    return own + WRITTEN[place]
 
 
 def restart(deck: Deck, card: Card) -> None:
@@ -103,26 +111,26 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
         deck.error(card, card.where, "the card belongs inside a step")
         return
     place = kind.split()[0]
-    variables: list[str] = []
+    known = written(place)
+    requested: list[str] = []
     left_out: dict[str, str] = {}
     for row in card.rows():
         for text in row.fields:
             name = key(text)
-            name = ALIASES.get(name, name) if place == "contact" else name
+            name = ALIASES.get(name, name)
             if not name:
                 continue
-            if name not in WRITTEN[place] and name.rstrip("0123456789") in WRITTEN[place]:
+            if name not in known and name.rstrip("0123456789") in known:
                 name = name.rstrip("0123456789")  # a component: all of them are written
-            if name in WRITTEN[place]:
-                if name not in variables:
-                    variables.append(name)
+            if name in known:
+                if name not in requested:
+                    requested.append(name)
             else:
                 left_out.setdefault(name, numerals.clipped(name, 30))
     if left_out:
         shown = ", ".join(left_out.values())
         deck.note(
-            f"{card.where}: {card.spelled}: {shown} is not written; there are "
-            f"{', '.join(WRITTEN[place])}"
+            f"{card.where}: {card.spelled}: {shown} is not written; there are {', '.join(known)}"
         )
     totals = deck.choice(card, "TOTALS", ("NO", "YES", "ONLY"), "NO").lower()
     frequency = _frequency(deck, card)
@@ -137,17 +145,18 @@ def _request(deck: Deck, card: Card, kind: Kind, where: str) -> None:
         return
     if frequency == 0:
         deck.note(f"{card.where}: {card.spelled} with FREQUENCY=0 requests nothing")
-    elif variables:
+    elif requested:
         deck.step.outputs.append(
             Output(
                 kind,
-                tuple(variables),
+                tuple(requested),
                 where,
                 frequency,
                 cast("Literal['no', 'yes', 'only']", totals),
                 key(points),
                 card.where,
                 kind == "node print" and deck.choice(card, "GLOBAL", ("NO", "YES"), "NO") == "YES",
+                card.has("FREQUENCY") or card.has("FREQUENCYF"),
             )
         )
 

@@ -16,7 +16,7 @@ from corota.io.deck.write.contact import surfaces
 from corota.io.deck.write.loads import boundary, ending, load_cards
 from corota.io.deck.write.text import DOFS, Writer, number, numbers, plain
 from corota.model.dofs import dof_index
-from corota.model.loads import applied, kind_of
+from corota.model.loads import applied, given_as, kind_of
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import (
     Buckle,
@@ -71,7 +71,8 @@ def step_cards(writer: Writer, steps: Sequence[Written]) -> Iterator[str]:
                     supports = [s for s in model.supports if s.value] + supports
         elif not isinstance(step, Frequency):
             # The model's loads act from the first loaded step on.
-            loads += [x for x in own if not loaded or step.renews(kind_of(x))]
+            kept = [x for x in own if given_as(x) not in step.ended]
+            loads += [x for x in kept if not loaded or step.renews(kind_of(x))]
             loaded = loaded or not isinstance(step, SteadyState)
         loads += applied(step.loads, model.mesh)
         head, procedure = cards(_Says(writer, step, index))
@@ -86,7 +87,7 @@ def step_cards(writer: Writer, steps: Sequence[Written]) -> Iterator[str]:
         written.supports += supports
         yield from boundary(writer, supports, step.new_supports)
         for kind, card in _NEW.items():
-            if step.renews(kind):
+            if step.renews(kind) or kind in step.ended:
                 yield f"*{card}, OP=NEW\n"
         loads = [one for load in loads for one in ending(load, acting)]
         acting += loads
