@@ -176,7 +176,10 @@ def test_an_impact_in_fixed_increments_is_relaxed():
 def test_a_stop_on_an_unstable_path_says_so_and_how_to_continue(number):
     """Blocks with a round face, held by contact alone and pressed by a force: they tip over."""
     given = problem(number, size=0.5)
-    with pytest.raises(ct.ConvergenceError, match="stopped at step time") as stop:
+    with (
+        pytest.warns(UserWarning, match="a bifurcation or limit point was passed"),
+        pytest.raises(ct.ConvergenceError, match="stopped at step time") as stop,
+    ):
         ct.solve(given.model, given.steps, threads=1)
     assert stop.value.results.frames[-1].scalars["negative pivots"] > 0.0
     assert "The last equilibrium is unstable (negative pivots of the tangent: 1)" in str(stop.value)

@@ -404,7 +404,7 @@ def test_output_requests(tmp_path: Path) -> None:
     assert model.steps[0].outputs[0].totals == "only"
     assert model.time_points["TP"].tolist() == [0.25, 0.5, 1.0]
     assert model.steps[0].outputs[1].time_points == "TP"
-    assert any("NT is not written" in note for note in model.notes)
+    assert not any("NT is not written" in note for note in model.notes)
     assert any("SDV is not written" in note for note in model.notes)
 
 

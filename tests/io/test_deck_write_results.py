@@ -247,6 +247,9 @@ def numbers(results: ct.Results) -> np.ndarray:
     return np.concatenate(found)
 
 
+# Compressed beyond yield, the cantilever of `pulled` bends at its tangent modulus; without
+# hardening it necks in tension.
+@pytest.mark.filterwarnings("ignore:increment .* a bifurcation or limit point:UserWarning")
 @pytest.mark.parametrize("name", MODELS)
 def test_results_survive_a_round_trip(tmp_path: Path, name: str) -> None:
     model = MODELS[name]()

@@ -52,6 +52,9 @@ def test_thick_cylinder(element: str, more: dict[str, Any], tolerance: float) ->
     assert np.abs(error).max() < tolerance, error
 
 
+# One pressure for a quadratic element leaves modes that become unstable at the compressed inner
+# face, at a stretch of 1.39 (Q9) and 1.46 (Q8) on this mesh.
+@pytest.mark.filterwarnings("ignore:increment .* a bifurcation or limit point:UserWarning")
 @pytest.mark.parametrize("element", ["Q4", "Q4D", "Q8", "Q8R", "Q9"])
 def test_mean_dilatation_frees_the_volume_at_large_strain(element: str) -> None:
     """The mean of the trace of the gradient was 17 % too stiff here (Q4)."""

@@ -45,7 +45,10 @@ def test_closed_ring_under_pressure_stays_round(element):
     model.fix(on_y, x=0.0, y=None)
     model.pressure("outer", 1.0)
     watch = Watch()
-    results = ct.solve(model, Static(increments=4, tolerance=1e-11), observers=[watch], threads=1)
+    step = Static(increments=4, tolerance=1e-11)
+    # A thin ring becomes oval at 3 E I / (r^2 r_outer) = 0.39; only T3 is too stiff for that.
+    with pytest.warns(UserWarning, match="local strain" if element == "T3" else "a bifurcation"):
+        results = ct.solve(model, step, observers=[watch], threads=1)
     frame = results.frames[-1]
     outward = x / np.hypot(*x.T)[:, None]
     radial = (frame.U * outward).sum(axis=1)

@@ -619,6 +619,12 @@ def applied(loads: Iterable[Load], mesh: Mesh) -> list[AppliedLoad]:
     return found
 
 
+def applied_in_step(loads: Sequence[Load], mesh: Mesh) -> list[AppliedLoad]:
+    """Loads of a step, and those of zero that end components which its forces leave out."""
+    zeros = [zero for load in loads if isinstance(load, Force) for zero in load.ends(mesh)]
+    return applied(loads, mesh) + zeros
+
+
 def _united(load: AppliedLoad, mesh: Mesh) -> AppliedLoad:
     """The load with the members of its sets, where it names several."""
     if isinstance(load, EdgeLoad):

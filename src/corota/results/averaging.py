@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.results.table import COMPONENTS, INVARIANTS, POSITIVE
 from corota.results.variables import STORED, averaged_value, invariant, stored_as
 
@@ -192,7 +193,7 @@ class Averaging:
         """
         if section is not None:
             return self.average(fields, names, self.sections == section)
-        groups = sorted({int(g) for b in fields for g in np.unique(self.sections[b.cells])})
+        groups = sorted({int(g) for b in fields for g in distinct(self.sections[b.cells])})
         if len(groups) < 2:
             return self.average(fields, names)
         found: dict[str, Floats] = {}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.arrays import distinct
 from corota.errors import InputError
 from corota.results.table import NODAL, variables
 from corota.results.variables import match_name, point_value
@@ -191,7 +192,7 @@ def _at_nodes(results: ResultSource, frame: Frame, name: str, index: int) -> Ext
         if not inside.any() and not frame.fields:
             inside = np.ones(mesh.n_cells, dtype=bool)  # files that do not tell
         of_cells = results.sections()
-        groups = [int(g) for g in np.unique(of_cells[inside])]
+        groups = [int(g) for g in distinct(of_cells[inside])]
     found: list[tuple[float, int]] = []
     for group in groups:
         values = results.nodal(name, index, group)
@@ -202,7 +203,7 @@ def _at_nodes(results: ResultSource, frame: Frame, name: str, index: int) -> Ext
                 block.nodes[cells[offset : offset + len(block)]].ravel()
                 for offset, block in zip(mesh.offsets, mesh.cells, strict=False)
             ]
-            nodes = np.unique(np.concatenate(around))
+            nodes = distinct(np.concatenate(around))
         picked = values[nodes]
         found += [(float(picked[i]), int(nodes[i])) for i in (picked.argmin(), picked.argmax())]
     at = mesh.points + frame.U

@@ -179,11 +179,13 @@ class StaticStepper(NewtonStepper):
     def check_stability(self, outcome: Outcome[Evaluation], target: float) -> None:
         """Refuse an unstable equilibrium behind a stable one, unless the step only warns of it.
 
-        The inertia is that of the last tangent of Newton's method. After one iteration that is the
-        tangent of the start, and the one of the end is factorized too.
+        The inertia is that of the last tangent of Newton's method, which belongs to the iterate
+        before. After one iteration that is the start, and a negative pivot may come from an iterate
+        far from the equilibrium. Then the tangent of the end is factorized too.
         """
         system, step = self.system, self.step
-        if outcome.iterations == 1 and step.nlgeom and not system.joined:
+        suspected = outcome.iterations == 1 or outcome.negative > 0 >= self.state.negative
+        if suspected and step.nlgeom and not system.joined:
             try:
                 still = np.zeros(system.n_dofs)
                 _, outcome.negative = system.predict(system.evaluate(outcome.u, target), still)

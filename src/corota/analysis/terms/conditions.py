@@ -29,10 +29,10 @@ from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import (
     LOAD_KINDS,
     BodyForce,
-    Force,
     NodalForce,
     Temperature,
     applied,
+    applied_in_step,
     check_loads,
     given_as,
     kind_of,
@@ -381,8 +381,7 @@ class Conditions(Term):
     def _set_loads(self, given: Sequence[Load]) -> None:
         check_loads(given)
         mesh = self.system.model.mesh
-        loads = applied(given, mesh)
-        loads += [zero for item in given if isinstance(item, Force) for zero in item.ends(mesh)]
+        loads = applied_in_step(given, mesh)
         self.forces.set([item for item in loads if isinstance(item, NodalForce)])
         for heated in loads:
             if isinstance(heated, Temperature):

@@ -19,6 +19,7 @@ from corota.model.sections import thickness_at
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from corota.mesh import Mesh
     from corota.mesh.data import Ints
     from corota.model.loads import AppliedLoad, Fixed
 
@@ -63,8 +64,21 @@ def load_cards(writer: Writer, load: AppliedLoad, case: str = "") -> Iterator[st
         yield f"*DLOAD{option}\n{row}" if row else ""
 
 
-def ending(load: AppliedLoad, earlier: Sequence[AppliedLoad]) -> list[AppliedLoad]:
-    """A load as cards can express it: gravity of size zero ends that of every direction."""
+def ending(mesh: Mesh, load: AppliedLoad, earlier: Sequence[AppliedLoad]) -> list[AppliedLoad]:
+    """A load as cards can express it.
+
+    Gravity of size zero ends that of every direction. A nodal force of zero that ends none is not
+    written.
+    """
+    if isinstance(load, NodalForce) and not np.any(load.value):
+        nodes = mesh.node_indices(load.nodes)
+        ends = any(
+            isinstance(old, NodalForce)
+            and old.dof == load.dof
+            and np.isin(mesh.node_indices(old.nodes), nodes).any()
+            for old in earlier
+        )
+        return [load] if ends else []
     if not (isinstance(load, BodyForce) and load.kind == "gravity" and load.axis is None):
         return [load]
     found: dict[tuple[float, ...], AppliedLoad] = {}

@@ -16,7 +16,7 @@ from corota.io.deck.write.contact import surfaces
 from corota.io.deck.write.loads import boundary, ending, load_cards
 from corota.io.deck.write.text import DOFS, Writer, number, numbers, plain
 from corota.model.dofs import dof_index
-from corota.model.loads import applied, given_as, kind_of
+from corota.model.loads import applied, applied_in_step, given_as, kind_of
 from corota.model.paths import ArcLength, Label
 from corota.model.steps import (
     Buckle,
@@ -74,7 +74,7 @@ def step_cards(writer: Writer, steps: Sequence[Written]) -> Iterator[str]:
             kept = [x for x in own if given_as(x) not in step.ended]
             loads += [x for x in kept if not loaded or step.renews(kind_of(x))]
             loaded = loaded or not isinstance(step, SteadyState)
-        loads += applied(step.loads, model.mesh)
+        loads += applied_in_step(step.loads, model.mesh)
         head, procedure = cards(_Says(writer, step, index))
         yield head
         if step.restart != restart:
@@ -89,7 +89,7 @@ def step_cards(writer: Writer, steps: Sequence[Written]) -> Iterator[str]:
         for kind, card in _NEW.items():
             if step.renews(kind) or kind in step.ended:
                 yield f"*{card}, OP=NEW\n"
-        loads = [one for load in loads for one in ending(load, acting)]
+        loads = [one for load in loads for one in ending(writer.mesh, load, acting)]
         acting += loads
         written.loads += loads
         for load in loads:
