@@ -497,6 +497,14 @@ class Analysis:
             pairs,
             T=system.free.now.copy() if system.free.responds else None,
         )
+        if self.model.stages:
+            with system.timed("stages"):
+                if state.stages is None:
+                    from corota.analysis.stages import StageRecorder
+
+                    state.stages = StageRecorder(system, self.model)
+                reached = factor * self.steps[number - 1].period if kind == "static" else None
+                state.stages.add(system, state.u, frame, reached, state.notes)
         self.results.add(frame)
         with system.timed("write"):
             self.observers.increment(frame)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from corota.analysis.energies import Energies
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome
+    from corota.analysis.stages import StageRecorder
     from corota.analysis.terms.linearized import LinearMotion
     from corota.model.paths import CriticalPoint, Modes
     from corota.results.results import PointFields
@@ -74,6 +75,8 @@ class State:
         their step and increment.
     linear : LinearMotion or None
         Matrices that the last vibration modes belong to.
+    stages : StageRecorder or None
+        Paths of the stages of the model so far.
     recover : callable or None
         Gives fields and sums of a linear response, in place of those of `u`.
     failed : Outcome or None
@@ -101,6 +104,7 @@ class State:
     notes: list[str] = field(default_factory=list)
     strains: list[tuple[float, int, int]] = field(default_factory=lambda: [(0.0, 0, 0)] * 2)
     linear: LinearMotion | None = None
+    stages: StageRecorder | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
     failed: Outcome[Evaluation] | None = None
     loop: dict[str, Any] | None = None

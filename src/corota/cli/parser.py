@@ -406,6 +406,15 @@ def _reading(parser: argparse.ArgumentParser) -> None:
         help="value of a *PARAMETER of the deck, repeatable",
     )
     parser.add_argument(
+        "--stage",
+        dest="stages",
+        action="append",
+        metavar="'SET axis=AXIS ...'",
+        default=[],
+        help="measure a body in every increment: 'HUB axis=rotation point=0,0 MISES=400', "
+        "repeatable",
+    )
+    parser.add_argument(
         "--as-written",
         action="store_true",
         help="use reduced integration as written: CPS4R becomes Q4R instead of Q4I",

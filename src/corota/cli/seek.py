@@ -30,6 +30,7 @@ def run(args: Any, terminal: Terminal) -> int:
             "lenient": args.lenient,
             "allow_include": args.allow_include,
             "as_written": args.as_written,
+            "stages": tuple(args.stages),
         },
     )
 

@@ -39,6 +39,7 @@ def run(args: Any, terminal: Terminal) -> int:
             "lenient": args.lenient,
             "allow_include": args.allow_include,
             "as_written": args.as_written,
+            "stages": tuple(args.stages),
         },
     )
     table = Path(args.output or f"{deck.stem}_sweep.csv")

@@ -47,6 +47,7 @@ def read(
     allow_include: bool = False,
     as_written: bool = False,
     parameters: Mapping[str, float] | None = None,
+    stages: Sequence[str] = (),
 ) -> Model:
     """Read a model from a deck.
 
@@ -64,6 +65,9 @@ def read(
         Take reduced integration literally (CPS4R becomes Q4R instead of Q4I).
     parameters : mapping of str to float, optional
         Values of ``*PARAMETER`` names that replace those of the deck.
+    stages : sequence of str, optional
+        Bodies that are measured, such as ``"HUB axis=rotation"``
+        (:meth:`corota.model.stages.Stages.add_stage`).
 
     Returns
     -------
@@ -84,7 +88,7 @@ def read(
             f"{path}: no reader of models for {suffix or 'a file without an extension'}; "
             f"known: {', '.join(MODEL_READERS)} (meshes: corota.mesh.read)"
         )
-    return MODEL_READERS[suffix](
+    model: Model = MODEL_READERS[suffix](
         path,
         element_map=element_map,
         lenient=lenient,
@@ -92,6 +96,9 @@ def read(
         as_written=as_written,
         parameters=parameters,
     )
+    for text in stages:
+        model.add_stage(text)
+    return model
 
 
 def write(

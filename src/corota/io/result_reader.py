@@ -23,6 +23,7 @@ from corota.model.model import Model
 from corota.model.units import Units
 from corota.results.extremes import places_of
 from corota.results.results import Frame, PointFields, Results
+from corota.results.scalars import OF_FRAMES, where_missing
 from corota.results.table import CONTACT, TABLE
 from corota.results.variables import FORCES
 
@@ -41,7 +42,6 @@ _NODAL_ARRAYS = {row.stored for row in TABLE.values() if row.frame}
 #: Arrays of a block of point values that are no variables.
 AT_POINTS = ("cells", "shape functions", "reference volume", "position", FORCES)
 #: Scalars of a frame that are its own attributes.
-_OWN = ("step", "increment", "time", "step time", "load factor")
 
 
 def read_results(path: str | PathLike[str]) -> Results:
@@ -311,7 +311,7 @@ class FileFrames(Sequence[Frame]):
             self._force("reaction", "reaction moment", number),
             self._force("external force", "external moment", number),
             fields,
-            {k: v for k, v in scalars.items() if k not in _OWN},
+            {k: v for k, v in scalars.items() if k not in OF_FRAMES},
             **moving,
             pairs=self._pairs(number),
             absent=absent,
@@ -430,31 +430,13 @@ class FileResults(Results):
         return np.asarray(self._section)
 
     def scalar_names(self) -> list[str]:
-        """Names of the scalars of the frames."""
         return list(self._file["corota/frames"])
 
-    def history(self, name: str, at: Any = None, combine: Any = "auto") -> Any:
-        """One number for each frame; scalars are read without the frames."""
-        from corota.results.history import History
-
+    def scalar_values(self, name: str) -> Floats:
         assert isinstance(self.frames, FileFrames)
-        if name == "factor":
-            name = "load factor"
-        if name in self._file["corota/frames"]:
-            return History(name, self.frames.scalars(name), self)
-        return super().history(name, at, combine)
-
-    @property
-    def times(self) -> Floats:
-        assert isinstance(self.frames, FileFrames)
-        return self.frames.scalars("time")
-
-    @property
-    def stable(self) -> Floats:
-        assert isinstance(self.frames, FileFrames)
-        if "stable" not in self._file["corota/frames"]:
-            return np.full(len(self.frames), np.nan)
-        return self.frames.scalars("stable")
+        if name not in self._file["corota/frames"]:
+            return np.full(len(self.frames), where_missing(name))
+        return self.frames.scalars(name)
 
     def __enter__(self) -> FileResults:
         return self

@@ -50,6 +50,7 @@ from corota.model.loads import (
     Temperature as Temperature,
 )
 from corota.model.sections import Section as Section
+from corota.model.stages import Stage, Stages
 from corota.model.units import Units
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ model_lines = lazy("corota.model.summary:model_lines")
 FINDINGS_SHOWN = 10
 
 
-class Model(Loading, LineSections, InitialFields):
+class Model(Loading, LineSections, InitialFields, Stages):
     """Mesh, sections, materials, supports, loads and steps.
 
     Parameters
@@ -93,6 +94,8 @@ class Model(Loading, LineSections, InitialFields):
         Active in every step.
     loads : list of Load
         Act in every step; a deck's loads are in its steps.
+    stages : list of Stage
+        Bodies that are measured in every frame, see :meth:`stage`.
     steps : list of Step
         Used by :func:`corota.solve` when no step is given.
     velocities : list of InitialVelocity
@@ -137,6 +140,7 @@ class Model(Loading, LineSections, InitialFields):
         self.axes: list[LocalAxes] = []
         self.contacts: list[ContactPair] = []
         self.ties: list[Tie] = []
+        self.stages: list[Stage] = []
         self.steps: list[Step] = []
         self.notes: list[str] = []
         self.title = ""

@@ -100,7 +100,7 @@ def _constants(material: Material) -> list[str]:
 
 
 def joint_lines(model: Model) -> list[str]:
-    """Contact pairs, ties, rigid bodies, couplings, equations."""
+    """Contact pairs, ties, rigid bodies, couplings, equations, stages."""
     lines = []
     for pair in model.contacts:
         law = pair.law.kind if pair.law is not None else "hard"
@@ -121,6 +121,7 @@ def joint_lines(model: Model) -> list[str]:
             name = type(constraint).__name__.lower()
             counts[name] = counts.get(name, 0) + 1
     lines += [f"constraints: {count} {name}" for name, count in counts.items()]
+    lines += [f"stage {stage.name}: axis {stage.axis}" for stage in model.stages]
     return lines
 
 

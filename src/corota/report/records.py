@@ -13,6 +13,7 @@ import numpy as np
 
 from corota.errors import FileError
 from corota.io.regular_file import parse_json
+from corota.results.scalars import where_missing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -158,7 +159,10 @@ class Records:
     def rows_of_increments(self) -> None:
         """Make the rows of the log's increments, where there is no table."""
         self.names = list(dict.fromkeys(k for record in self.increments for k in record))
-        self.rows = [[_number(r.get(name, 0.0)) for name in self.names] for r in self.increments]
+        self.rows = [
+            [_number(r.get(name, where_missing(name))) for name in self.names]
+            for r in self.increments
+        ]
 
     def table(self) -> Floats:
         """Rows as an array, shape (n, number of names)."""
@@ -269,7 +273,9 @@ def records_of_results(results: Results) -> Records:
     histories = Histories(results.model, results.steps or results.model.steps)
     rows = [histories.row(f, int(f.scalars.get("attempts", 1))) for f in results.frames]
     found.names = list(dict.fromkeys(name for row in rows for name in row))
-    found.rows = [[float(row.get(name, 0.0)) for name in found.names] for row in rows]
+    found.rows = [
+        [float(row.get(name, where_missing(name))) for name in found.names] for row in rows
+    ]
     found.start = {"version": _version(), "job": results.model.name}
     failed = results.last_iterate is not None
     found.end = {

@@ -13,10 +13,10 @@ from corota.mesh.selection import names
 from corota.names import choose
 from corota.results.extremes import WIDTH, no_points, row_of
 from corota.results.history import History
+from corota.results.measures import MEASURES, stage_measure
 from corota.results.table import NODAL, TABLE
 from corota.results.variables import (
     ALIASES,
-    UNKNOWN,
     available,
     match_name,
     nodal_value,
@@ -33,15 +33,6 @@ if TYPE_CHECKING:
 
     Ints = NDArray[np.int64]
 
-#: Attributes of frames by the names of their histories.
-OF_FRAMES = {
-    "time": "time",
-    "step time": "step_time",
-    "load factor": "factor",
-    "factor": "factor",
-    "step": "step",
-    "increment": "increment",
-}
 #: Reducers over the nodes.
 REDUCERS = ("auto", "sum", "mean", "max", "min", "size")
 #: Vectors of forces by the names of their sizes: several nodes have a resultant.
@@ -60,13 +51,9 @@ def history(
 ) -> History:
     """A variable over the frames; see :meth:`corota.results.Results.history`."""
     frames = results.frames
-    if name in OF_FRAMES:
-        values = [float(getattr(f, OF_FRAMES[name])) for f in frames]
-        return History("load factor" if name == "factor" else name, np.array(values), results)
-    if any(name in f.scalars for f in frames):
-        missing = np.nan if name in UNKNOWN else 0.0
-        values = [f.scalars.get(name, missing) for f in frames]
-        return History(name, np.array(values), results)
+    name = "load factor" if name == "factor" else name
+    if scalar := _scalar(results, name, at):
+        return History(scalar, results.scalar_values(scalar), results)
     choose(combine, REDUCERS, "way to combine")
     name = variable_name(results, name)
     where = "" if at is None else f" at {_place(at)}"
@@ -81,6 +68,33 @@ def history(
         cells[results.mesh.cell_indices(at)] = True
     values = [_of_points(f, name, cells, combine) for f in frames]
     return History(name + where, np.array(values), results)
+
+
+def _scalar(results: ResultSource, name: str, at: Any) -> str:
+    """Scalar of the frames by its name, or by that of a measure and of a stage; else empty.
+
+    Raises
+    ------
+    InputError
+        If a measure is named without its stage, and there is not exactly one.
+    """
+    known = results.scalar_names()
+    if name in known:
+        return name
+    stages = {key.rpartition(": ")[0] for key in known if stage_measure(key)}
+    if stage_measure(name) and name.rpartition(": ")[0] in stages:
+        return name
+    if name not in MEASURES:
+        return ""
+    if at is None and len(stages) == 1:
+        return f"{stages.pop()}: {name}"
+    if isinstance(at, str) and at in stages:
+        return f"{at}: {name}"
+    defined = f"stages are {', '.join(sorted(stages))}" if stages else "the model has no stage"
+    raise InputError(
+        f"{name!r} is a measure of a stage, and {defined}; define it before the run, by "
+        "model.stage(...) or --stage, and write history(..., at=stage)"
+    )
 
 
 def variable_name(results: ResultSource, name: str) -> str:
@@ -98,11 +112,8 @@ def variable_name(results: ResultSource, name: str) -> str:
     try:
         return match_name(name, valid)
     except InputError as error:
-        scalars = sorted({key for f in (frames[0], frames[-1]) for key in f.scalars})
-        raise InputError(
-            f"{error.message}; of the whole: time, step time, load factor, step, increment, "
-            + ", ".join(scalars)
-        ) from None
+        scalars = [key for key in results.scalar_names() if not stage_measure(key)]
+        raise InputError(f"{error.message}; of the whole: {', '.join(scalars)}") from None
 
 
 def _all_nodes(results: ResultSource, at: Any) -> bool:

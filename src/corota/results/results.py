@@ -83,9 +83,24 @@ class Results(Brief):
     @property
     def stable(self) -> Floats:
         """1 for frames in stable equilibrium, 0 for unstable ones, nan if unknown; (n_frames,)."""
+        return self.scalar_values("stable")
+
+    def scalar_names(self) -> list[str]:
+        """Names of the scalars of the frames: those of the whole model, of pairs and of stages."""
+        from corota.results.scalars import OF_FRAMES
+
+        return list(dict.fromkeys([*OF_FRAMES, *(key for f in self.frames for key in f.scalars)]))
+
+    def scalar_values(self, name: str) -> Floats:
+        """A scalar of all frames, shape (n_frames,); in frames without it 0, or NaN if unknown."""
         import numpy as np
 
-        return np.array([f.scalars.get("stable", np.nan) for f in self.frames])
+        from corota.results.scalars import OF_FRAMES, where_missing
+
+        if name in OF_FRAMES:
+            return np.array([float(getattr(f, OF_FRAMES[name])) for f in self.frames])
+        missing = where_missing(name)
+        return np.array([f.scalars.get(name, missing) for f in self.frames])
 
     def add(self, frame: Frame) -> None:
         """Take a frame; with ``keep="last"`` it replaces the one before."""
@@ -101,9 +116,7 @@ class Results(Brief):
     @property
     def times(self) -> Floats:
         """Total times of the frames, shape (n_frames,) [time]."""
-        import numpy as np
-
-        return np.array([f.time for f in self.frames])
+        return self.scalar_values("time")
 
     @property
     def averaging(self) -> Averaging:

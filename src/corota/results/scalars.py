@@ -3,10 +3,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 import re
 
+from corota.results.measures import MEASURES, stage_measure
+
+#: Scalars of frames that are undefined where missing; others are 0 there.
+UNKNOWN = ("stable", "negative pivots")
+#: Attributes of frames that are scalars, too, by their names.
+OF_FRAMES = {
+    "step": "step",
+    "increment": "increment",
+    "time": "time",
+    "step time": "step_time",
+    "load factor": "factor",
+}
+#: Start of the entries of stages.
+STAGE = "STAGE: "
+
 #: Name to meaning and dimension, empty for a number without one. ``k`` is the number of a mode,
-#: ``PAIR`` the name of a contact pair. The energies are explained in docs/energy.md.
+#: ``PAIR`` the name of a contact pair, ``STAGE`` that of a stage (docs/measures.md). The energies
+#: are explained in docs/energy.md.
 SCALARS: dict[str, tuple[str, str]] = {
     "time": ("total time", "time"),
     "step time": ("time in the step", "time"),
@@ -63,6 +80,7 @@ SCALARS: dict[str, tuple[str, str]] = {
     "PAIR: force y": ("contact force on the slave surface", "force"),
     "PAIR: moment": ("its moment about the origin", "force*length"),
     "PAIR: area": ("closed area", "length^2"),
+    "PAIR: gap": ("smallest gap of its nodes", "length"),
     "PAIR: friction x": ("friction's part of the force", "force"),
     "PAIR: friction y": ("friction's part of the force", "force"),
     "PAIR: friction moment": ("friction's part of the moment", "force*length"),
@@ -81,6 +99,7 @@ SCALARS: dict[str, tuple[str, str]] = {
     "frequency": ("of the harmonic response", "1/time"),
     "largest amplitude": ("largest displacement of the harmonic response", "length"),
     "phase at largest": ("its phase [rad]", ""),
+    **{STAGE + name: (m.meaning, m.dimension) for name, m in MEASURES.items()},
 }
 
 
@@ -95,19 +114,34 @@ def general(name: str) -> str:
     if name in SCALARS:
         return name
     if ": " in name:
-        of_pair = re.fullmatch(r".*(: (?:friction )?(?:force [xy]|[xy]|moment|area))", name)
+        of_pair = re.fullmatch(r".*(: (?:friction )?(?:force [xy]|[xy]|moment|area|gap))", name)
         if of_pair:
             return f"PAIR{of_pair.group(1)}"
+    if measure := stage_measure(name):
+        return STAGE + measure
     return re.sub(r" \d+$", " k", name) if name[-1:].isdigit() else name
 
 
+def where_missing(name: str) -> float:
+    """Value of a scalar in a frame without it: NaN where it is undefined there, else 0.
+
+    Examples
+    --------
+    >>> where_missing("hub: instant center x"), where_missing("friction energy")
+    (nan, 0.0)
+    """
+    return math.nan if name in UNKNOWN or stage_measure(name) else 0.0
+
+
 def table() -> list[str]:
-    """The table of the documents: name, meaning, dimension."""
+    """The table of the documents: name, meaning, dimension; without those of stages."""
     rows = ["| history | meaning | dimension |", "| --- | --- | --- |"]
     for name, (meaning, dimension) in SCALARS.items():
+        if name.startswith(STAGE):
+            continue
         shown = meaning.replace("energy balance", "[energy balance](energy.md)")
         rows.append(f"| `{name}` | {shown} | {dimension} |")
     return rows
 
 
-__all__ = ["SCALARS", "general", "table"]
+__all__ = ["OF_FRAMES", "SCALARS", "general", "table", "where_missing"]

@@ -33,9 +33,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
 
-#: Scalars of frames that are undefined where missing; others are 0 there.
-UNKNOWN = ("stable", "negative pivots")
-
 #: Forces of the nodes on the elements, in files.
 FORCES = "nodal forces"
 

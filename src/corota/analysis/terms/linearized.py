@@ -9,6 +9,7 @@ procedures (frequencies, modal and harmonic response) use only these matrices.
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -50,6 +51,8 @@ class Linearized:
         Of their constraints; the committed ones by default, with what slips stuck.
     load : ndarray, shape (n_dofs,), optional
         Additional forces, for the geometric stiffness of constraints.
+    time : float, optional
+        Step time at which loads are taken; those that earlier steps reached by default.
 
     Attributes
     ----------
@@ -69,6 +72,7 @@ class Linearized:
         multipliers: Floats | None = None,
         states: list[NDArray[np.int8]] | None = None,
         load: Floats | None = None,
+        time: float | None = None,
     ) -> None:
         self.system = system
         self.u = u.copy()
@@ -80,8 +84,11 @@ class Linearized:
         self._pressures: Any = None
         self._hard: Any = None
         self._normal: Any = None
-        with system.conditions.as_reached(), system.elements.unloading(u):
-            self.at, coupling, self.states = linearized_contact(system, u, self.multipliers, states)
+        loads = system.conditions.as_reached() if time is None else nullcontext()
+        with loads, system.elements.unloading(u):
+            self.at, coupling, self.states = linearized_contact(
+                system, u, self.multipliers, states, time or 0.0
+            )
         self.link = self.at.link
         self.free = system.constraints.free
         self.nf = len(self.free)
@@ -97,6 +104,11 @@ class Linearized:
         k = self.sub(self.stiffness)
         size = abs(k).max() if k.nnz else 0.0
         self.symmetric = not k.nnz or abs(k - k.T).max() <= SKEW * size
+
+    @property
+    def reaction(self) -> Floats:
+        """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
+        return self.link.gather(self.at.residual)
 
     def _stiffness(self, coupling: Coupling) -> Any:
         at, more = self.at, coupling.geometric_stiffness

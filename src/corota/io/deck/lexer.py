@@ -32,7 +32,10 @@ READ = 8.0
 _QUOTED = re.compile(r'^"(.*)"$')
 #: A comment such as ``** UNITS: N, mm, t, s`` in the first bytes of a deck.
 _UNITS = re.compile(rb"^[ \t]*\*\*[ \t]*units[ \t]*[:=]([^\r\n]*)", re.IGNORECASE | re.MULTILINE)
-UNITS_WITHIN = 65536
+#: Comments such as ``** STAGE: HUB axis=rotation`` there.
+_STAGE = re.compile(rb"^[ \t]*\*\*[ \t]*stage[ \t]*[:=]([^\r\n]*)", re.IGNORECASE | re.MULTILINE)
+#: How far into a deck these comments are read [bytes].
+HEAD = 65536
 _BLANK = re.compile(r'[\s"]+')
 
 
@@ -210,6 +213,8 @@ class Lexer:
         self.diagnostics: list[Diagnostic] = []
         #: What a comment ``** UNITS: N, mm`` says, and where.
         self.units: tuple[str, Location] | None = None
+        #: What comments ``** STAGE: HUB axis=rotation`` say, and where.
+        self.stages: list[tuple[str, Location]] = []
         self._root = path.resolve().parent
         self._bytes = self._opens = 0
         self.files: set[Path] = {path.resolve()}
@@ -227,19 +232,23 @@ class Lexer:
             data = self._load(self.path)
         except (OSError, ValueError) as error:
             raise FileError(f"{self.path}: {_why(error)}") from error
-        self._find_units(data)
+        self._read_comments(data)
         self.scan(self._source(str(self.path), data), [self.path.resolve()])
         if lost := self._parameters.unused():
             known = ", ".join(name for name in self._parameters.values if name != "pi") or "none"
             raise InputError(f"{self.path}: no *PARAMETER named {lost[0]}; there are {known}")
         return self.cards
 
-    def _find_units(self, data: bytes) -> None:
-        """Find the comment that names the units, near the head of the deck."""
-        found = _UNITS.search(data, 0, UNITS_WITHIN)
-        if found is not None:
-            line = data.count(b"\n", 0, found.start(1)) + 1
-            self.units = decode(found.group(1)).strip(), Location(str(self.path), line)
+    def _read_comments(self, data: bytes) -> None:
+        """Read the comments that name the units and the stages, near the head of the deck."""
+
+        def said(comment: re.Match[bytes]) -> tuple[str, Location]:
+            line = data.count(b"\n", 0, comment.start(1)) + 1
+            return decode(comment.group(1)).strip(), Location(str(self.path), line)
+
+        units = _UNITS.search(data, 0, HEAD)
+        self.units = None if units is None else said(units)
+        self.stages = [said(comment) for comment in _STAGE.finditer(data, 0, HEAD)]
 
     def _source(self, name: str, data: bytes) -> Source:
         """The text of a file with its parameters put in."""

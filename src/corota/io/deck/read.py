@@ -88,6 +88,11 @@ def read_deck(
     if deck.n_errors or model is None:
         raise DeckError(deck.diagnostics)
     _name_units(model, lexer)
+    for text, where in lexer.stages:
+        try:
+            model.add_stage(text)
+        except InputError as error:
+            raise DeckError([Diagnostic("error", error.message, where)]) from None
     first = str(Path(path).resolve())
     model.sources = [first, *sorted({str(file) for file in lexer.files} - {first})]
     model.start = None if saved is None else saved.state

@@ -15,6 +15,7 @@ from corota.model.units import Units
 from corota.results.derived import DERIVED
 from corota.results.extremes import WIDTH, row_of
 from corota.results.results import Results
+from corota.results.scalars import where_missing
 from corota.results.table import DIMENSIONS, NODAL
 from corota.results.variables import labelled, nodal_value
 
@@ -214,7 +215,7 @@ def _line(names: Sequence[str]) -> str:
 
 
 def _values(row: dict[str, float], names: Sequence[str]) -> str:
-    return ",".join(f"{row.get(name, 0.0):.12g}" for name in names) + "\n"
+    return ",".join(f"{row.get(name, where_missing(name)):.12g}" for name in names) + "\n"
 
 
 class CsvWriter:

@@ -25,6 +25,7 @@ from corota.lazy import lazy
 from corota.results import variables as vf
 from corota.results.averaging import AVERAGING, Averaging, section_of_cells
 from corota.results.extremes import rows_of
+from corota.results.scalars import where_missing
 from corota.results.table import INVARIANTS
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def _offsets(place: str) -> str:
 
 def _missing(place: str, name: str) -> float:
     """Fill value of an array that a frame does not have."""
-    unknown = place == EXTREMES or (place == "corota/frames" and name in vf.UNKNOWN)
+    unknown = place == EXTREMES or (place == "corota/frames" and np.isnan(where_missing(name)))
     return np.nan if unknown else 0.0
 
 

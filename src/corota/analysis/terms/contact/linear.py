@@ -28,7 +28,7 @@ COMPLIANCE = 1e-10
 
 
 def linearized_contact(
-    system: System, u: Floats, multipliers: Floats, states: States | None
+    system: System, u: Floats, multipliers: Floats, states: States | None, time: float
 ) -> tuple[Evaluation, Coupling, States]:
     """Evaluation of the bodies with the forces of contact, the rows of contact, and its states.
 
@@ -38,14 +38,16 @@ def linearized_contact(
     multipliers : ndarray, shape (n_multipliers,)
     states : list of ndarray or None
         Of the constraints; the committed ones by default, with what slips stuck.
+    time : float
+        Step time.
     """
     contact_term = system.contact_term
     if not contact_term.pairs:
         none, entries = np.zeros(0), Triplets.join([])
         coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
-        return system.evaluate(u.copy(), 0.0), coupling, []
+        return system.evaluate(u.copy(), time), coupling, []
     contact = ContactEquations(system, system)
-    found = contact.evaluate(np.concatenate([u, multipliers]), 0.0)
+    found = contact.evaluate(np.concatenate([u, multipliers]), time)
     if states is None and contact_term.at is not None and contact_term.at.states:
         states = contact_term.at.states
     elif states is None:

@@ -29,7 +29,7 @@ def output(
     values : ndarray, shape (n_nodes, 5), or None without pairs
         See :attr:`corota.results.Frame.C`.
     sums : dict of str to float
-        Force on the slave surface, its moment about the origin, and energies.
+        Force on the slave surface, its moment about the origin, area, gap, and energies.
     pairs : dict of str to ndarray, shape (n_nodes, 5)
         See :attr:`corota.results.Frame.pairs`.
     """
@@ -49,6 +49,7 @@ def output(
             if not pair.tied:
                 rows = np.zeros((pair.n, 5))
                 rows[:, 2] = pair.first_gap
+                sums[f"{pair.name}: gap"] = float(rows[:, 2].min(initial=pair.reach))
                 for table in (values, *([each[pair.name]] if pair.name in each else [])):
                     _spread(table, pair, rows[pair.owner])
             continue
@@ -75,6 +76,7 @@ def output(
             # A corner that presses alone counts as a node does.
             area[: pair.of_surfaces] = 0.0
             area[pair.backed(terms, state)] = 0.0
+            sums[f"{pair.name}: gap"] = float(gap.min(initial=pair.reach))
             sums[f"{pair.name}: area"] = float(closed.sum() + area.sum())
         if pair.friction:
             shear = resultant(pair, acting, np.zeros_like(p), q, x)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.sections import Section
+    from corota.model.stages import Stage
     from corota.model.steps import Step
 
 #: Relative difference of numbers that counts as rounding of a changed form, such as a size and
@@ -102,6 +103,14 @@ def _read_content(writer: DeckWriter, again: Model) -> dict[str, Any]:
     return found
 
 
+def _stage(mesh: Mesh, stage: Stage) -> tuple[Any, ...]:
+    against = None if stage.against is None else sorted(mesh.node_indices(stage.against).tolist())
+    nodes, place = sorted(mesh.node_indices(stage.nodes).tolist()), stage.place(mesh).tolist()
+    values = {key: np.ravel(value).tolist() for key, value in stage.allowable.items()}
+    more = (stage.name, stage.direction.tolist(), stage.input, stage.stiffness)
+    return (nodes, place, against, values, *more)
+
+
 def _model(model: Model) -> dict[str, Any]:
     mesh = model.mesh
     found: dict[str, Any] = {
@@ -121,6 +130,7 @@ def _model(model: Model) -> dict[str, Any]:
         (int(n), mass.mass) for mass in model.point_masses for n in mesh.node_indices(mass.nodes)
     )
     found["the constraints"] = _constraints(model)
+    found["the stages"] = [_stage(mesh, stage) for stage in model.stages]
     found["the dashpots"] = [(d.first, d.second, d.c) for d in model.dashpots]
     found["the initial temperatures"] = _nodal(mesh, model.initial_temperatures)
     found["the initial stresses"] = dict(_stresses(model))

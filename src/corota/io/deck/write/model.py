@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from corota.model.materials import Material
     from corota.model.model import Model
     from corota.model.sections import Section
+    from corota.model.stages import Stage
 
 
 def write_deck(
@@ -112,9 +114,16 @@ class _Writer:
         yield f"*HEADING\n{model.title or model.name}\n"
         if model.unit_system:
             yield f"** UNITS: {model.unit_system}\n"
+        for stage in model.stages:
+            yield f"** STAGE: {self._stage(stage)}\n"
         yield from self._mesh()
         yield from self._sets
         yield from tail
+
+    def _stage(self, stage: Stage) -> str:
+        """A stage as the text of a comment."""
+        against = None if stage.against is None else self.node_set(stage.against)
+        return replace(stage, nodes=self.node_set(stage.nodes), against=against).text
 
     def _mesh(self) -> Iterator[str]:
         mesh = self.mesh
