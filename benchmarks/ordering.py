@@ -1,4 +1,4 @@
-"""Order of elimination from coordinates against METIS: processor time, entries, multiplications.
+"""Order of elimination from the edges alone, and from coordinates: time, entries, work.
 
 Both analyze the pattern of the first factorization of each problem, on one thread, in turn.
 ``--problems P1:40k P2:40k P1:1M:Q4D``
@@ -70,12 +70,12 @@ def main() -> int:
     for text in args.problems:
         problem, size, element = (*text.split(":"), "Q4I")[:3]
         pattern, points = pattern_of(problem, size, element)
-        metis = analyzed(pattern, np.zeros((0, 2)))
+        edges = analyzed(pattern, np.zeros((0, 2)))
         placed = analyzed(pattern, points)
-        ratios = [f"{b / a:.2f}" for a, b in zip(metis, placed, strict=True)]
-        rows.append([problem, element, len(pattern[0]) - 1, *metis, *placed, *ratios])
+        ratios = [f"{b / a:.2f}" for a, b in zip(edges, placed, strict=True)]
+        rows.append([problem, element, len(pattern[0]) - 1, *edges, *placed, *ratios])
     head = ["problem", "element", "equations"]
-    for kind in ("METIS", "coordinates", "ratio of"):
+    for kind in ("edges", "coordinates", "ratio of"):
         head += [f"{kind} {what}" for what in ("seconds", "entries", "multiplications")]
     report("Order of elimination, one thread", head, rows)
     return 0

@@ -29,4 +29,4 @@ fi
 
 compiler=${CC:-cc}
 command -v "${compiler%% *}" >/dev/null 2>&1 ||
-    stop "a C compiler is missing: install gcc or clang (Debian: build-essential), or set CC"
+    stop "a linker is missing: install gcc or clang (Debian: build-essential), or set CC"

@@ -442,10 +442,7 @@ fn finish_dilatation<E, T: Real, const N: usize, const M: usize, const A: usize>
 }
 
 /// Local force and stiffness of an element with local dofs `q`.
-///
-/// Out of line: all that evaluates single elements shares one instance of each element. Not for
-/// packs, which are compiled for the processor's instructions only where they are inlined.
-#[inline(never)]
+#[inline(always)]
 pub fn local<E, T: Real, const N: usize, const M: usize, const A: usize>(
     x: &Nodal<T, N, 2>,
     q: &Nodal<T, N, M>,
@@ -457,8 +454,24 @@ where
     E: Element<N, M, A>,
 {
     let mut out = Local::zero();
-    E::law_into(x, q, section, history, tangent, &mut out);
+    single_into::<E, T, N, M, A>(x, q, section, history, tangent, &mut out);
     out
+}
+
+/// [`Element::law_into`] out of line: all that evaluates single elements shares one instance of
+/// each. Not for packs, which are compiled for the processor's instructions where they are inlined.
+#[inline(never)]
+pub fn single_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    tangent: bool,
+    out: &mut Local<T, N, M>,
+) where
+    E: Element<N, M, A>,
+{
+    E::law_into(x, q, section, history, tangent, out);
 }
 
 /// [`local`] into a zero `out`: a matrix of packs is too large to be moved about.

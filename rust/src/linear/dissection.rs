@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Nested dissection of a planar mesh by the coordinates of its nodes.
+//! Nested dissection of the graph of a mesh.
 //!
 //! A part of the mesh is cut by straight lines in a few directions. Nodes are counted by their
 //! distance along a direction, which gives the separators of all its cuts in one pass over the
-//! edges; the best one of all directions is moved to the smallest one near it. Parts that are small
+//! edges; the best one of all directions is moved to the smallest one near it. Parts without
+//! coordinates, or with edges that do not follow them (couplings across the model, layers), take
+//! directions from the edges alone ([`super::layout`]). Parts that are small
 //! enough are ordered by minimum degree. Halves of a part have no edge in common, so threads take
 //! them in any order with the same result.
 //!
 //! Source: George & Liu, *Computer Solution of Large Sparse Positive Definite Systems* (1981),
 //! ch. 8; Heath & Raghavan, *SIAM J. Matrix Anal. Appl.* 16 (1995) 235-253, for cuts by coordinates.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use super::layout::{Layout, PAIRS};
 use super::minimum_degree;
 use super::separator::Band;
 
@@ -31,14 +34,19 @@ const BALANCE: f64 = 4.0;
 const BAND: f64 = 0.03;
 const MOVES: usize = 4;
 
-/// Nodes of a part that cannot be cut, at most; more lie at one place in no mesh.
+/// Nodes of a part without a cut that are ordered by minimum degree, at most. In larger ones, where
+/// nearly all nodes are neighbours, the degrees of the whole graph serve.
 const CLUSTER: usize = 1024;
-/// Parts of more nodes are judged: a separator with more than so many times the square root of
-/// their number has no use of the coordinates (couplings across the model, layers).
+/// Parts of more nodes are judged: with more than so many times the square root of their number in
+/// the separator, their edges do not follow the coordinates.
 const JUDGED: usize = 2048;
 const POOR: usize = 4;
 
-/// Number of vertices in separators of parts cut before.
+/// A vertex with so many times the mean number of neighbours (the reference node of a coupling) is
+/// a separator by itself, unless there are many of them.
+const HUB: usize = 8;
+
+/// Number of vertices in separators of parts cut before, and of hubs.
 const DONE: u32 = u32::MAX;
 
 /// Side of a cut.
@@ -46,16 +54,16 @@ const BEFORE: u8 = 0;
 const BEHIND: u8 = 1;
 const SEPARATOR: u8 = 2;
 
-/// A graph with the coordinates of its vertices.
+/// A graph with weighted vertices and their coordinates; `points` are empty if there are none.
 #[derive(Clone, Copy)]
-pub struct PlacedGraph<'a> {
+pub struct Graph<'a> {
     pub xadj: &'a [u32],
     pub adjncy: &'a [u32],
     pub weights: &'a [i32],
     pub points: &'a [[f64; 2]],
 }
 
-impl PlacedGraph<'_> {
+impl Graph<'_> {
     pub(super) fn neighbours(&self, v: u32) -> &[u32] {
         &self.adjncy[self.xadj[v as usize] as usize..self.xadj[v as usize + 1] as usize]
     }
@@ -69,6 +77,7 @@ impl PlacedGraph<'_> {
 #[derive(Default)]
 struct Scratch {
     points: Vec<[f64; 2]>,
+    layout: Layout,
     steps: Vec<[i64; 2]>,
     sides: Vec<u8>,
     in_band: Vec<u32>,
@@ -80,67 +89,70 @@ struct Scratch {
 }
 
 struct Dissection<'a> {
-    graph: PlacedGraph<'a>,
+    graph: Graph<'a>,
     /// A number of each vertex in its part, `DONE` in separators. Those of a part are read and
     /// written by its thread alone: other parts are separated from it.
     number: &'a [AtomicU32],
     /// Whether halves are given to the threads of rayon's current pool.
     shared: bool,
-    /// Whether a separator was too large.
-    poor: AtomicBool,
 }
 
-/// Order of elimination of a graph; none if its edges do not follow the coordinates.
-pub fn dissect(graph: PlacedGraph<'_>, shared: bool) -> Option<Vec<u32>> {
-    let n = graph.points.len() as u32;
-    let mut order: Vec<u32> = (0..n).collect();
+/// Order of elimination of a graph, always the same.
+pub fn dissect(graph: Graph<'_>, shared: bool) -> Vec<u32> {
+    let n = graph.weights.len() as u32;
+    let is_hub =
+        |&v: &u32| graph.neighbours(v).len() * graph.weights.len() > HUB * graph.adjncy.len();
+    let (mut hubs, mut order): (Vec<u32>, Vec<u32>) = (0..n).partition(is_hub);
+    if hubs.len() > graph.weights.len().isqrt() {
+        (hubs, order) = (Vec::new(), (0..n).collect());
+    }
     let number: Vec<AtomicU32> = (0..n).map(AtomicU32::new).collect();
-    let dissection = Dissection { graph, number: &number, shared, poor: AtomicBool::new(false) };
-    dissection.order(&mut order, &mut Scratch::default());
-    (!dissection.poor.load(Relaxed)).then_some(order)
+    hubs.iter().for_each(|&v| number[v as usize].store(DONE, Relaxed));
+    let dissection = Dissection { graph, number: &number, shared };
+    dissection.order(&mut order, !graph.points.is_empty(), &mut Scratch::default());
+    order.extend(hubs);
+    order
 }
 
 impl Dissection<'_> {
-    /// Puts the vertices of a part into the order of their elimination.
-    fn order(&self, part: &mut [u32], scratch: &mut Scratch) {
+    /// Puts the vertices of a part into the order of their elimination; by coordinates, if `placed`.
+    fn order(&self, part: &mut [u32], placed: bool, scratch: &mut Scratch) {
         if part.len() <= LEAF {
             minimum_degree::order(&self.graph, part, &mut scratch.leaf);
             return;
         }
-        let Some((low, high)) = self.cut(part, scratch) else {
+        let Some((low, high, placed)) = self.cut(part, placed, scratch) else {
             if part.len() <= CLUSTER {
                 minimum_degree::order(&self.graph, part, &mut scratch.leaf);
             } else {
-                self.poor.store(true, Relaxed);
+                part.sort_by_key(|&v| self.graph.neighbours(v).len());
             }
             return;
         };
-        if part.len() > JUDGED && part.len() - high > POOR * part.len().isqrt() {
-            self.poor.store(true, Relaxed);
-        }
-        if self.poor.load(Relaxed) {
-            return;
-        }
         let (first, rest) = part.split_at_mut(low);
         let second = &mut rest[..high - low];
         if self.shared && first.len() + second.len() > SHARED {
             rayon::join(
-                || self.order(first, scratch),
-                || self.order(second, &mut Scratch::default()),
+                || self.order(first, placed, scratch),
+                || self.order(second, placed, &mut Scratch::default()),
             );
         } else {
-            self.order(first, scratch);
-            self.order(second, scratch);
+            self.order(first, placed, scratch);
+            self.order(second, placed, scratch);
         }
     }
 
-    /// Cuts a part: both halves, then the separator. Returns the ends of the halves.
-    fn cut(&self, part: &mut [u32], scratch: &mut Scratch) -> Option<(usize, usize)> {
-        self.straight(part, scratch)?;
-        for _ in 0..MOVES {
-            if !self.moves(part, scratch) {
-                break;
-            }
+    /// Cuts a part: both halves, then the separator. Returns the ends of the halves, and whether the
+    /// edges follow the coordinates.
+    fn cut(
+        &self,
+        part: &mut [u32],
+        mut placed: bool,
+        scratch: &mut Scratch,
+    ) -> Option<(usize, usize, bool)> {
+        placed = placed && self.by_coordinates(part, scratch);
+        if !placed && !self.by_edges(part, scratch) {
+            return None;
         }
         let Scratch { sides, rest: [behind, separator], .. } = scratch;
         behind.clear();
@@ -163,32 +175,90 @@ impl Dissection<'_> {
         let last = end + behind.len();
         part[end..last].copy_from_slice(behind);
         part[last..].copy_from_slice(separator);
-        Some((end, last))
+        Some((end, last, placed))
     }
 
-    /// The best straight cut: side of each vertex of the part; none if all lie at one place.
-    fn straight(&self, part: &[u32], scratch: &mut Scratch) -> Option<()> {
-        let Scratch { points, steps, sides, .. } = scratch;
+    /// The best cut along straight lines; whether there is a good one.
+    fn by_coordinates(&self, part: &[u32], scratch: &mut Scratch) -> bool {
+        let mut points = std::mem::take(&mut scratch.points);
         points.clear();
         points.extend(part.iter().map(|&v| self.graph.points[v as usize]));
-        let total: i64 = part.iter().map(|&v| self.graph.weight(v)).sum();
+        let along = |d: [f64; 2], k: usize| d[0] * points[k][0] + d[1] * points[k][1];
         let directions: [[f64; 2]; DIRECTIONS] = std::array::from_fn(|k| {
             let (sin, cos) = (std::f64::consts::PI * k as f64 / DIRECTIONS as f64).sin_cos();
             [cos, sin]
         });
-        let along = |d: [f64; 2], x: &[f64; 2]| d[0] * x[0] + d[1] * x[1];
+        let good = self.straight(part, scratch, &directions, along) && {
+            self.refine(part, scratch);
+            let separator = scratch.sides.iter().filter(|&&side| side == SEPARATOR).count();
+            part.len() <= JUDGED || separator <= POOR * part.len().isqrt()
+        };
+        scratch.points = points;
+        good
+    }
+
+    /// The best cut along directions that the edges give; whether there is one.
+    fn by_edges(&self, part: &[u32], scratch: &mut Scratch) -> bool {
+        let mut layout = std::mem::take(&mut scratch.layout);
+        for (k, &v) in part.iter().enumerate() {
+            self.number[v as usize].store(k as u32, Relaxed);
+        }
+        layout.clear();
+        for &v in part {
+            let near = self.graph.neighbours(v).iter();
+            let near = near.map(|&u| self.number[u as usize].load(Relaxed));
+            layout.list.extend(near.filter(|&k| k != DONE));
+            layout.start.push(layout.list.len() as u32);
+        }
+        let found = if let Some(inside) = layout.place() {
+            scratch.sides.clear();
+            scratch.sides.extend(inside.iter().map(|&yes| if yes { BEFORE } else { BEHIND }));
+            true
+        } else {
+            let places = &layout.places;
+            let along = |[i, j]: [usize; 2], k: usize| places[k][i] - places[k][j];
+            let cut = self.straight(part, scratch, &PAIRS, along);
+            if cut {
+                self.refine(part, scratch);
+            }
+            cut
+        };
+        scratch.layout = layout;
+        found
+    }
+
+    /// Moves the separator as long as it becomes better.
+    fn refine(&self, part: &[u32], scratch: &mut Scratch) {
+        for _ in 0..MOVES {
+            if !self.moves(part, scratch) {
+                break;
+            }
+        }
+    }
+
+    /// The best straight cut in the given directions, side of each vertex of the part; whether
+    /// there is one. `along` is the distance of a vertex, by its place in the part, in a direction.
+    fn straight<D: Copy, const COUNT: usize>(
+        &self,
+        part: &[u32],
+        scratch: &mut Scratch,
+        directions: &[D; COUNT],
+        along: impl Fn(D, usize) -> f64,
+    ) -> bool {
+        let Scratch { steps, sides, .. } = scratch;
+        let total: i64 = part.iter().map(|&v| self.graph.weight(v)).sum();
         let spans = directions.map(|d| {
-            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-                let s = along(d, x);
+            (0..part.len()).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], k| {
+                let s = along(d, k);
                 [low.min(s), high.max(s)]
             })
         });
         let longest = spans.iter().fold(0.0_f64, |a, s| a.max(s[1] - s[0]));
         let slots = 16 * part.len().isqrt() + 64;
-        let number = |d: [f64; 2], [low, high]: [f64; 2]| {
+        let number = |d: D, [low, high]: [f64; 2]| {
             let scale = (slots - 1) as f64 / (high - low);
-            for (&v, x) in part.iter().zip(points.iter()) {
-                let slot = ((along(d, x) - low) * scale) as u32;
+            for (k, &v) in part.iter().enumerate() {
+                let slot = ((along(d, k) - low) * scale) as u32;
                 self.number[v as usize].store(slot, Relaxed);
             }
         };
@@ -225,7 +295,7 @@ impl Dissection<'_> {
                 }
             }
         }
-        let (_, k, slot) = best?;
+        let Some((_, k, slot)) = best else { return false };
         if k != last {
             number(directions[k], spans[k]);
         }
@@ -238,7 +308,7 @@ impl Dissection<'_> {
                 false => BEHIND,
             }
         }));
-        Some(())
+        true
     }
 
     /// Least number of a vertex and its neighbours.
@@ -339,7 +409,6 @@ fn cost(before: i64, behind: i64, separator: i64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::metis;
 
     /// Graph of a grid of quadrilaterals: neighbours share an element. `bend` turns it to a ring.
     fn grid(nx: i64, ny: i64, bend: f64) -> (Vec<u32>, Vec<u32>, Vec<[f64; 2]>) {
@@ -386,20 +455,73 @@ mod tests {
         count + n
     }
 
+    fn is_complete(order: &[u32], n: usize) -> bool {
+        let mut sorted = order.to_vec();
+        sorted.sort_unstable();
+        sorted.into_iter().eq(0..n as u32)
+    }
+
+    /// Fill of METIS 5.1 (`METIS_NodeND`, seed 1) for the same graphs.
+    const METIS: [(i64, i64, f64, usize); 4] = [
+        (200, 30, 0.0, 147_697),
+        (75, 80, 0.0, 168_015),
+        (150, 40, 3.0, 156_771),
+        (60, 100, 1.5, 168_911),
+    ];
+
     #[test]
     fn orders_are_complete_and_fill_no_more_than_those_of_metis() {
-        for (nx, ny, bend) in [(200, 30, 0.0), (75, 80, 0.0), (150, 40, 3.0), (60, 100, 1.5)] {
+        for (nx, ny, bend, theirs) in METIS {
             let (xadj, adjncy, points) = grid(nx, ny, bend);
-            let weights = vec![2; points.len()];
-            let graph =
-                PlacedGraph { xadj: &xadj, adjncy: &adjncy, weights: &weights, points: &points };
-            let order = dissect(graph, false).unwrap();
-            let mut sorted = order.clone();
-            sorted.sort_unstable();
-            assert!(sorted.iter().enumerate().all(|(k, &v)| k as u32 == v));
-            let other = metis::dissect(&xadj, &adjncy, &weights).unwrap();
-            let (own, theirs) = (fill(&xadj, &adjncy, &order), fill(&xadj, &adjncy, &other));
-            assert!(100 * own <= 103 * theirs, "{nx} x {ny}, {bend}: {own} entries, {theirs}");
+            let n = points.len();
+            let weights = vec![2; n];
+            let mixed: Vec<_> = (0..n).map(|k| points[k * 1009 % n]).collect();
+            for points in [points, Vec::new(), mixed, vec![[1.0, 2.0]; n]] {
+                let graph =
+                    Graph { xadj: &xadj, adjncy: &adjncy, weights: &weights, points: &points };
+                let order = dissect(graph, false);
+                assert!(is_complete(&order, n));
+                let own = fill(&xadj, &adjncy, &order);
+                assert!(100 * own <= 103 * theirs, "{nx} x {ny}, {bend}: {own} entries, {theirs}");
+            }
+        }
+    }
+
+    /// Graph of a list of edges.
+    fn graph_of(n: usize, edges: &[(usize, usize)]) -> (Vec<u32>, Vec<u32>) {
+        let mut near = vec![Vec::new(); n];
+        for &(a, b) in edges {
+            near[a].push(b as u32);
+            near[b].push(a as u32);
+        }
+        near.iter_mut().for_each(|list| list.sort_unstable());
+        let mut xadj = vec![0];
+        near.iter().for_each(|list| xadj.push(xadj[xadj.len() - 1] + list.len() as u32));
+        (xadj, near.concat())
+    }
+
+    #[test]
+    fn graphs_that_are_no_mesh_have_little_fill() {
+        let n = 3000;
+        let star: Vec<_> = (1..n).map(|k| (0, k)).collect();
+        let path: Vec<_> = (1..n).map(|k| (k - 1, k)).collect();
+        let pairs: Vec<_> = (0..n / 2).map(|k| (2 * k, 2 * k + 1)).collect();
+        let two_paths: Vec<_> = path.iter().copied().filter(|&(a, _)| a != n / 2).collect();
+        let whole: Vec<_> = (0..n).flat_map(|a| (0..a.min(60)).map(move |b| (a, b))).collect();
+        for (edges, most) in [
+            (star, 2 * n),
+            (path, 4 * n),
+            (pairs, 2 * n),
+            (two_paths, 4 * n),
+            (whole, 62 * n),
+            (vec![], n),
+        ] {
+            let (xadj, adjncy) = graph_of(n, &edges);
+            let graph = Graph { xadj: &xadj, adjncy: &adjncy, weights: &vec![1; n], points: &[] };
+            let order = dissect(graph, false);
+            assert!(is_complete(&order, n));
+            let own = fill(&xadj, &adjncy, &order);
+            assert!(own <= most, "{} edges: {own} entries, more than {most}", edges.len());
         }
     }
 
@@ -407,23 +529,11 @@ mod tests {
     fn threads_do_not_change_the_order() {
         let (xadj, adjncy, points) = grid(120, 90, 1.0);
         let weights = vec![2; points.len()];
-        let graph =
-            PlacedGraph { xadj: &xadj, adjncy: &adjncy, weights: &weights, points: &points };
-        let alone = dissect(graph, false);
-        let shared = crate::base::pool::run(3, |_| dissect(graph, true));
-        assert!(alone.is_some() && alone == shared);
-    }
-
-    #[test]
-    fn coordinates_that_say_nothing_are_refused() {
-        let (xadj, adjncy, points) = grid(80, 80, 0.0);
-        let n = points.len();
-        let weights = vec![2; n];
-        let mixed: Vec<_> = (0..n).map(|k| points[k * 1009 % n]).collect();
-        for points in [mixed, vec![[1.0, 2.0]; n]] {
-            let graph =
-                PlacedGraph { xadj: &xadj, adjncy: &adjncy, weights: &weights, points: &points };
-            assert!(dissect(graph, false).is_none());
+        for points in [points, Vec::new()] {
+            let graph = Graph { xadj: &xadj, adjncy: &adjncy, weights: &weights, points: &points };
+            let alone = dissect(graph, false);
+            let shared = crate::base::pool::run(3, |_| dissect(graph, true));
+            assert_eq!(alone, shared);
         }
     }
 }

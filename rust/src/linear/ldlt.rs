@@ -58,7 +58,7 @@ pub struct Ldlt {
 
 impl Ldlt {
     /// Sets the coordinates of the nodes, by the numbers that patterns give them. The order of
-    /// elimination is found from them; without them by the graph alone, which takes longer.
+    /// elimination is found from them; without them from the edges, which takes longer.
     pub fn set_points(&mut self, points: Vec<[f64; 2]>) {
         self.points = points;
     }

@@ -4,7 +4,7 @@
 //! The vertices that a part touches are eliminated later; they count in the degrees. Rows of the
 //! elimination graph are sets of bits, so that all degrees are exact.
 
-use super::dissection::PlacedGraph;
+use super::dissection::Graph;
 
 /// Bits of a word.
 const BITS: usize = 64;
@@ -20,7 +20,7 @@ pub struct Scratch {
 }
 
 /// Puts a part into the order of its elimination: least degree first, then as it was.
-pub fn order(graph: &PlacedGraph<'_>, part: &mut [u32], scratch: &mut Scratch) {
+pub fn order(graph: &Graph<'_>, part: &mut [u32], scratch: &mut Scratch) {
     let n = part.len();
     let Scratch { known, rows, pivot, degree, found } = scratch;
     part.sort_unstable();

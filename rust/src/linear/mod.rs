@@ -3,8 +3,7 @@
 //!
 //! [`Ldlt`] is a multifrontal LDLᵀ of our own on faer's dense kernels. The graph of
 //! the nodes is dissected once per pattern, by the coordinates of the nodes where they
-//! are known and the graph is large, otherwise by METIS; the elimination tree that
-//! follows is cut into pieces that threads take as they come free, and the fronts
+//! are known, otherwise by its edges alone; the elimination tree that follows is cut into pieces that threads take as they come free, and the fronts
 //! above them share their tiles. Every front adds its children in a fixed order and
 //! works in tiles of fixed size, so one thread and many give the same bits.
 //! Columns without an acceptable pivot wait for the parent front, so indefinite
@@ -12,7 +11,7 @@
 //! rank deficiency of the matrix.
 //!
 //! What was tried, Q4 plane stress, numeric refactorisation on two cores of an AMD
-//! EPYC with AVX-512 (repeat with `python -m benchmarks linear_solver`):
+//! EPYC with AVX-512 (this module: `python -m benchmarks linear_solver`):
 //!
 //! | seconds | 250 thousand dofs | 1 million |
 //! | --- | --- | --- |
@@ -41,10 +40,9 @@ pub mod dense;
 pub mod dissection;
 pub mod error;
 pub mod etree;
-pub mod faer_ldlt;
+pub mod layout;
 pub mod ldlt;
 pub mod lu;
-mod metis;
 pub mod minimum_degree;
 pub mod multifrontal;
 pub mod nullspace;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Fill-reducing elimination order: nested dissection of the node graph, by the coordinates of the
-//! nodes where they are known, otherwise by METIS.
+//! Fill-reducing elimination order: nested dissection of the node graph.
 //!
 //! The last orders are kept: runs of one process often have the same mesh.
 
@@ -9,17 +8,13 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-use super::dissection::{self, PlacedGraph};
-use super::error::LinearError;
-use super::metis;
+use super::dissection::{self, Graph};
 use super::pattern::NodeGraph;
 use crate::base::pool;
 
 /// Most neighbours of a multiplier that are tied together before the dissection.
 const CLIQUE_LIMIT: usize = 48;
 
-/// Nodes from which a graph is dissected by coordinates. METIS takes milliseconds below.
-const PLACED: usize = 5000;
 /// Nodes in the orders that are kept, all together.
 const KEPT: usize = 1 << 22;
 /// The last orders by the digest of their graph, newest last.
@@ -37,18 +32,14 @@ pub fn computed() -> usize {
 /// Multipliers are taken out of the graph (what they connect is tied together
 /// instead, as their elimination will do) and follow the last node they connect.
 /// `points` are the coordinates of the nodes, empty if unknown; those of multipliers are not used.
-pub fn elimination_order(
-    graph: &NodeGraph,
-    points: &[[f64; 2]],
-    threads: usize,
-) -> Result<Vec<u32>, LinearError> {
+pub fn elimination_order(graph: &NodeGraph, points: &[[f64; 2]], threads: usize) -> Vec<u32> {
     let digest = digest(graph, points);
     let kept = || ORDERS.lock().unwrap_or_else(PoisonError::into_inner);
     let found = kept().iter().find(|(d, o)| *d == digest && o.len() == graph.len()).cloned();
     if let Some((_, order)) = found {
-        return Ok(order);
+        return order;
     }
-    let order = compute(graph, points, threads)?;
+    let order = compute(graph, points, threads);
     COMPUTED.fetch_add(1, Relaxed);
     if order.len() <= KEPT {
         let mut orders = kept();
@@ -57,7 +48,7 @@ pub fn elimination_order(
             orders.pop_front();
         }
     }
-    Ok(order)
+    order
 }
 
 /// A number that two different graphs hardly have in common. If they did, the order would still be
@@ -83,23 +74,14 @@ fn dissect(
     weights: &[i32],
     points: &[[f64; 2]],
     threads: usize,
-) -> Result<Vec<u32>, LinearError> {
+) -> Vec<u32> {
     let known = points.len() == weights.len() && points.iter().flatten().all(|x| x.is_finite());
-    if known && weights.len() >= PLACED {
-        let graph = PlacedGraph { xadj, adjncy, weights, points };
-        let order = pool::run(threads, |threads| dissection::dissect(graph, threads > 1));
-        if let Some(order) = order {
-            return Ok(order);
-        }
-    }
-    metis::dissect(xadj, adjncy, weights)
+    let points = if known { points } else { &[] };
+    let graph = Graph { xadj, adjncy, weights, points };
+    pool::run(threads, |threads| dissection::dissect(graph, threads > 1))
 }
 
-fn compute(
-    graph: &NodeGraph,
-    points: &[[f64; 2]],
-    threads: usize,
-) -> Result<Vec<u32>, LinearError> {
+fn compute(graph: &NodeGraph, points: &[[f64; 2]], threads: usize) -> Vec<u32> {
     let nodes = graph.len();
     if !graph.after.contains(&true) {
         let weights: Vec<i32> = (0..nodes).map(|v| graph.weight(v) as i32).collect();
@@ -135,7 +117,7 @@ fn compute(
     let weights: Vec<i32> = kept.iter().map(|&v| graph.weight(v as usize) as i32).collect();
     let places: Vec<[f64; 2]> =
         kept.iter().filter_map(|&v| points.get(v as usize).copied()).collect();
-    let order = dissect(&xadj, &adjncy, &weights, &places, threads)?;
+    let order = dissect(&xadj, &adjncy, &weights, &places, threads);
 
     let mut rank = vec![0_u32; nodes];
     for (k, &v) in order.iter().enumerate() {
@@ -155,5 +137,5 @@ fn compute(
         })
         .collect();
     keyed.sort_unstable();
-    Ok(keyed.into_iter().map(|(_, _, v)| v).collect())
+    keyed.into_iter().map(|(_, _, v)| v).collect()
 }

@@ -82,7 +82,7 @@ impl Symbolic {
         threads: usize,
     ) -> Result<Self, LinearError> {
         let graph = NodeGraph::new(pattern)?;
-        let node_order = elimination_order(&graph, &graph.places(pattern, points), threads)?;
+        let node_order = elimination_order(&graph, &graph.places(pattern, points), threads);
         let tree = supernode_tree(&graph, &node_order);
         drop(node_order);
         let count = tree.columns.len();

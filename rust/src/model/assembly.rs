@@ -9,7 +9,7 @@ use crate::base::small::{Blocks, Nodal};
 use crate::base::{Kernel, Real};
 use crate::elements::Element;
 use crate::kinematics::corotation::Frame;
-use crate::kinematics::integrate::{History, Local, local};
+use crate::kinematics::integrate::{History, Local, single_into};
 use crate::kinematics::per_point::PerPoint;
 
 /// The assembly of a chunk, to be run with the processor's widest numbers.
@@ -59,13 +59,12 @@ where
                     self.stride,
                 ),
             };
-            let mut answer;
+            let mut answer = Local::zero();
+            let (q, tangent) = (&frame.q, context.tangent);
             if T::LANES == 1 {
-                answer =
-                    local::<E, T, N, M, A>(&x, &frame.q, section, &mut history, context.tangent);
+                single_into::<E, T, N, M, A>(&x, q, section, &mut history, tangent, &mut answer);
             } else {
-                answer = Local::zero();
-                E::law_into(&x, &frame.q, section, &mut history, context.tangent, &mut answer);
+                E::law_into(&x, q, section, &mut history, tangent, &mut answer);
             }
             let force = frame.force(&answer.force);
             if context.stressed && E::TURNS {

@@ -132,11 +132,6 @@ solver_class!(
     Lu,
     crate::linear::Lu
 );
-solver_class!(
-    /// The plain symmetric factorisation that tests and benchmarks compare with.
-    ReferenceLdlt,
-    crate::linear::faer_ldlt::FaerLdlt
-);
 
 /// Number of orders of elimination that this process has computed; the last ones are used again.
 #[pyfunction]
@@ -164,6 +159,5 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Lu>()?;
     m.add_function(wrap_pyfunction!(computed_orders, m)?)?;
     m.add_function(wrap_pyfunction!(place_nodes, m)?)?;
-    m.add_function(wrap_pyfunction!(factor_size, m)?)?;
-    m.add_class::<ReferenceLdlt>()
+    m.add_function(wrap_pyfunction!(factor_size, m)?)
 }

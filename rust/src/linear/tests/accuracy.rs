@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //! Backward error of all solvers, agreement among them, and one answer for any threads.
 
-use super::super::faer_ldlt::FaerLdlt;
 use super::super::{Ldlt, LinearSolver, Lu, Pattern};
 use super::models::{Model, dense};
 use super::{Random, Symmetric};
@@ -81,28 +80,6 @@ fn pivoting_lu_takes_over() {
     let x = solver.solve_without_ldlt(&b).unwrap();
     let error = a.backward_error(&x, &b);
     assert!(error < 1e-14, "{error:e}");
-}
-
-#[test]
-fn agrees_with_plain_faer() {
-    let mut random = Random::new(14);
-    let upper = Model::rectangle(60, 40, 1.0, &mut random).upper(&(0..82).collect::<Vec<_>>());
-    let n = upper.node.len();
-    let b = vector(n, &mut random);
-    let mut answers = Vec::new();
-    for mut solver in [Box::<Ldlt>::default() as Box<dyn LinearSolver>, Box::<FaerLdlt>::default()]
-    {
-        solver.analyze(&upper.pattern()).unwrap();
-        let inertia = solver.factorize(&upper.values).unwrap().unwrap();
-        assert_eq!((inertia.positive, inertia.negative, inertia.zero), (n, 0, 0));
-        let mut x = b.clone();
-        solver.solve(&mut x).unwrap();
-        answers.push(x);
-    }
-    let size = answers[0].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    for (p, q) in answers[0].iter().zip(&answers[1]) {
-        assert!((p - q).abs() < 1e-9 * size);
-    }
 }
 
 #[test]
