@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.distributed_forces import Distribution
+    from corota.analysis.electrostatics import ElectrostaticPressure
     from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
     from corota.errors import Location
@@ -202,7 +203,8 @@ class DistributedLoads:
             else:
                 share = 1.0 / self._area(faces) if item.total else 1.0
                 load.traction = tuple(share * v for v in item.value)
-            key = (item.kind, load.end, load.amplitude, load.traction)
+            opposite = np.asarray(item.opposite)
+            key = (item.kind, load.end, load.amplitude, load.traction, opposite.tobytes())
             found.setdefault(key, (load, []))[1].append(faces)
         return [
             self._edge_load(replace(load, faces=np.concatenate(faces)))
@@ -247,6 +249,9 @@ class DistributedLoads:
         if load.item.kind in ("following traction", "shear"):
             load.force = self._following(load)
             return load
+        if load.item.kind == "electrostatic":
+            load.force = self._electrostatic(load)
+            return load
         core, drilling = self._core(load.faces)
         if load.item.kind == "pressure":
             load.force = Pressure(self.system, core)
@@ -269,6 +274,22 @@ class DistributedLoads:
         from corota.analysis.following_forces import FollowingTraction
 
         return FollowingTraction(self.system, nodes, thickness, load.traction, bulges)
+
+    def _electrostatic(self, load: DistributedLoad) -> ElectrostaticPressure:
+        """The attraction of edges by the opposite electrode."""
+        from corota.analysis.electrostatics import ElectrostaticPressure
+
+        assert load.faces is not None
+        assert isinstance(load.item, EdgeLoad)
+        nodes, thickness, _ = self._edges(load.faces)
+        strength, *line = load.traction
+        opposite = None
+        if load.item.opposite is not None:
+            opposite = self._edges(self._faces(replace(load.item, edges=load.item.opposite)))[0]
+        ground = np.reshape(line, (2, 2)) if line else None
+        return ElectrostaticPressure(
+            self.system, nodes, thickness, strength, ground, opposite, load.item.where
+        )
 
     def _faces(self, item: EdgeLoad) -> Ints:
         """Cell and side of every loaded edge, shape (n, 2)."""

@@ -61,7 +61,7 @@ class FollowingTraction:
     ) -> None:
         self.system = system
         x = system.model.mesh.points[nodes]
-        shape, slope = _shapes(nodes[:, 2] == nodes[:, 0])
+        shape, slope = edge_shapes(nodes[:, 2] == nodes[:, 0])
         d = np.einsum("egb,ebi->egi", slope, x)
         if len(value) == 1:
             along = np.full(d.shape[:2], value[0])
@@ -124,9 +124,9 @@ class FollowingTraction:
         return self.system.from_nodes(force)
 
 
-def _shapes(straight: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Shape functions and slopes of edges at the Gauss points, shapes (n, 3, 3)."""
-    r, one = _POINTS, np.ones(3)
+def edge_shapes(straight: NDArray[np.bool_], r: Floats = _POINTS) -> tuple[Floats, Floats]:
+    """Shape functions and slopes of edges at points r from -1 to 1, shapes (n, points, 3)."""
+    one = np.ones_like(r)
     lines = np.stack([0.5 - 0.5 * r, 0.5 + 0.5 * r, 0.0 * r], axis=1)
     curves = np.stack([0.5 * r * (r - 1.0), 0.5 * r * (r + 1.0), 1.0 - r * r], axis=1)
     slope_lines = np.stack([-0.5 * one, 0.5 * one, 0.0 * one], axis=1)
@@ -182,4 +182,4 @@ class TurningForce:
         return self.system.from_nodes(out)
 
 
-__all__ = ["FollowingTraction", "TurningForce"]
+__all__ = ["FollowingTraction", "TurningForce", "edge_shapes"]

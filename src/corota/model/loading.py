@@ -24,6 +24,15 @@ if TYPE_CHECKING:
 FIXED = np.float64(0.0)
 
 
+#: Permittivity of vacuum [N/V^2].
+VACUUM = 8.8541878128e-12
+
+
+def _is_real(values: object) -> bool:
+    """Whether an array holds coordinates, not indices of edges."""
+    return np.asarray(values).dtype.kind == "f"
+
+
 class Loading:
     """Methods that add to ``supports`` and ``loads``.
 
@@ -186,6 +195,61 @@ class Loading:
     def pressure(self, edges: str | ArrayLike, p: float, amplitude: str = "") -> None:
         """Apply a pressure [force/length^2] on edges, positive into the element."""
         self.loads.append(EdgeLoad(self._edges(edges), "pressure", (p,), amplitude))
+
+    def electrostatic(
+        self,
+        edges: str | ArrayLike,
+        opposite: str | ArrayLike | None = None,
+        voltage: float = 0.0,
+        *,
+        permittivity: float = VACUUM,
+        amplitude: str = "",
+    ) -> None:
+        """Attract edges by an opposite electrode, parallel to them, across the current gap.
+
+        The traction is ``1/2 permittivity (voltage / gap)^2``, without fringe fields; it follows
+        the edges in geometrically nonlinear steps, and pull-in is a limit point of a path. The
+        force goes with the square of the voltage: so does the load factor, which is
+        (voltage so far / `voltage`)^2.
+
+        Parameters
+        ----------
+        edges : str or array_like of int, shape (n, 2)
+            The electrode, the shorter one of two.
+        opposite : str, array_like of int or array_like of float, shape (2, 2)
+            Edges that are attracted, too, or two points of a fixed straight electrode [length].
+        voltage : float
+            Zero ends the load.
+        permittivity : float
+            [force] per square volt; by default that of vacuum for forces in N and any length.
+        amplitude : str
+            Name in ``Model.amplitudes``, of the square of the voltage; empty: a ramp.
+
+        Raises
+        ------
+        InputError
+            If there is a voltage without an opposite electrode.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(100.0, 2.0, nx=50, ny=2))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1.69e5, nu=0.06))
+        >>> model.fix("left"); model.fix("right")
+        >>> model.electrostatic("bottom", [(0.0, -1.0), (100.0, -1.0)], voltage=40.0)
+        """
+        strength = 0.5 * permittivity * voltage**2
+        line: tuple[float, ...] = ()
+        sides: str | Ints | None = None
+        if strength and opposite is None:
+            raise InputError("an electrostatic load needs the opposite electrode")
+        if opposite is not None and np.shape(opposite) == (2, 2) and _is_real(opposite):
+            line = tuple(np.asarray(opposite, dtype=np.float64).ravel().tolist())
+        elif opposite is not None:
+            sides = self._edges(opposite)
+        value = (strength, *line)
+        on = self._edges(edges)
+        self.loads.append(EdgeLoad(on, "electrostatic", value, amplitude, opposite=sides))
 
     def gravity(
         self,

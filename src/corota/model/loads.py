@@ -361,7 +361,7 @@ class Force(Brief):
 
 
 #: Kinds of loads on edges.
-EDGE_LOADS = ("pressure", "traction", "following traction", "shear")
+EDGE_LOADS = ("pressure", "traction", "following traction", "shear", "electrostatic")
 
 
 @dataclass(repr=False)
@@ -372,27 +372,35 @@ class EdgeLoad(Brief):
     ----------
     edges : str or array_like of int, shape (n, 2)
         Edge set, or pairs of global cell index and local edge (from 0).
-    kind : {"pressure", "traction", "following traction", "shear"}
+    kind : {"pressure", "traction", "following traction", "shear", "electrostatic"}
         ``pressure``: normal, positive into the element, follows the deforming edge in
         geometrically nonlinear steps (the thickness stays the undeformed one); ``traction``:
         dead, fixed in space; ``following traction``: the same on the undeformed edge, rotates with
         it and acts on its current length, as a pressure does; ``shear``: along the edge, with the
-        element on the left, and follows it.
+        element on the left, and follows it; ``electrostatic``: towards an opposite electrode, by
+        the current gap.
     value : tuple of float
         ``(p,)``, ``(tx, ty)`` or ``(t,)`` [force/length^2]; times thickness and length.
+        ``electrostatic``: half the permittivity times the square of the voltage [force], and x, y
+        of two points of the opposite electrode, if it is a fixed line [length].
     total : bool
         Whether a traction's value is a total force [force], distributed over the edges' area.
+    opposite : str or array_like of int, shape (n, 2), optional
+        Edges of the opposite electrode, if they can move.
     """
 
     edges: str | Ints
-    kind: Literal["pressure", "traction", "following traction", "shear"]
+    kind: Literal["pressure", "traction", "following traction", "shear", "electrostatic"]
     value: tuple[float, ...]
     amplitude: str = ""
     total: bool = False
     where: Location | None = field(default=None, compare=False, repr=False)
+    opposite: str | Ints | None = None
 
     def __post_init__(self) -> None:
         self.edges = selected(self.edges, "edge", self.where)
+        if self.opposite is not None:
+            self.opposite = selected(self.opposite, "edge", self.where)
         choose(self.kind, EDGE_LOADS, "load on edges", self.where)
         what = "a pressure" if self.kind == "pressure" else "a traction"
         self.value = tuple(number(v, what, self.where) for v in self.value)

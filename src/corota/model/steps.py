@@ -30,7 +30,10 @@ if TYPE_CHECKING:
     ModalDamping = float | Sequence[tuple[int, int, float]]
 
 #: What :meth:`Step.remove` ends.
-REMOVED = ("all", *LOAD_KINDS, "traction", "pressure", "shear", "gravity", "centrifugal")
+REMOVED = (
+    *("all", *LOAD_KINDS, "traction", "pressure", "shear", "electrostatic"),
+    *("gravity", "centrifugal"),
+)
 #: Actions at bifurcation points.
 AT_BIFURCATION = ("warn", "stop", "follow")
 #: Kinds of mass matrices.
@@ -199,8 +202,8 @@ class Step(Brief, Loading, Settings):
         kind : str
             ``"all"``, or ``"force"`` (with moments), ``"distributed"`` (tractions, pressures,
             shear, gravity, centrifugal forces) or ``"temperature"``, anywhere. With a place also
-            ``"traction"``, ``"pressure"``, ``"shear"``; ``"gravity"`` and ``"centrifugal"`` with an
-            element set or without a place.
+            ``"traction"``, ``"pressure"``, ``"shear"``, ``"electrostatic"``; ``"gravity"`` and
+            ``"centrifugal"`` with an element set or without a place.
         at : str or array_like, optional
             Set, or as the method of that load takes it; everywhere by default.
 
@@ -237,10 +240,10 @@ class Step(Brief, Loading, Settings):
             self.temperature(0.0, at)
         elif kind == "all":
             self.force(at)
-            for name in ("traction", "shear", "pressure"):
+            for name in ("traction", "shear", "pressure", "electrostatic"):
                 self.remove(name, at)
-        elif kind == "traction":
-            self.traction(at)
+        elif kind in ("traction", "electrostatic"):
+            getattr(self, kind)(at)
         else:
             getattr(self, kind)(at, 0.0)
 

@@ -270,6 +270,8 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
             direction = inward * np.sign(load.value[0])
         elif load.kind == "shear":
             direction = along / length * np.sign(load.value[0])
+        elif load.kind == "electrostatic":
+            direction = -inward
         else:
             direction = np.array(load.value[:2])
             direction = direction / (float(np.linalg.norm(direction)) or 1.0)

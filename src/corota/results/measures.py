@@ -151,6 +151,11 @@ def motion(path: StagePath, component: int) -> float:
     return float(path.motion[-1, component])
 
 
+def place(path: StagePath, component: int) -> float:
+    """A coordinate of the reference point."""
+    return float(path.place[component])
+
+
 def force(path: StagePath, component: int) -> float:
     """A component of the force."""
     return float(path.force[-1, component])
@@ -490,6 +495,11 @@ MEASURES: dict[str, StageMeasure] = {
         ("motion x", "displacement of the reference point along x", "length"),
         ("motion y", "displacement of the reference point along y", "length"),
         ("rotation", "rotation of the stage, whole turns counted", "rad"),
+    ),
+    **_each(
+        place,
+        ("place x", "current place of the reference point", "length"),
+        ("place y", "current place of the reference point", "length"),
     ),
     "travel": StageMeasure(travel, "wanted part of the motion: length, or rad"),
     "parasitic translation": StageMeasure(

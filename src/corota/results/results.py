@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from corota.results.members import Members
     from corota.results.probe import Line, Place
     from corota.results.section import SectionDiagram, SectionForces
+    from corota.results.stage_results import StageResults
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -394,6 +395,23 @@ class Results(Brief):
         U = np.array([frame.U[rows] for frame in self.frames])
         UR = np.array([frame.UR[rows] for frame in self.frames])
         return fit_rigid_motion(self.mesh.points[rows], U, UR)
+
+    def stage(self, name: str = "") -> StageResults:
+        """Path of a stage: motion, force and stiffness as arrays; pseudo-rigid body; spring table.
+
+        Parameters
+        ----------
+        name : str
+            That of :meth:`corota.model.stages.Stages.stage`; may be omitted where there is one.
+
+        Raises
+        ------
+        InputError
+            If there is no such stage.
+        """
+        from corota.results.stage_results import stage_results
+
+        return stage_results(self, name)
 
     def at(
         self,

@@ -102,6 +102,8 @@ def _edges(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
     if load.kind == "shear":
         yield from _shear(writer, load, option)
         return
+    if load.kind == "electrostatic":
+        raise UnsupportedError("decks have no electrostatic loads; keep the model in Python")
     name = writer.edge_set(load.edges)
     if load.kind == "pressure":
         yield f"*DSLOAD{option}\n{name}, P, {number(load.value[0])}\n"
