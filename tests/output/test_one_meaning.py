@@ -10,6 +10,7 @@ import pytest
 
 import corota as ct
 from corota.cli.info import result_lines
+from corota.plots import palette
 from corota.plots.contour import color_scale
 from corota.results.derived import DERIVED, Derived
 from corota.results.table import COMPONENTS, DIMENSIONS, INVARIANTS, MEANING, NODAL, TABLE
@@ -185,17 +186,15 @@ def test_resultant_of_reactions() -> None:
 
 
 def test_signed_variables_have_the_signs_of_colors() -> None:
-    import matplotlib
-
     for low, high in ((-600.0, -100.0), (100.0, 600.0), (-300.0, 500.0), (-500.0, 0.0)):
-        colors, levels = color_scale(matplotlib, low, high, signed=True)
+        colors, levels = color_scale(low, high, signed=True)
         size = max(abs(low), abs(high))
         ends = (-size, size) if low < 0.0 < high else (levels[0], levels[-1])
         for value in (low, high):
             red, _, blue, _ = colors((value - ends[0]) / (ends[1] - ends[0]))
             if abs(value) > 0.1 * size:
                 assert (red > blue) == (value > 0.0), (low, high, value)
-    assert color_scale(matplotlib, 0.0, 5.0, signed=False)[0].name == "YlOrRd"
+    assert color_scale(0.0, 5.0, signed=False)[0].name == palette.SEQUENTIAL
 
 
 def test_one_table_gives_all_lists() -> None:

@@ -74,3 +74,53 @@ def test_page_of_a_run_at_work(browser: Browser, tmp_path: Path) -> None:
         assert browser.console == []
         assert all(address.startswith(server.address) for address in browser.requests)
         assert browser.run("document.getElementById('status').textContent") == "stopped"
+
+
+def loaded_and_unloaded() -> ct.Model:
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, nx=20, ny=2), name="beam")
+    model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
+    model.fix("left")
+    there, back = ct.Static(increments=3), ct.Static(increments=3)
+    there.fix("right", x=None, y=1.0)
+    back.fix("right", x=None, y=0.0)
+    model.steps = [there, back]
+    return model
+
+
+def test_opens_on_the_largest_force_with_its_branches(browser: Browser, tmp_path: Path) -> None:
+    path = ct.solve(loaded_and_unloaded(), threads=1).report(tmp_path / "beam.html")
+    browser.open(path.as_uri(), READY)
+    assert browser.console == []
+    assert browser.run("window.corotaReport.scene.index") == 3  # the end of the first step
+    chart = "window.corotaReport.charts.charts[0]"
+    labels = browser.run(f"{chart}.lines.map((line) => line.label)")
+    assert len(labels) == 2
+    assert labels[1] == f"{labels[0]}, back"
+    known = [browser.run(f"{chart}.lines[{i}].y.map((v) => v !== null)") for i in range(2)]
+    assert known == [[True] * 4 + [False] * 3, [False] * 3 + [True] * 4]
+
+
+def test_marks_limit_points_and_frames_the_tool(browser: Browser, tmp_path: Path) -> None:
+    path = ct.solve(ct.examples.load("bistable"), threads=1).report(tmp_path / "switch.html")
+    browser.open(path.as_uri(), READY)
+    texts = browser.run("window.corotaReport.charts.charts[0].points.map((p) => p.text)")
+    assert texts.count("limit") == 2
+
+
+def test_a_drop_opens_with_its_contact_force(browser: Browser, tmp_path: Path) -> None:
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=2, ny=2), name="drop")
+    model.section("all", element="Q4", material=ct.Elastic(E=1000.0, nu=0.3, rho=1.0))
+    floor = ct.RigidCurve.line((-100.0, -0.01), (100.0, -0.01))
+    model.contact("bottom", floor, name="floor")
+    model.velocity(y=-1.0)
+    path = ct.solve(model, ct.Dynamic(period=0.12, increments=24), threads=1).report(
+        tmp_path / "drop.html"
+    )
+    browser.open(path.as_uri(), READY)
+    assert browser.console == []
+    assert browser.run("window.corotaReport.charts.main") == "floor: force y"
+    force = browser.run("window.corotaReport.history.column('floor: force y')")
+    shown = browser.run("window.corotaReport.scene.index")
+    assert abs(force[shown]) == pytest.approx(max(abs(v) for v in force))
+    # The floor is far larger than the body, so it does not shrink it.
+    assert browser.run("window.corotaReport.player.camera.scale") > 100.0

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.plots import palette
 from corota.plots.figure import INK, PALE, extent_size, figure_of, finish, label_axes, look
 from corota.plots.plastic import draw_boundary
-from corota.plots.rigid import draw_rigid
+from corota.plots.rigid import draw_rigid, with_rigid
 from corota.plots.surface import Surface, edge_lines, outline, surface
 from corota.results import variables as vf
 from corota.results.sampling import sampled
@@ -111,7 +112,7 @@ class Drawing:
         return min(float(v.min()) for v in values), max(float(v.max()) for v in values)
 
 
-def color_scale(mpl: Any, low: float, high: float, signed: bool) -> tuple[Any, Floats]:
+def color_scale(low: float, high: float, signed: bool) -> tuple[Any, Floats]:
     """Color map and levels.
 
     A signed variable has red for positive and blue for negative values, pale near zero: about zero
@@ -122,17 +123,13 @@ def color_scale(mpl: Any, low: float, high: float, signed: bool) -> tuple[Any, F
         pad = 0.5 * size or 1.0
         low, high = low - pad, high + pad
         size = size or pad
-    if signed and low < -0.02 * size and high > 0.02 * size:
-        levels = np.linspace(-size, size, BANDS + 1)
-        colors = mpl.colormaps["RdBu_r"]
-        used = levels[(levels >= low - 2 * size / BANDS) & (levels <= high + 2 * size / BANDS)]
-        return colors, used if len(used) > 2 else levels
-    if signed:
-        ends = (0.0, 0.48) if high + low < 0.0 else (0.52, 1.0)
-        half = mpl.colormaps["RdBu_r"](np.linspace(*ends, 256))
-        name = f"RdBu_r, {'negative' if high + low < 0.0 else 'positive'} half"
-        return mpl.colors.ListedColormap(half, name=name), np.linspace(low, high, BANDS + 1)
-    return mpl.colormaps["YlOrRd"], np.linspace(low, high, BANDS + 1)
+    name = palette.map_of(low, high, signed)
+    colors = palette.colormap(name)
+    if name != palette.DIVERGING:
+        return colors, np.linspace(low, high, BANDS + 1)
+    levels = np.linspace(-size, size, BANDS + 1)
+    used = levels[(levels >= low - 2 * size / BANDS) & (levels <= high + 2 * size / BANDS)]
+    return colors, used if len(used) > 2 else levels
 
 
 def contour(
@@ -203,8 +200,7 @@ def contour(
     with look() as mpl:
         positions = results.mesh.points + scale * state.U
         every = np.concatenate([results.mesh.points, positions]) if undeformed else positions
-        low, high = every.min(axis=0), every.max(axis=0)
-        below = extent_size(low, high)[2]
+        low, high = with_rigid(results.model, every.min(axis=0), every.max(axis=0), state, scale)
         width, height, below = extent_size(low, high)
         figure, ax = figure_of(ax, width, height, shown=path is None)
         painted = paint(ax, mpl, drawing, frame, scale, edges, undeformed, limits)
@@ -282,8 +278,8 @@ def paint(
     mesh = results.mesh
     positions = mesh.points + scale * results.frame(frame).U
     low, high = limits or drawing.range(frame)
-    colors, levels = color_scale(mpl, low, high, drawing.name not in POSITIVE)
-    if colors.name == "RdBu_r":
+    colors, levels = color_scale(low, high, drawing.name not in POSITIVE)
+    if colors.name == palette.DIVERGING:
         size = max(abs(low), abs(high))
         norm = BoundaryNorm(np.linspace(-size, size, BANDS + 1), colors.N)
     else:

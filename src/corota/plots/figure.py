@@ -14,6 +14,7 @@ from weakref import WeakSet
 
 from corota.errors import InputError, ResourceError
 from corota.io.atomic_file import full
+from corota.plots.palette import LINES
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -41,9 +42,9 @@ STYLE = {
     "figure.dpi": 110.0,
     "axes.prop_cycle": None,
 }
-#: Colors that are distinct in print and for the color-blind (Okabe and Ito).
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999999")
-INK, PALE = "#20242b", "#9aa3b0"
+#: Colors of lines.
+COLORS = LINES
+INK, PALE = "#20242b", "#8792a2"
 #: Colors of tension and compression, and of positive and negative section forces.
 TENSION, COMPRESSION = COLORS[1], COLORS[0]
 #: Width of new figures [inch]; 0 for that of each kind of picture.

@@ -20,7 +20,7 @@ from corota.plots.figure import (
     look,
 )
 from corota.plots.lines import draw_lines
-from corota.plots.rigid import draw_rigid
+from corota.plots.rigid import draw_rigid, with_rigid
 from corota.plots.surface import edge_lines, outline, surface
 from corota.results.averaging import section_of_cells
 
@@ -81,6 +81,7 @@ def model(
     mesh = subject.mesh
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
     size = float(np.linalg.norm(high - low)) or 1.0
+    low, high = with_rigid(subject, low, high)
     with look():
         from matplotlib.collections import LineCollection
 

@@ -10,11 +10,30 @@ import numpy as np
 from corota.results.rigid import moved, rigid_curves
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.model.model import Model
     from corota.results.results import Frame
 
+    Floats = NDArray[np.float64]
+
 #: Color of rigid bodies, and the width of their shaded side as a share of the model's size.
 STEEL, BAND = "#5b6470", 0.018
+#: Rigid curves that make a picture larger than this times the body are not framed whole.
+LARGE = 2.5
+
+
+def with_rigid(
+    model: Model, low: Floats, high: Floats, frame: Frame | None = None, scale: float = 1.0
+) -> tuple[Floats, Floats]:
+    """Extend an extent, shape (2,) each, by the rigid curves that are not far larger."""
+    body = float(np.linalg.norm(high - low))
+    for curve in rigid_curves(model):
+        points = np.concatenate(moved(model, curve, frame, scale))
+        least, most = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+        if np.linalg.norm(most - least) <= LARGE * body:
+            low, high = least, most
+    return low, high
 
 
 def draw_rigid(ax: Any, model: Model, frame: Frame | None = None, scale: float = 1.0) -> None:
@@ -34,4 +53,4 @@ def draw_rigid(ax: Any, model: Model, frame: Frame | None = None, scale: float =
         ax.add_collection(LineCollection(lines, colors=STEEL, linewidths=1.3))
 
 
-__all__ = ["draw_rigid"]
+__all__ = ["draw_rigid", "with_rigid"]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.plots import palette
 from corota.plots.figure import INK
 from corota.results import variables as vf
 from corota.results.arrays import require
@@ -16,16 +17,6 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from corota.results.results import Results
-
-
-def color_map(name: str, low: float, high: float) -> tuple[str, tuple[float, float]]:
-    """Color map and limits: red is positive and blue negative where a variable is signed."""
-    if name in POSITIVE:
-        return "viridis", (low, high)
-    size = max(abs(low), abs(high))
-    if low < -0.02 * size and high > 0.02 * size:
-        return "RdBu_r", (-size, size)
-    return ("Blues_r" if low + high < 0.0 else "Reds"), (low, high)
 
 
 class Viewer:
@@ -88,7 +79,9 @@ class Viewer:
         self._grid.point_data["shown"] = self.results.nodal(self.name, self.frame)
         units = self.results.model.unit_system
         title = vf.labelled(self.name, units) + " (nodal)" * (self.name not in NODAL)
-        colors, limits = color_map(self.name, *self.limits())
+        low, high = self.limits()
+        colors = palette.map_of(low, high, self.name not in POSITIVE)
+        size = max(abs(low), abs(high))
         if self._actor is not None:
             self.plotter.remove_actor(self._actor, render=False)
             for bar in list(self.plotter.scalar_bars.keys()):
@@ -96,8 +89,8 @@ class Viewer:
         self._actor = self.plotter.add_mesh(
             self._grid,
             scalars="shown",
-            cmap=colors,
-            clim=limits,
+            cmap=palette.colormap(colors),
+            clim=(-size, size) if colors == palette.DIVERGING else (low, high),
             show_edges=self.edges and self._grid.n_cells <= 20_000,
             line_width=1.0,
             lighting=False,

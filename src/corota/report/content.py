@@ -85,7 +85,10 @@ def content_of_results(results: Results, *, limit: float = LIMIT, title: str = "
 
         from corota.report.records import find_job
 
-        return _content(results, records_of_files(find_job(Path(results.path))), limit, title)
+        records = records_of_files(find_job(Path(results.path)))
+        if not records.rows:
+            _rows_of_frames(records, results)
+        return _content(results, records, limit, title)
     return _content(results, records_of_results(results), limit, title)
 
 
@@ -186,7 +189,10 @@ def facts_of(
     if results is not None:
         facts["info"] = results.info
         facts["units"] = str(results.model.unit_system)
-        facts["critical points"] = [str(point) for point in results.critical_points]
+        facts["critical points"] = [
+            {"kind": p.kind, "step": p.step, "increment": p.increment, "text": str(p)}
+            for p in results.critical_points
+        ]
         if isinstance(results, FileResults):
             facts["file"] = results.attributes
     return facts

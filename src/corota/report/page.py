@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import base64
+import json
 import re
 from functools import lru_cache
 from html import escape
 from importlib.resources import files
 from typing import TYPE_CHECKING
+
+from corota.plots import palette
 
 if TYPE_CHECKING:
     from corota.report.content import Content
@@ -24,6 +27,8 @@ POLICY = (
     "img-src data: blob:; connect-src {connect}; base-uri 'none'; form-action 'none'"
 )
 
+#: Place of the palette in the module of colors.
+_PALETTE = "/* of corota.plots.palette */ {}"
 _IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.js";$', re.MULTILINE)
 _EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let) (\w+))", re.MULTILINE)
 
@@ -41,12 +46,28 @@ def script() -> str:
 
 def _wrapped(name: str) -> str:
     """A module with imports and exports through the object ``modules``."""
-    text = asset(f"{name}.js")
+    text = asset(f"{name}.js").replace(_PALETTE, _colors())
     exported = [found[2] for found in _EXPORT.finditer(text)]
     text = _IMPORT.sub(r"const \1 = modules.\2;", text)
     text = _EXPORT.sub(r"\1", text)
     return (
         f"modules.{name} = (() => {{\n{text.strip()}\nreturn {{ {', '.join(exported)} }};\n}})();"
+    )
+
+
+def _colors() -> str:
+    """The palette of the pictures for scripts."""
+    lines = {"light": palette.LINES, "dark": palette.DARK_LINES}
+    return json.dumps(
+        {
+            "maps": palette.MAPS,
+            "sequential": palette.SEQUENTIAL,
+            "diverging": palette.DIVERGING,
+            "negative": palette.NEGATIVE,
+            "positive": palette.POSITIVE,
+            "oneSign": palette.ONE_SIGN,
+            "lines": lines,
+        }
     )
 
 

@@ -59,12 +59,13 @@ export class Chart {
 
   /**
    * Show lines: { label, x, y, second, rows, dots, stroke }; `rows` tells which row a point is of.
-   * `marks` are places on the abscissa with a text.
+   * `marks` are places on the abscissa with a text; `points` are { x, y, text } on the first line.
    */
-  show(lines, { x, y, y2, marks = [] } = {}) {
+  show(lines, { x, y, y2, marks = [], points = [] } = {}) {
     Object.assign(this.options, { x: x ?? this.options.x, y: y ?? this.options.y, y2: y2 ?? this.options.y2 });
     this.lines = lines;
     this.marks = marks;
+    this.points = points;
     this.build();
   }
 
@@ -74,7 +75,8 @@ export class Chart {
 
   build() {
     this.plot?.destroy();
-    this.lines.forEach((line, i) => (line.stroke = lineColor(i)));
+    // A branch has the color of the line before it, paler.
+    this.lines.forEach((line, i) => (line.stroke = line.branch ? `${lineColor(i - 1)}99` : lineColor(i)));
     const second = this.lines.some((line) => line.second);
     const axis = (scale, label, side) => ({
       scale,
@@ -240,6 +242,33 @@ export class Chart {
       ctx.fill();
       ctx.stroke();
     });
+    this.#drawPoints(u);
     ctx.restore();
+  }
+
+  /** Peaks and critical points: a diamond with a word, on the side where there is room. */
+  #drawPoints(u) {
+    const { ctx } = u;
+    const ratio = devicePixelRatio;
+    ctx.font = `${11 * ratio}px system-ui, sans-serif`;
+    for (const { x, y, text } of this.points) {
+      const [left, top] = [u.valToPos(x, "x", true), u.valToPos(y, "y", true)];
+      const size = 4.5 * ratio;
+      ctx.beginPath();
+      ctx.moveTo(left, top - size);
+      for (const [dx, dy] of [[size, 0], [0, size], [-size, 0]]) ctx.lineTo(left + dx, top + dy);
+      ctx.closePath();
+      ctx.fillStyle = ink("stage");
+      ctx.strokeStyle = ink("ink");
+      ctx.lineWidth = 1.3 * ratio;
+      ctx.fill();
+      ctx.stroke();
+      ctx.fillStyle = ink("ink");
+      const right = left + 2 * size + ctx.measureText(text).width < u.bbox.left + u.bbox.width;
+      ctx.textAlign = right ? "left" : "right";
+      const high = top < u.bbox.top + 14 * ratio;
+      ctx.fillText(text, left + (right ? 1.6 : -1.6) * size, top + (high ? 12 : 0) * ratio);
+    }
+    ctx.textAlign = "left";
   }
 }

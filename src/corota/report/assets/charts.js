@@ -1,15 +1,45 @@
 // The curves beside the player; a click moves the player, and the player moves their marks.
 
 import { Chart } from "./axes.js";
-import { el, fill } from "./dom.js";
+import { el, fill, format } from "./dom.js";
 import { nearestFrame } from "./history.js";
 
 const ENERGY = /^(ALL[A-Z]+|ETOTAL)$/;
 const OLD_ENERGY = /(energy|dissipation|work)$/;
 const CONTACT = /: (force|friction) [xy]$/;
 
+/** Of the largest value: smaller reactions are rounding. */
+const NOISE = 1e-6;
+/** Of the range: smaller turns of the abscissa are no branch. */
+const TURN = 0.05;
+
+const size = (values) => values.reduce((most, v) => (Math.abs(v) > most ? Math.abs(v) : most), 0);
 const constant = (values) => values.every((v) => v === values[0] || Number.isNaN(v));
 const power = (v) => (Number.isInteger(v) ? `1e${v}`.replace("-", "−") : "");
+
+/** One line, or two where the abscissa goes forth and back; small turns do not count. */
+export function branches(label, xs, ys) {
+  const finite = xs.filter(Number.isFinite);
+  const least = TURN * (Math.max(...finite) - Math.min(...finite));
+  const turns = [];
+  let [way, extreme] = [0, 0];
+  xs.forEach((x, i) => {
+    const step = x - xs[extreme];
+    if (way * step >= 0 && (way || Math.abs(step) > least)) {
+      way ||= Math.sign(step);
+      extreme = i;
+    } else if (way && Math.abs(step) > least) {
+      turns.push(extreme);
+      [way, extreme] = [-way, i];
+    }
+  });
+  const parity = (i) => turns.filter((row) => row < i).length % 2;
+  const rows = xs.map((_, i) => i);
+  // The row of a turn belongs to both branches.
+  const branch = (p) => ys.map((v, i) => (parity(i) === p || parity(i + 1) === p ? v : null));
+  const whole = { label, rows, x: xs, y: turns.length ? branch(0) : ys };
+  return turns.length ? [whole, { ...whole, label: `${label}, back`, branch: true, y: branch(1) }] : [whole];
+}
 
 export class Charts {
   constructor(place, scene, history, player) {
@@ -76,10 +106,11 @@ export class Charts {
     if (!history.count) return;
     const names = history.names.filter((name) => !constant(history.column(name)));
     const displacements = names.filter((name) => /^U[12] /.test(name));
-    const x = displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
-    const forces = names.filter((name) => /^RF[12] (?!all)/.test(name));
-    const y = this.#driver(names, forces);
-    const chart = this.#chart({ title: "Load–displacement", pick: this.pick, height: 260 });
+    const moves = size(history.column("ALLKE") ?? []) > 0;
+    const x = moves ? "time" : displacements.at(-1) ?? (names.includes("largest U") ? "largest U" : "time");
+    const y = this.#driver(names, moves);
+    this.main = y;
+    const chart = this.#chart({ title: moves ? "Force over time" : "Load–displacement", pick: this.pick, height: 260 });
     const selects = [["vertical", y], ["horizontal", x]].map(([label, value]) => {
       const select = el("select", { "aria-label": `Quantity on the ${label} axis` });
       fill(select, names.map((name) => [name, name]), value);
@@ -88,24 +119,60 @@ export class Charts {
     chart.head.append(el("span", { class: "choose" }, selects[0], " over ", selects[1]));
     this.#live(() => {
       const [vertical, horizontal] = selects.map((select) => select.value);
-      chart.show([{ label: vertical, x: history.column(horizontal), y: history.column(vertical), rows: this.#rows }], {
+      const [xs, ys] = [history.column(horizontal), history.column(vertical)];
+      chart.show(branches(vertical, xs, ys), {
         x: history.label(horizontal),
         y: history.label(vertical),
+        points: this.#notable(ys).map(({ row, text }) => ({ x: xs[row], y: ys[row], text })),
       });
     });
     for (const select of selects) select.addEventListener("change", () => this.again[0]());
   }
 
   /** What drives: the load factor where loads act, else the largest reaction of a support that moves. */
-  #driver(names, forces) {
+  #driver(names, moves) {
+    const { history } = this;
     const { description } = this.scene.model ?? {};
+    const acting = names.filter((name) => /^RF[12] (?!all)/.test(name) || CONTACT.test(name));
+    const largest = Math.max(0, ...acting.map((name) => size(history.column(name))));
+    const real = acting.filter((name) => size(history.column(name)) > NOISE * largest);
+    const forces = real.filter((name) => name.startsWith("RF"));
+    const contact = real.filter((name) => CONTACT.test(name)).sort((a, b) => size(history.column(b)) - size(history.column(a)));
+    if (moves && contact.length) return contact[0];
     const loaded = description?.loads?.some((load) => load.kind !== "temperature");
     if ((loaded || !forces.length) && names.includes("load factor")) return "load factor";
     const moving = description?.supports?.filter((s) => s.value !== 0).map((s) => `RF${s.dof + 1} ${s.where}`) ?? [];
-    const most = (name) => Math.max(...this.history.column(name).map(Math.abs).filter(Number.isFinite));
+    const most = (name) => size(history.column(name));
     const candidates = forces.filter((name) => moving.includes(name));
     const sorted = (candidates.length ? candidates : forces).sort((a, b) => most(b) - most(a));
     return sorted[0] ?? (names.includes("load factor") ? "load factor" : "time");
+  }
+
+  /** Rows worth a mark: the extremes of a column within the run, limit and bifurcation points. */
+  #notable(values) {
+    const { history } = this;
+    const found = (history.facts["critical points"] ?? []).map(({ kind, step, increment }) => ({
+      row: history.rowOf(step, increment),
+      text: kind,
+    }));
+    const finite = values.filter(Number.isFinite);
+    for (const extreme of [Math.max(...finite), Math.min(...finite)]) {
+      const row = values.indexOf(extreme);
+      if (row > 0 && row < values.length - 1 && extreme !== 0 && !found.some((f) => Math.abs(f.row - row) < 2)) {
+        found.push({ row, text: format(extreme, 4) });
+      }
+    }
+    return found;
+  }
+
+  /** Step and increment of the largest value of the main quantity; null where there is none. */
+  get telling() {
+    const { history } = this;
+    const values = history.count ? history.column(this.main) : null;
+    if (!values || this.main === "time") return null;
+    const most = size(values);
+    const row = values.findLastIndex((v) => Math.abs(v) === most);
+    return row < 0 || !most ? null : { step: history.column("step")[row], increment: history.column("increment")[row] };
   }
 
   /** A chart of columns over time. */

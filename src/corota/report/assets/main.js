@@ -2,7 +2,7 @@
 
 import { Charts } from "./charts.js";
 import { byId, el, forgetInks, format } from "./dom.js";
-import { History } from "./history.js";
+import { History, nearestFrame } from "./history.js";
 import { LiveSource, follow } from "./live.js";
 import { Model } from "./model.js";
 import { Player } from "./player.js";
@@ -151,8 +151,19 @@ class Page {
     this.tables = new Tables(byId("tables"), this.model, this.history, this.scene, this.charts.pick);
     if (this.model && this.scene.shown.length) {
       this.player.refresh("look");
-      this.scene.show(this.scene.shown.findLastIndex((frame) => frame.kind !== "iterate"));
+      const last = this.scene.shown.findLastIndex((frame) => frame.kind !== "iterate");
+      this.scene.show(live ? last : this.#telling(last));
     }
+  }
+
+  /** The frame of the largest main force or load, else that of the largest value of the field. */
+  #telling(last) {
+    const { scene } = this;
+    const { telling } = this.charts;
+    if (telling) return Math.max(nearestFrame(scene.shown, telling.step, telling.increment), 0);
+    if (!scene.field || scene.kind !== "increment") return last;
+    const sizes = scene.shown.map((frame) => (frame.kind === "iterate" ? -1 : Math.max(...scene.rangeOf(scene.field, frame).map(Math.abs))));
+    return sizes.lastIndexOf(Math.max(...sizes));
   }
 
   async openEmbedded() {

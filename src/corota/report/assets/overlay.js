@@ -379,6 +379,11 @@ export class Overlay {
 
 const chosen = (items, step) => (items ?? []).filter((item) => step < 0 || item.step === 0 || item.step === step);
 
+/** Places of a rigid curve in a frame. */
+export function rigidPoints(model, { segments, reference }, frame, scale) {
+  return rigidLines(segments).flat().map(carrier(model, reference, frame, scale));
+}
+
 /** Where the node that carries a rigid curve takes a point. */
 function carrier(model, reference, frame, scale) {
   if (reference < 0 || !frame) return (point) => point;

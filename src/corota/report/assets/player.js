@@ -3,8 +3,11 @@
 import { MAPS, isDark, shades, table } from "./colors.js";
 import { byId, el, fill, format, ink, onceAFrame } from "./dom.js";
 import { extremes } from "./fields.js";
-import { Overlay } from "./overlay.js";
+import { Overlay, rigidPoints } from "./overlay.js";
 import { makePainter } from "./painter.js";
+
+/** Rigid curves that make the view larger than this times the body are not framed. */
+const LARGE = 2.5;
 
 /** Seconds that all frames take at speed 1, and frames a second at most. */
 const DURATION = 6;
@@ -219,9 +222,29 @@ export class Player {
       scene.index = index;
       this.fitted = true;
     }
+    this.#include(low, high);
     this.camera.fit(low, high);
     this.moved = false;
     this.draw();
+  }
+
+  /** Extend a box by the rigid curves that are not far larger than the body, in the first and this frame. */
+  #include(low, high) {
+    const { scene, model } = this;
+    const body = Math.hypot(high[0] - low[0], high[1] - low[1]);
+    for (const curve of model.rigid) {
+      const [least, most] = [[...low], [...high]];
+      for (const frame of [null, scene.frame]) {
+        for (const [x, y] of rigidPoints(model, curve, frame, scene.scale)) {
+          [x, y].forEach((v, i) => {
+            least[i] = Math.min(least[i], v);
+            most[i] = Math.max(most[i], v);
+          });
+        }
+      }
+      if (Math.hypot(most[0] - least[0], most[1] - least[1]) > LARGE * body) continue;
+      [0, 1].forEach((i) => ([low[i], high[i]] = [least[i], most[i]]));
+    }
   }
 
   zoom(way, x, y) {

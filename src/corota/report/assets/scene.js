@@ -1,6 +1,6 @@
 // What is drawn: the model, its frames, the chosen frame, field, range and deformation.
 
-import { DIVERGING } from "./colors.js";
+import { DIVERGING, mapOf } from "./colors.js";
 import { extremes, fieldsOf } from "./fields.js";
 
 /** Displacements below this share of the model are enlarged unless told otherwise. */
@@ -123,11 +123,9 @@ export class Scene extends EventTarget {
   /** The chosen map; by default blue for negative and orange for positive values of signed fields. */
   get mapName() {
     if (this.map) return this.map;
-    if (this.model.positive.includes(this.field?.name)) return "viridis";
     const known = this.ranges.get(this.field?.name);
     const [low, high] = known ?? (this.field && this.frame ? this.rangeOf(this.field, this.frame) : [0, 1]);
-    if (low < -0.02 * high && high > -0.02 * low) return DIVERGING;
-    return low + high < 0 ? "blue" : "orange";
+    return mapOf(low, high, !this.model.positive.includes(this.field?.name));
   }
 
   /** Largest displacement of the frames. */

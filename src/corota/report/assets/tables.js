@@ -189,7 +189,7 @@ export class Tables {
     const total = profile.reduce((sum, [, seconds]) => sum + seconds, 0);
     const about = [["status", end.status ?? "still at work"], ["error", end.message], ["seconds", end.elapsed],
       ["degrees of freedom", facts.info?.n_dofs], ["threads", facts.info?.threads],
-      ["cut-backs", this.history.cutBackCount], ...(facts["critical points"] ?? []).map((text) => ["critical point", text])]
+      ["cut-backs", this.history.cutBackCount], ...(facts["critical points"] ?? []).map(({ text }) => ["critical point", text])]
       .filter(([, value]) => value !== undefined && value !== null);
     return el("div", { class: "row" }, table(["", ""], about),
       profile.length ? table(["phase", "seconds", "share"], profile.map(([phase, seconds]) => [phase, seconds, `${((100 * seconds) / total).toFixed(1)} %`])) : null);
