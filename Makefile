@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-rust test-python test-slow test-view test-mesh test-petsc lint lint-python clippy format bench docs \
-	wheel try-wheel meshes lock clean
+	check-site wheel try-wheel meshes lock clean
 
 help: ## Say what the targets do
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -100,8 +100,11 @@ $(DOCS): $(CORE) requirements-docs.txt
 	@touch $@
 
 docs: $(DOCS) ## Build the site of the documentation into build/site, warnings as errors
-	@MPLBACKEND=Agg $(BIN)/python -m sphinx -b html -q -W --keep-going docs build/site
+	@MPLBACKEND=Agg $(BIN)/python -m sphinx -b html -q -W --keep-going -d build/doctrees docs build/site
 	@echo "build/site/index.html"
+
+check-site: docs ## Open every page of the site in a headless Chromium, which must be installed
+	$(BIN)/python -m benchmarks.site_check build/site
 
 bench: $(CORE) ## Install the peers, run all programs side by side (benchmarks/README.md)
 	$(BIN)/python -m benchmarks.side_by_side

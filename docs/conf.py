@@ -35,10 +35,19 @@ napoleon_use_rtype = False
 highlight_language = "none"
 html_theme = "pydata_sphinx_theme"
 html_title = "Corota"
+html_favicon = "generated/static/logo.svg"
+html_context = {"default_mode": "auto"}
 html_static_path = ["generated/static"]
 html_css_files = ["figures.css"]
+html_search_scorer = str(Path(__file__).parent / "builder" / "scorer.js")
 html_show_sourcelink = False
 html_theme_options = {
+    "logo": {
+        "image_light": "generated/static/logo.svg",
+        "image_dark": "generated/static/logo.svg",
+        "text": "Corota",
+        "alt_text": "",
+    },
     "show_prev_next": True,
     "navigation_with_keys": False,
     "show_toc_level": 2,

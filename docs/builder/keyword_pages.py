@@ -50,8 +50,8 @@ def rows(docs: Path) -> dict[str, list[tuple[str, str, str]]]:
     found: dict[str, list[tuple[str, str, str]]] = {}
     for names, parameters, remarks in ROW.findall(text):
         for name in re.findall(r"\*([A-Z][A-Z -]*[A-Z])", names):
-            up = re.sub(r"\]\(([a-z-]+\.md)", r"](../../\1", remarks)
-            found.setdefault(name.replace(" ", ""), []).append((name, parameters, up))
+            up = [re.sub(r"\]\(([a-z-]+\.md)", r"](../../\1", t) for t in (parameters, remarks)]
+            found.setdefault(name.replace(" ", ""), []).append((name, *up))
     return found
 
 
@@ -61,7 +61,8 @@ def notes(docs: Path) -> dict[str, tuple[str, str, str]]:
     found = {}
     for name, body in NOTE.findall(text):
         cut = body.rindex("```") + 3
-        found[name.replace(" ", "")] = (name, body[:cut].strip(), body[cut:].strip())
+        rest = body[cut:].strip().replace("](../", "](../../")
+        found[name.replace(" ", "")] = (name, body[:cut].strip(), rest)
     return found
 
 

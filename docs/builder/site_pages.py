@@ -3,14 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import ast
 import inspect
 import re
 from pathlib import Path
 
 import element_pages
+import gallery
 import keyword_pages
-import thumbnails
+import search
 from svg import STYLE
 
 import corota as ct
@@ -45,13 +45,44 @@ REFERENCE = {
     "Errors": "CorotaError InputError DeckError ModelError UnsupportedError SingularError "
     "ConvergenceError ResourceError FileError Interrupted Diagnostic",
 }
-#: Pictures of cards have one height.
-CARDS = (
+#: Colors of the theme, pictures of cards, and the width of articles.
+LOOK = (
+    "html[data-theme=light]{--pst-color-primary:#0b6392;--pst-color-secondary:#b23c17}"
+    "html[data-theme=dark]{--pst-color-primary:#66bfe8;--pst-color-secondary:#ff9d70}"
+    ".bd-sidebar-primary{flex:0 0 15rem}.bd-sidebar-secondary{flex:0 0 13rem}"
+    ".bd-main .bd-content .bd-article-container{max-width:62rem}"
+    ".bd-article table{font-size:.82rem}.bd-article :is(td,th){padding:.25rem .4rem}"
+    ".bd-article table:has(th:nth-child(8)){font-size:.7rem}"
+    ".bd-header-article .ellipsis{white-space:normal}"
     ".sd-card-img-top{height:11rem;object-fit:contain;background:#fff;padding:.4rem}"
     ".bd-article figure{margin:1rem 0}"
+    ".filter{display:flex;flex-wrap:wrap;gap:.4rem;margin:1rem 0}.filter button{border:1px solid "
+    "var(--pst-color-border);border-radius:1rem;padding:.15rem .8rem;background:none;color:inherit}"
+    ".filter button[aria-pressed=true]{background:var(--pst-color-primary);"
+    "color:var(--pst-color-background)}"
+    # Code and tables wrap; nothing is hidden at the right.
+    ".bd-article pre{white-space:pre-wrap;overflow-wrap:anywhere}"
+    ".bd-article td code{white-space:normal;overflow-wrap:anywhere}"
+    ".prev-next-footer a,.prev-next-info,.prev-next-title{overflow:visible;white-space:normal}"
 )
 #: Modules of the reference.
 MODULES = ("corota.mesh", "corota.plots", "corota.examples")
+#: Pages of the repository that have a place in the site.
+ROOT_PAGES = {
+    "changelog": "CHANGELOG.md",
+    "contributing": "CONTRIBUTING.md",
+    "benchmarks": "benchmarks/README.md",
+}
+#: The mark of the project: a strip that bends, and the frame that turns with it.
+LOGO = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32">'
+    '<rect width="32" height="32" rx="6" fill="#0b6392"/>'
+    '<path d="M5 25C14 25 20 21 22 12" fill="none" stroke="#fff" stroke-width="4"/>'
+    '<path d="M17 4l8 2-2 8-8-2z" fill="none" stroke="#ffb37a" stroke-width="2.4"/></svg>'
+)
+#: Pages written by this run.
+WRITTEN: set[Path] = set()
+EXAMPLE = re.compile(r"\[([^\]]*)\]\((?:\.\./)+examples/([^)]+?)/?\)")
 FIGURE = re.compile(r"!\[([^\]]*)\]\((?:\.\./)*figures/([a-z0-9_]+)\.svg\)")
 
 
@@ -60,17 +91,27 @@ def write(docs: Path) -> None:
     folder = docs / "generated"
     for part in ("keywords", "elements", "gallery", "reference", "static"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    _put(folder / "static" / "figures.css", STYLE + CARDS)
+    _put(folder / "static" / "figures.css", STYLE + LOOK)
+    _put(folder / "static" / "logo.svg", LOGO)
     for part, pages in (("keywords", keyword_pages.pages), ("elements", element_pages.pages)):
         for name, text in pages(docs).items():
             _put(folder / part / name, text)
-    _gallery(folder / "gallery")
+    for name, text in gallery.pages().items():
+        _put(folder / "gallery" / name, text)
     _reference(folder / "reference")
-    for name in ("CHANGELOG", "CONTRIBUTING"):
-        text = (ROOT / f"{name}.md").read_text(encoding="utf-8")
-        _put(folder / f"{name.lower()}.md", text.replace("](docs/", "](../"))
+    for name, source in ROOT_PAGES.items():
+        text = (ROOT / source).read_text(encoding="utf-8")
+        _put(folder / f"{name}.md", _moved(text))
     cite = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     _put(folder / "cite.md", f"# How to cite\n\n```yaml\n{cite}\n```\n")
+    for path in set(folder.rglob("*.md")) - WRITTEN:  # of a builder before this one
+        path.unlink()
+
+
+def _moved(text: str) -> str:
+    """The text of a page of the repository with its links seen from the generated pages."""
+    text = re.sub(r"\]\((?:\.\./)?docs/", "](../", text)
+    return text.replace("](images/", "](../../benchmarks/images/")
 
 
 def mend_links(app: object, name: str, source: list[str]) -> None:
@@ -78,14 +119,15 @@ def mend_links(app: object, name: str, source: list[str]) -> None:
     up = "../" * name.count("/")
     here = f"{up}generated/" if not name.startswith("generated/") else up + "generated/"
     text = source[0]
-    text = re.sub(r"\]\((?:\.\./)+CONTRIBUTING\.md", f"]({here}contributing.md", text)
-    text = re.sub(
-        r"\[([^\]]*)\]\((?:\.\./)+examples/([^)/]+)[^)]*\)", rf"[\1]({here}gallery/\2.md)", text
-    )
+    for page in ("CONTRIBUTING", "CHANGELOG"):
+        text = re.sub(rf"\]\((?:\.\./)+{page}\.md", f"]({here}{page.lower()}.md", text)
+    text = re.sub(r"\]\((?:\.\./)+benchmarks/README\.md", f"]({here}benchmarks.md", text)
+    text = EXAMPLE.sub(lambda m: f"[{m[1]}]({here}gallery/{gallery.page_name(m[2])}.md)", text)
     text = re.sub(r"\[([^\]]*)\]\((?:\.\./)+(?:benchmarks|tests|src|rust)[^)]*\)", r"\1", text)
     if name.startswith("generated/"):
         text = re.sub(r"\[([^\]]*)\]\((?!http)[^)]*(?:rust|src|tests)/[^)]*\)", r"\1", text)
     text = FIGURE.sub(inline_figure, text)
+    text = gallery.with_examples(name, search.with_words(name, text))
     if name == "verification/index":
         text += "\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
     source[0] = text
@@ -98,65 +140,17 @@ def inline_figure(match: re.Match[str]) -> str:
     return f"```{{raw}} html\n<figure>\n{figure}</figure>\n```"
 
 
-def _gallery(folder: Path) -> None:
-    models = []
-    for name in ct.examples.names():
-        picture = folder / f"model-{name}.png"
-        if not picture.exists():
-            thumbnails.draw(ct.solve(ct.examples.load(name)), picture, 110)
-        code = inspect.getsource(ct.examples.MODELS[name])
-        text = ct.examples.describe(name)
-        page = f"# {name.capitalize()}\n\n{text}\n\n![{name}](model-{name}.png)\n\n"
-        page += f'```sh\ncorota demo {name}\n```\n\nor `ct.examples.load("{name}")`:\n\n'
-        page += f"```python\n{code}```\n"
-        _put(folder / f"model-{name}.md", page)
-        models.append(_card(f"model-{name}", name.capitalize(), text, f"model-{name}.png"))
-    scripts, groups = [], []
-    for group in sorted(p for p in (ROOT / "examples").iterdir() if p.is_dir()):
-        page = f"# examples/{group.name}\n"
-        for script in sorted(group.glob("*.py")):
-            source = script.read_text(encoding="utf-8")
-            text = ast.get_docstring(ast.parse(source)) or ""
-            page += f"\n## {script.name}\n\n{text}\n\n"
-            picture = thumbnails.FOLDER / thumbnails.name(script)
-            if picture.exists():
-                image = f"../../images/gallery/{picture.name}"
-                page += f"![{script.stem}]({image})\n\n"
-                title = script.stem.replace("_", " ").capitalize()
-                scripts.append(_card(group.name, title, text.split("\n\n")[0], image))
-            page += f"```python\n{source}```\n"
-        _put(folder / f"{group.name}.md", page)
-        groups.append(group.name)
-    toc = "\n".join([*(f"model-{name}" for name in ct.examples.names()), *groups])
-    _put(
-        folder / "index.md",
-        "# Gallery\n\nModels that come with the package; the pictures show the largest stress."
-        f"\n\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(models)}::::\n\n"
-        "## Scripts\n\nExamples of the repository, each run by the tests."
-        f"\n\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(scripts)}::::\n\n"
-        f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n",
-    )
-
-
-def _card(page: str, title: str, text: str, image: str) -> str:
-    return (
-        f":::{{grid-item-card}} {title}\n:link: {page}\n:link-type: doc\n"
-        f":img-top: {image}\n{' '.join(text.split())}\n:::\n\n"
-    )
-
-
 def _reference(folder: Path) -> None:
     names = []
     for title, listed in REFERENCE.items():
         page = f"# {title}\n"
         for name in listed.split():
             value = getattr(ct, name)
-            home = f"{value.__module__}.{name}"
             kind = "autoclass" if inspect.isclass(value) else "autofunction"
             members = (
                 "\n:members:\n:inherited-members: Exception, list" if kind == "autoclass" else ""
             )
-            page += f"\n## {name}\n\n```{{eval-rst}}\n.. {kind}:: {home}\n"
+            page += f"\n## {name}\n\n```{{eval-rst}}\n.. {kind}:: corota.{name}\n"
             page += "".join(f"   {line}\n" for line in members.split("\n") if line) + "```\n"
         key = title.lower().replace(" ", "-")
         _put(folder / f"{key}.md", page)
@@ -181,5 +175,6 @@ def _reference(folder: Path) -> None:
 
 def _put(path: Path, text: str) -> None:
     """Write a page where it has changed, so that Sphinx builds only what is new."""
+    WRITTEN.add(path)
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")

@@ -1,24 +1,25 @@
 """Pictures of the example scripts in ``docs/images/gallery``.
 
-``python docs/builder/thumbnails.py [NAME]`` draws them.
-Each script runs as it is; the picture is of its last results, at the frame of the largest stress.
+``python docs/builder/thumbnails.py [NAME]`` draws them. Each script runs as it is; the picture is
+of its analysis with the most frames, at the frame of the largest stress.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import contextlib
 import io
-import os
-import runpy
 import sys
 import tempfile
 from pathlib import Path
 
 import corota as ct
+from corota.plots.contour import Drawing, paint
+from corota.plots.figure import look
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "images" / "gallery"
+#: Size [inch], dots per inch and colors of a picture.
+SIZE, DPI, COLORS = (3.6, 2.4), 110, 48
 #: Scripts that draw no results of their own.
 NONE = {"gripper/mesh.py"}
 
@@ -42,53 +43,36 @@ def telling(results: ct.Results) -> int:
     return max(range(len(size)), key=lambda i: (size[i], i))
 
 
-def has_stress(results: ct.Results) -> bool:
-    """Whether a picture of the stress shows something."""
-    return "MISES" in results.variables(-1) and bool(results.nodal("MISES", telling(results)).any())
+def draw(results: ct.Results, path: Path) -> None:
+    """Draw the telling frame: the deformed body in colors alone, with its undeformed outline."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from PIL import Image
 
-
-def draw(results: ct.Results, path: Path, dpi: int = 60) -> None:
-    """Draw the telling frame of results."""
-    import matplotlib.pyplot as plt
-
-    results.plot(frame=telling(results), path=path, dpi=dpi)
-    plt.close("all")
-
-
-def solved(script: Path) -> list[ct.Results]:
-    """Run a script in a folder of its own, and collect what it solves."""
-    found: list[ct.Results] = []
-    solve = ct.solve
-
-    def kept(*args: object, **options: object) -> ct.Results:
-        results = solve(*args, **options)  # type: ignore[arg-type]
-        found.append(results)
-        return results
-
-    before, arguments = Path.cwd(), sys.argv
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-        os.chdir(folder)
-        sys.argv = [str(script)]
-        ct.solve = kept  # type: ignore[assignment]
-        try:
-            runpy.run_path(str(script), run_name="__main__")
-        except SystemExit:
-            pass
-        finally:
-            ct.solve = solve
-            sys.argv = arguments
-            os.chdir(before)
-    return found
+    frame = telling(results)
+    name = "MISES" if "MISES" in results.variables(frame) else "U"
+    data = io.BytesIO()
+    with look() as mpl:
+        figure = Figure(figsize=SIZE)
+        FigureCanvasAgg(figure)
+        ax = figure.add_axes((0.02, 0.02, 0.96, 0.96))
+        paint(ax, mpl, Drawing(results, name, False), frame, 1.0, False, True, None)
+        ax.set_axis_off()
+        figure.savefig(data, dpi=DPI, format="png")
+    with Image.open(data) as image:
+        image.convert("RGB").quantize(COLORS).save(path, optimize=True)
 
 
 if __name__ == "__main__":
+    from benchmarks.report_pages import solve_example
+
     FOLDER.mkdir(exist_ok=True)
     wanted = sys.argv[1:]
     for script in scripts():
         if wanted and not any(word in name(script) for word in wanted):
             continue
-        results = solved(script)
-        if results:
-            stressed = [r for r in results if has_stress(r)]
-            draw((stressed or results)[-1], FOLDER / name(script))
-        print(name(script), len(results), "analyses")
+        with tempfile.TemporaryDirectory() as folder:
+            path = script.relative_to(ROOT / "examples").with_suffix("").as_posix()
+            results = solve_example(path, Path(folder))
+            draw(results, FOLDER / name(script))
+        print(name(script), flush=True)

@@ -79,9 +79,38 @@ def test_decks_of_the_documents_run(deck: Path, tmp_path: Path) -> None:
 
 
 def test_links_of_the_repository_lead_into_the_site(site: ModuleType) -> None:
-    text = ["[x](../examples/gripper) [y](../CONTRIBUTING.md#z) [w](../benchmarks/README.md)"]
+    text = [
+        "[x](../examples/gripper) [c](../examples/contact/clip.py) [y](../CONTRIBUTING.md#z) "
+        "[w](../benchmarks/README.md) [v](../rust/src)"
+    ]
     site.mend_links(None, "index", text)
-    assert text[0] == "[x](generated/gallery/gripper.md) [y](generated/contributing.md#z) w"
+    assert text[0] == (
+        "[x](generated/gallery/gripper.md) [c](generated/gallery/contact-clip.md) "
+        "[y](generated/contributing.md#z) [w](generated/benchmarks.md) v"
+    )
+
+
+def test_every_example_is_in_the_gallery_and_linked_with_its_topic() -> None:
+    gallery, thumbnails = script("gallery"), script("thumbnails")
+    folder = DOCS.parent / "examples"
+    scripts = [p.relative_to(folder).with_suffix("").as_posix() for p in thumbnails.scripts()]
+    assert set(scripts) == set(gallery.ENTRIES)
+    pages = gallery.pages()
+    for path, entry in gallery.ENTRIES.items():
+        page = gallery.page_name(path)
+        assert f":link: {page}\n" in pages["index.md"]
+        for topic in gallery.TOPICS[entry.topic]:
+            assert f"({topic}.md)" in pages[f"{page}.md"].replace("../../", "")
+            assert f"gallery/{page}.md" in gallery.with_examples(topic, "# A topic\n")
+    pictures = {thumbnails.name(folder / f"{path}.py") for path in gallery.ENTRIES}
+    assert {p.name for p in thumbnails.FOLDER.iterdir()} <= pictures
+
+
+def test_words_of_the_search_belong_to_pages() -> None:
+    search = script("search")
+    for page in search.WORDS:
+        assert (DOCS / f"{page}.md").is_file(), page
+    assert "single: ! elastomer\n" in search.with_words("rubber", "# Rubber\n\ntext\n")
 
 
 def test_every_page_is_in_the_contents() -> None:

@@ -1,0 +1,197 @@
+"""The gallery: a page for each example, cards by topic, links between examples and topics."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import ast
+import inspect
+from dataclasses import dataclass
+from pathlib import Path
+
+import thumbnails
+
+import corota as ct
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "examples"
+#: Topics, and the pages that explain them.
+TOPICS = {
+    "Flexures": ("howto/flexure", "constraints"),
+    "Snap-fits and seals": ("howto/snap_fit", "howto/seal"),
+    "Contact": ("contact",),
+    "Buckling and snap-through": ("howto/bistable_switch", "paths"),
+    "Plasticity": ("plasticity", "howto/cyclic_plasticity"),
+    "Motion and impact": ("dynamics", "impact", "howto/impact"),
+    "Beams": ("line-elements", "howto/beams_on_plates"),
+    "Elements": ("comparison", "theory"),
+}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An example: its topic, its numbers beside the independent ones, its model in the package."""
+
+    topic: str
+    numbers: str = ""
+    model: str = ""
+
+
+#: Examples by their path below ``examples``.
+ENTRIES = {
+    "contact/bistable_beam": Entry(
+        "Buckling and snap-through",
+        "The probe's force vanishes after 4/3 of the height within 2 % (Qiu, Lang, Slocum).",
+    ),
+    "contact/clip": Entry("Snap-fits and seals", model="clip"),
+    "contact/crushed_ring": Entry("Contact"),
+    "contact/hertz": Entry(
+        "Contact", "Pressure and half width over those of Hertz: 1.001 and 1.000 with `Q4I`."
+    ),
+    "contact/ironing": Entry("Contact"),
+    "contact/seal": Entry("Snap-fits and seals", model="seal"),
+    "contact/snap_by_load": Entry("Buckling and snap-through"),
+    "cook/cook": Entry(
+        "Elements",
+        "Tip of the linear membrane with `Q9`, 16 x 16: 23.949; converged 23.966, the same mesh in "
+        "an independent code 23.949.",
+    ),
+    "cyclic_strip/cyclic_strip": Entry("Plasticity"),
+    "flexure/flexure": Entry("Flexures", model="hinge"),
+    "frame_on_plate/frame_on_plate": Entry("Beams"),
+    "frames/frames": Entry("Beams"),
+    "gripper/gripper": Entry("Flexures", model="gripper"),
+    "guide/guide": Entry("Flexures"),
+    "impact/bar": Entry("Motion and impact"),
+    "impact/ring": Entry("Motion and impact"),
+    "limit_load/limit_load": Entry("Plasticity"),
+    "lines/frame_stop": Entry("Beams"),
+    "motion/cantilever_sine": Entry("Motion and impact"),
+    "motion/free_flight": Entry("Motion and impact"),
+    "motion/pendulum": Entry("Motion and impact"),
+    "motion/pulse": Entry("Motion and impact"),
+    "motion/rotor": Entry("Motion and impact"),
+    "perforated_strip/perforated_strip": Entry("Plasticity"),
+    "plastic_cook/plastic_cook": Entry("Plasticity"),
+    "rollup/rollup": Entry(
+        "Elements", "The gap of the closed circle over its length: 0.0007; exact 0.", "rollup"
+    ),
+    "snap_fit/snap_fit": Entry("Snap-fits and seals"),
+    "switch/switch": Entry("Buckling and snap-through", model="bistable"),
+}
+#: The filter: a button shows the cards of its topic only.
+FILTER = """```{{raw}} html
+<div class="filter" role="group" aria-label="Topics">{buttons}</div>
+<script>
+document.querySelector(".filter").addEventListener("click", ({{ target }}) => {{
+  if (target.tagName !== "BUTTON") return;
+  for (const button of target.parentElement.children)
+    button.setAttribute("aria-pressed", String(button === target));
+  for (const card of document.querySelectorAll("article .sd-col"))
+    card.hidden = Boolean(target.value) && !card.querySelector(`.${{target.value}}`);
+}});
+</script>
+```
+"""
+
+
+def key(topic: str) -> str:
+    """A topic as a class of styles."""
+    return "topic-" + topic.split()[0].lower()
+
+
+def page_name(path: str) -> str:
+    """Page of an example, or of a folder with one example: ``contact-clip``, ``guide``."""
+    group, _, stem = path.removesuffix(".py").partition("/")
+    alone = sum(other.startswith(f"{group}/") for other in ENTRIES) == 1
+    if alone:
+        return group
+    return f"{group}-{stem}" if stem else "index"
+
+
+def pages() -> dict[str, str]:
+    """Text of every page of the gallery by file name."""
+    found = {f"{page_name(path)}.md": page(path, entry) for path, entry in ENTRIES.items()}
+    cards = "".join(card(path, entry) for path, entry in ENTRIES.items())
+    buttons = '<button value="" aria-pressed="true">All</button>' + "".join(
+        f'<button value="{key(topic)}" aria-pressed="false">{topic}</button>' for topic in TOPICS
+    )
+    toc = "\n".join(name.removesuffix(".md") for name in found)
+    found["index.md"] = (
+        "# Gallery\n\nEach example is run by the tests. The pictures show the frame of the largest "
+        "von Mises stress: pale is none, dark the largest.\n\n"
+        + FILTER.format(buttons=buttons)
+        + f"\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{cards}::::\n\n"
+        "The same step by step, with sliders or in cells: the notebooks `notebooks/*.ipynb` of the "
+        "repository, which the tests run as they are.\n\n"
+        f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n"
+    )
+    return found
+
+
+def title(path: str) -> str:
+    """Name of an example."""
+    return path.split("/")[1].replace("_", " ").capitalize()
+
+
+def text_of(path: str) -> str:
+    """What the script says of itself."""
+    return ast.get_docstring(ast.parse((EXAMPLES / f"{path}.py").read_text(encoding="utf-8"))) or ""
+
+
+def picture(path: str) -> str:
+    """Picture of an example as the pages of the gallery see it; empty where there is none."""
+    file = thumbnails.FOLDER / thumbnails.name(EXAMPLES / f"{path}.py")
+    return f"../../images/gallery/{file.name}" if file.exists() else ""
+
+
+def card(path: str, entry: Entry) -> str:
+    """Card of an example."""
+    first = " ".join(text_of(path).split("\n\n")[0].split())
+    image = picture(path)
+    top = f":img-top: {image}\n:img-alt: {title(path)}\n" if image else ""
+    return (
+        f":::{{grid-item-card}} {title(path)}\n:link: {page_name(path)}\n:link-type: doc\n"
+        f":class-card: {key(entry.topic)}\n{top}\n{first}\n:::\n\n"
+    )
+
+
+def page(path: str, entry: Entry) -> str:
+    """Page of an example: what it shows, its numbers, how to run it, its text."""
+    file = EXAMPLES / f"{path}.py"
+    lines = [f"# {title(path)}", "", text_of(path), ""]
+    if image := picture(path):
+        lines += [f"![{title(path)}]({image})", ""]
+    if entry.numbers:
+        lines += [f"**Beside the independent value**: {entry.numbers}", ""]
+    links = ", ".join(f"[{name.split('/')[-1].replace('_', ' ')}](../../{name}.md)"
+                      for name in TOPICS[entry.topic])  # fmt: skip
+    lines += [f"**{entry.topic}**: {links}", "", "```sh", f"python examples/{path}.py"]
+    decks = sorted(p.name for p in file.parent.glob("*.inp") if not p.stem.endswith("_mesh"))
+    lines += [f"corota run examples/{file.parent.name}/{deck}" for deck in decks]
+    if entry.model:
+        lines += [f"corota demo {entry.model}"]
+    lines += ["```", ""]
+    if entry.model:
+        code = inspect.getsource(ct.examples.MODELS[entry.model])
+        lines += [
+            f'A model of this kind comes with the package, `ct.examples.load("{entry.model}")`:'
+        ]
+        lines += ["", "```python", code.rstrip(), "```", ""]
+    lines += [f"## {file.name}", "", "```python", file.read_text(encoding="utf-8").rstrip(), "```"]
+    return "\n".join(lines) + "\n"
+
+
+def with_examples(name: str, text: str) -> str:
+    """The text of a page with links to the examples of its topics at its end."""
+    topics = [topic for topic, names in TOPICS.items() if name in names]
+    found = [path for path, entry in ENTRIES.items() if entry.topic in topics]
+    if not found:
+        return text
+    up = "../" * name.count("/")
+    links = ", ".join(
+        f"[{title(path).lower()}]({up}generated/gallery/{page_name(path)}.md)" for path in found
+    )
+    return f"{text.rstrip()}\n\nExamples with their pictures: {links}.\n"
+
+
+__all__ = ["ENTRIES", "TOPICS", "page_name", "pages", "with_examples"]
