@@ -311,6 +311,7 @@ def _plot(parser: argparse.ArgumentParser) -> None:
 
 def _report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("job", help="name of the job, or any of its files")
+    parser.add_argument("other", nargs="?", help="another job, whose curves are drawn beside")
     parser.add_argument("-o", "--output", metavar="FILE", help="report (.html; default: JOB.html)")
     parser.add_argument("--title", default="", help="heading (default: the name of the job)")
     parser.add_argument(

@@ -13,7 +13,7 @@ def run(args: Any, terminal: Terminal) -> int:
     """Write the page and print its size."""
     from corota.report import report_job
 
-    path = report_job(args.job, args.output, limit=args.limit, title=args.title)
+    path = report_job(args.job, args.output, other=args.other, limit=args.limit, title=args.title)
     size = path.stat().st_size
     terminal.line(f"wrote {path} ({size / 1e6:.1f} MB); open it in a browser")
     terminal.record({"event": "report", "file": str(path), "bytes": size})

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from corota.report.content import LIMIT, content_of_job, content_of_results
+from corota.report.content import LIMIT, compared, content_of_job, content_of_results
 from corota.report.page import page
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ def report_job(
     job: str | PathLike[str],
     path: str | PathLike[str] | None = None,
     *,
+    other: str | PathLike[str] | None = None,
     limit: float = LIMIT,
     title: str = "",
 ) -> Path:
@@ -78,6 +79,9 @@ def report_job(
         Stem of the files, or any file of the job: deck, result file, table.
     path : path-like, optional
         ``JOB.html`` beside the files by default.
+    other : path-like, optional
+        Another job, such as a variant: its curves are drawn dashed beside those of the job, and a
+        table compares the largest values.
     limit, title
         As in :func:`write_report`.
 
@@ -94,6 +98,8 @@ def report_job(
 
     files = find_job(job)
     found = content_of_job(files, limit=limit, title=title)
+    if other is not None:
+        found = compared(found, find_job(other))
     return _write(page(found), path or files.path("html"))
 
 

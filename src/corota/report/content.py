@@ -92,6 +92,21 @@ def content_of_results(results: Results, *, limit: float = LIMIT, title: str = "
     return _content(results, records_of_results(results), limit, title)
 
 
+def compared(content: Content, other: JobPaths) -> Content:
+    """The content of a page with the curves of another job beside its own."""
+    records = records_of_files(other)
+    facts: dict[str, Any] = {"job": other.name}
+    if other.results is not None:
+        with read_vtkhdf(other.results) as results:
+            facts = facts_of(results, other.name)
+            if not records.rows:
+                _rows_of_frames(records, results)
+    notes: list[str] = []
+    content.chunks["other"] = history_chunk(records, facts, notes)
+    content.notes += [f"{other.name}: {note}" for note in notes]
+    return content
+
+
 def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> Content:
     """Content of a page about the files of a job, converged or not.
 

@@ -42,8 +42,9 @@ export function branches(label, xs, ys) {
 }
 
 export class Charts {
-  constructor(place, scene, history, player) {
-    Object.assign(this, { place, scene, history, player });
+  /** `other` is the history of another run, whose curves are drawn beside. */
+  constructor(place, scene, history, player, other) {
+    Object.assign(this, { place, scene, history, player, other });
     this.charts = [];
     this.pick = (row) => this.#show(history.column("step")[row], history.column("increment")[row]);
     this.#path();
@@ -120,13 +121,19 @@ export class Charts {
     this.#live(() => {
       const [vertical, horizontal] = selects.map((select) => select.value);
       const [xs, ys] = [history.column(horizontal), history.column(vertical)];
-      chart.show(branches(vertical, xs, ys), {
+      chart.show([...branches(vertical, xs, ys), ...this.#beside(vertical, horizontal)], {
         x: history.label(horizontal),
         y: history.label(vertical),
         points: this.#notable(ys).map(({ row, text }) => ({ x: xs[row], y: ys[row], text })),
       });
     });
     for (const select of selects) select.addEventListener("change", () => this.again[0]());
+  }
+
+  /** The same columns of the other run, dashed; none where it does not have them. */
+  #beside(vertical, horizontal) {
+    const [x, y] = [horizontal, vertical].map((name) => this.other?.column(name));
+    return x && y ? [{ label: `${vertical}, ${this.other.facts.job}`, x, y, dash: [6, 4] }] : [];
   }
 
   /** What drives: the load factor where loads act, else the largest reaction of a support that moves. */
@@ -182,15 +189,16 @@ export class Charts {
     const chart = this.#chart({ title, pick: this.pick });
     this.#live(() => {
       const time = history.column("time");
+      const beside = names.filter(({ values, second }) => !values && !second).flatMap(({ name }) => this.#beside(name, "time"));
       chart.show(
-        names.map(({ name, label, second, values, dash }) => ({
+        [...names.map(({ name, label, second, values, dash }) => ({
           label: label ?? name,
           x: time,
           y: values ? values() : history.column(name),
           second,
           dash,
           rows: this.#rows,
-        })),
+        })), ...beside],
         { x: history.label("time"), ...labels },
       );
     });

@@ -147,8 +147,8 @@ class Page {
     if (this.model) this.scene.tell("frames");
     this.scene.index = 0;
     byId("curves").replaceChildren();
-    this.charts = new Charts(byId("curves"), this.scene, this.history, this.player);
-    this.tables = new Tables(byId("tables"), this.model, this.history, this.scene, this.charts.pick);
+    this.charts = new Charts(byId("curves"), this.scene, this.history, this.player, this.other);
+    this.tables = new Tables(byId("tables"), this.model, this.history, this.scene, this.charts.pick, this.other);
     if (this.model && this.scene.shown.length) {
       this.player.refresh("look");
       const last = this.scene.shown.findLastIndex((frame) => frame.kind !== "iterate");
@@ -169,6 +169,8 @@ class Page {
   async openEmbedded() {
     const source = new EmbeddedSource();
     this.build(await source.chunk("model"), await source.chunk("history"));
+    const other = await source.chunk("other");
+    if (other) this.other = new History(other);
     if (this.model) for await (const frame of source.frames()) this.scene.all.push(frame);
     this.assemble();
   }

@@ -37,10 +37,11 @@ const LOADS = {
 const list = (items) => (items.length ? el("ul", {}, ...items.map((text) => el("li", {}, text))) : null);
 
 export class Tables {
-  constructor(place, model, history, scene, pick) {
-    Object.assign(this, { place, model, history, scene, pick });
+  /** `other` is the history of another run, to compare with. */
+  constructor(place, model, history, scene, pick, other) {
+    Object.assign(this, { place, model, history, scene, pick, other });
     this.charts = [];
-    const panels = [panel("Notes and warnings", true, this.#notes())];
+    const panels = [panel("Comparison", true, other && this.#comparison()), panel("Notes and warnings", true, this.#notes())];
     if (model) {
       panels.push(
         panel("Model", true, this.#sections(), this.#materials()),
@@ -130,6 +131,22 @@ export class Tables {
     if (!steps.length) return null;
     return table(["", "name", "procedure", "settings"], steps.map(({ name, procedure, ...rest }, i) => [
       i + 1, name, procedure, Object.entries(rest).map(([k, v]) => `${k.replaceAll("_", " ")} ${show(v)}`).join(", ")]));
+  }
+
+  /** Largest sizes of the columns that both runs have, with their last values. */
+  #comparison() {
+    const { history, other } = this;
+    const most = (values) => values.reduce((found, v) => (Math.abs(v) > found ? Math.abs(v) : found), 0);
+    const rows = history.names
+      .filter((name) => other.column(name) && !["step", "increment", "attempts", "run"].includes(name))
+      .map((name) => {
+        const [a, b] = [history.column(name), other.column(name)];
+        const [first, second] = [most(a), most(b)];
+        return [history.label(name), first, second, first ? `${(100 * (second / first - 1)).toFixed(1)} %` : "", a.at(-1), b.at(-1)];
+      })
+      .filter(([, first, second]) => first || second);
+    const [a, b] = [history.facts.job, other.facts.job];
+    return table(["", `largest size, ${a}`, b, "difference", `last, ${a}`, b], rows);
   }
 
   #notes() {
