@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import corota as ct
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 #: Topics, and the pages that explain them.
 TOPICS = {
     "Flexures": ("howto/flexure", "constraints"),
@@ -24,6 +26,7 @@ TOPICS = {
     "Motion and impact": ("dynamics", "impact", "howto/impact"),
     "Beams": ("line-elements", "howto/beams_on_plates"),
     "Elements": ("comparison", "theory"),
+    "More": ("howto/index",),
 }
 
 
@@ -64,6 +67,7 @@ ENTRIES = {
     "impact/bar": Entry("Motion and impact"),
     "impact/ring": Entry("Motion and impact"),
     "limit_load/limit_load": Entry("Plasticity"),
+    "joints/joints": Entry("Flexures"),
     "lines/frame_stop": Entry("Beams"),
     "motion/cantilever_sine": Entry("Motion and impact"),
     "motion/free_flight": Entry("Motion and impact"),
@@ -78,6 +82,8 @@ ENTRIES = {
     "snap_fit/snap_fit": Entry("Snap-fits and seals"),
     "switch/switch": Entry("Buckling and snap-through", model="bistable"),
 }
+for _script in thumbnails.scripts():  # those that nobody has put under a topic yet
+    ENTRIES.setdefault(_script.relative_to(EXAMPLES).with_suffix("").as_posix(), Entry("More"))
 #: The filter: a button shows the cards of its topic only.
 FILTER = """```{{raw}} html
 <div class="filter" role="group" aria-label="Topics">{buttons}</div>
@@ -111,9 +117,17 @@ def page_name(path: str) -> str:
 def pages() -> dict[str, str]:
     """Text of every page of the gallery by file name."""
     found = {f"{page_name(path)}.md": page(path, entry) for path, entry in ENTRIES.items()}
+    found |= {f"notebook-{file.stem}.md": notebook(file) for file in NOTEBOOKS}
+    cells = "".join(
+        f"- [{text.partition(chr(10))[0].removeprefix('# ')}]({name})\n"
+        for name, text in found.items()
+        if name.startswith("notebook-")
+    )
     cards = "".join(card(path, entry) for path, entry in ENTRIES.items())
     buttons = '<button value="" aria-pressed="true">All</button>' + "".join(
-        f'<button value="{key(topic)}" aria-pressed="false">{topic}</button>' for topic in TOPICS
+        f'<button value="{key(topic)}" aria-pressed="false">{topic}</button>'
+        for topic in TOPICS
+        if any(entry.topic == topic for entry in ENTRIES.values())
     )
     toc = "\n".join(name.removesuffix(".md") for name in found)
     found["index.md"] = (
@@ -121,11 +135,23 @@ def pages() -> dict[str, str]:
         "von Mises stress: pale is none, dark the largest.\n\n"
         + FILTER.format(buttons=buttons)
         + f"\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{cards}::::\n\n"
-        "The same step by step, with sliders or in cells: the notebooks `notebooks/*.ipynb` of the "
-        "repository, which the tests run as they are.\n\n"
+        f"## Notebooks\n\nIn cells, step by step; the tests run them as they are.\n\n{cells}\n"
         f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n"
     )
     return found
+
+
+def notebook(file: Path) -> str:
+    """A notebook as a page: its texts and cells in order."""
+    cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
+    texts = ["".join(cell["source"]).rstrip() for cell in cells]
+    parts = [
+        text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```"
+        for cell, text in zip(cells, texts, strict=True)
+    ]
+    note = f"`notebooks/{file.name}` of the repository; it runs as it is."
+    heading, _, rest = "\n\n".join(parts).partition("\n")
+    return f"{heading}\n\n{note}\n{rest}\n"
 
 
 def title(path: str) -> str:

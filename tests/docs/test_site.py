@@ -102,6 +102,8 @@ def test_every_example_is_in_the_gallery_and_linked_with_its_topic() -> None:
         for topic in gallery.TOPICS[entry.topic]:
             assert f"({topic}.md)" in pages[f"{page}.md"].replace("../../", "")
             assert f"gallery/{page}.md" in gallery.with_examples(topic, "# A topic\n")
+    for notebook in (DOCS.parent / "notebooks").glob("*.ipynb"):
+        assert f"(notebook-{notebook.stem}.md)" in pages["index.md"]
     pictures = {thumbnails.name(folder / f"{path}.py") for path in gallery.ENTRIES}
     assert {p.name for p in thumbnails.FOLDER.iterdir()} <= pictures
 
