@@ -117,7 +117,9 @@ def _file(report: Comparison, ending: str, results: ct.Results, read: ct.Results
             tolerance = FRD if ending == "frd" else 0.0
             what = f"{ending}: nodal {name}, frame {frame}"
             with suppress(*([ct.InputError] if ending == "frd" else [])):  # not a block of files
-                report.same(what, read.nodal(name, index), results.nodal(name, frame), tolerance)
+                # A file of CalculiX's layout has the nodes of rigid curves behind the others.
+                found = read.nodal(name, index)[: results.mesh.n_nodes]
+                report.same(what, found, results.nodal(name, frame), tolerance)
             if whole and name not in NODAL:
                 for at in ("points", "nodes"):
                     mine, theirs = results.extremes(name, frame, at), read.extremes(name, index, at)
@@ -125,6 +127,8 @@ def _file(report: Comparison, ending: str, results: ct.Results, read: ct.Results
                     if mine != theirs:
                         report.wrong.append(f"{ending}: extremes {mine} for {theirs}")
     if whole:
+        # Each history reads all frames: here once.
+        read.frames._read = list(read.frames).__getitem__  # type: ignore[attr-defined]
         for name in names:
             for how in ("auto", "min", "max"):
                 found, wanted = read.history(name, combine=how), results.history(name, combine=how)
@@ -151,8 +155,9 @@ def _table(report: Comparison, results: ct.Results, path: Path) -> None:
                 "csv: largest U", table[:, column], results.history("U", combine="max"), CSV
             )
         elif any(name in f.scalars for f in results.frames):
-            wanted = [f.scalars.get(name, 0.0) for f in results.frames]
-            report.same(f"csv: {name}", table[:, column], wanted, CSV)
+            known = [i for i, f in enumerate(results.frames) if name in f.scalars]
+            wanted = [results.frames[i].scalars[name] for i in known]
+            report.same(f"csv: {name}", table[known, column], wanted, CSV)
         elif (match := re.fullmatch(r"(RF[12]) (.+)", name)) and match[2] in results.mesh.node_sets:
             wanted = results.history(match[1], at=match[2])
             report.same(f"csv: {name}", table[:, column], wanted, CSV)
@@ -162,8 +167,8 @@ def _dat(report: Comparison, results: ct.Results, path: Path) -> None:
     """Tables at points beside extremes, tables at nodes beside nodal values; of the last frame."""
     steps = results.model.steps
     last = results.frames[-1]
-    if not last.fields:
-        return
+    if not last.fields or any("M1" in b.values for b in last.fields):
+        return  # of beams the table has the stress at the outer fibers
     stored = {n for b in last.fields for n in b.values}
     point = tuple(n for n, r in variables().items() if r.title and not r.frame and n in stored)
     step = ct.Static()

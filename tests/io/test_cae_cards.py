@@ -240,3 +240,103 @@ def test_parameters_without_effect_are_noted(tmp_path: Path) -> None:
     text = text.replace("MATERIAL=M\n1.", "MATERIAL=M, STACK DIRECTION=3, LAYUP=A\n1.")
     notes = read(tmp_path, text).notes
     assert sum("is ignored" in note for note in notes) == 2
+
+
+ASSEMBLY = """*PART, NAME=P
+*NODE
+1, 0., 0.
+2, 4., 0.
+3, 4., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=E
+1, 1, 2, 3, 4
+*SOLID SECTION, ELSET=E, MATERIAL=M
+1.,
+*END PART
+*ASSEMBLY, NAME=A
+*INSTANCE, NAME=P-1, PART=P
+*END INSTANCE
+*INSTANCE, NAME=P-2, PART=P
+6., 0.
+*END INSTANCE
+*ELEMENT, TYPE={type}, ELSET=Springs/Dashpots-1
+{nodes}
+{value}
+*NSET, NSET=FIX, INSTANCE=P-1
+1, 4
+*NSET, NSET=FIX, INSTANCE=P-2
+2, 3
+*NSET, NSET=OUT, INSTANCE=P-1
+2,
+*END ASSEMBLY
+*MATERIAL, NAME=M
+*ELASTIC
+100., 0.
+*DENSITY
+1.,
+*BOUNDARY
+FIX, ENCASTRE
+*STEP, NAME=Step-1, NLGEOM=NO{more}
+{procedure}
+*END STEP
+"""
+
+
+def test_elements_of_the_assembly_name_nodes_of_instances(tmp_path: Path) -> None:
+    """A spring between two instances, as CAE writes it; each bar has k = 25."""
+    value = "*SPRING, ELSET=Springs/Dashpots-1\n1, 1\n1.E8"
+    text = ASSEMBLY.format(
+        type="SPRING2",
+        nodes="1, P-1.2, P-2.1\n2, P-1.3, P-2.4",
+        value=value,
+        more="",
+        procedure="*STATIC\n*CLOAD\nP-1.2, 1, 1.\nP-1.3, 1, 1.",
+    )
+    model = read(tmp_path, text)
+    frame = ct.solve(model, threads=1).frames[-1]
+    bar = 100.0 / 4.0
+    assert frame.U[model.mesh.nodes_of("OUT")][0, 0] == pytest.approx(2.0 / (2.0 * bar), rel=1e-5)
+    with pytest.raises(ct.DeckError, match=r"node P-2\.9 is not defined"):
+        read(tmp_path, text.replace("P-2.4", "P-2.9"))
+
+
+def test_inertia_of_the_assembly(tmp_path: Path) -> None:
+    """Point masses at nodes of an instance, and the steps of CAE's frequency analysis."""
+    text = ASSEMBLY.format(
+        type="MASS",
+        nodes="1, P-1.2\n2, P-1.3",
+        value="*MASS, ELSET=Springs/Dashpots-1\n1000.,",
+        more=", PERTURBATION",
+        procedure="*FREQUENCY, EIGENSOLVER=Lanczos, NORMALIZATION=mass\n2, , , ,",
+    )
+    model = read(tmp_path, text)
+    assert sum(m.mass for m in model.point_masses) in (1000.0, 2000.0)
+    modes = ct.solve(model, threads=1).modes[-1]
+    along = math.sqrt(25.0 / (2000.0 + 4.0 / 3.0)) / (2.0 * math.pi)
+    assert np.abs(np.array(modes.factors) / along - 1.0).min() < 1e-2
+
+
+def test_real_and_imaginary_loads_are_written_as_load_cases(tmp_path: Path) -> None:
+    text = ASSEMBLY.format(
+        type="MASS",
+        nodes="1, P-1.2",
+        value="*MASS, ELSET=Springs/Dashpots-1\n1.,",
+        more=", PERTURBATION",
+        procedure="*FREQUENCY\n3\n*END STEP\n*STEP, PERTURBATION\n"
+        "*STEADY STATE DYNAMICS, FREQUENCY SCALE=LINEAR\n.1, .2, 3, 3.\n"
+        "*CLOAD, REAL\nOUT, 1, 2.\n*CLOAD, IMAGINARY\nOUT, 2, -1.\n*RESTART, WRITE, "
+        "NUMBER INTERVAL=1, TIME MARKS=NO, FREQUENCY=0",
+    )
+    model = read(tmp_path, text)
+    step = model.steps[1]
+    assert [len(step.loads), len(step.imaginary_loads)] == [1, 1]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        again = ct.read(ct.write(model, tmp_path / "again.inp"))
+    assert [s.nlgeom for s in again.steps] == [s.nlgeom for s in model.steps]
+    assert [len(again.steps[1].loads), len(again.steps[1].imaginary_loads)] == [1, 1]
+    with pytest.raises(ct.DeckError, match="IMAGINARY belongs to \\*STEADY STATE DYNAMICS"):
+        read(
+            tmp_path,
+            text.replace("*FREQUENCY\n3\n", "*FREQUENCY\n3\n*CLOAD, IMAGINARY\nOUT, 2, 1.\n"),
+        )

@@ -46,7 +46,7 @@ class Output(Brief):
 
     Parameters
     ----------
-    kind : {"node print", "el print", "contact print", "node file", "el file", "contact file"}
+    kind : {"node print", "el print", "contact print", "section print", "node file", ...}
     variables : tuple of str
         Names as in decks: ``U RF S E CSTR ...``.
     where : str
@@ -64,7 +64,15 @@ class Output(Brief):
         Print nodal vectors in global axes also for nodes with local axes.
     """
 
-    kind: Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
+    kind: Literal[
+        "node print",
+        "el print",
+        "contact print",
+        "section print",
+        "node file",
+        "el file",
+        "contact file",
+    ]
     variables: tuple[str, ...]
     where: str = ""
     frequency: int = 1

@@ -162,7 +162,8 @@ def _nodal(results: ResultSource, name: str, index: int, at: Ints | None, combin
     """A variable of a frame at nodes, or at all of them."""
     frame = results.frame(index)
     if name in NODAL and getattr(frame, NODAL[name][0]) is None:
-        return float("nan")  # such as a velocity before the first dynamic step
+        # Static steps are at rest, as files and tables have it.
+        return 0.0 if NODAL[name][0] in ("V", "A") else float("nan")
     if name in RESULTANTS and combine in ("auto", "sum"):
         force = getattr(frame, RESULTANTS[name])[:, :2]
         return float(np.hypot(*(force if at is None else force[at]).sum(axis=0)))

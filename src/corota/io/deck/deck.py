@@ -72,6 +72,8 @@ class Deck:
     building: bool = False
     #: Refused element types: references to their elements are not reported again.
     refused_types: set[str] = field(default_factory=set)
+    #: Nodes of instances that elements of the assembly name, as they are written.
+    instance_nodes: list[str] = field(default_factory=list)
     #: Origin and axes (rows) of ``*SYSTEM``.
     system: tuple[Floats, Floats] | None = None
     #: Lines of ``*NODAL THICKNESS``.
@@ -189,6 +191,15 @@ class Deck:
     ) -> int | None:
         """Value of a whole-number field; as :meth:`real`."""
         return self._field(card, row, index, what, default, numerals.integer)
+
+    def node(self, card: Card, row: Row, index: int, what: str) -> int | None:
+        """Number of a node; of ``INSTANCE.12`` a negative one, see ``instance_nodes``."""
+        text = row.get(index)
+        instance, dot, label = text.rpartition(".")
+        if not dot or key(instance) not in self.instances or not numerals.is_label(label):
+            return self.integer(card, row, index, what)
+        self.instance_nodes.append(text)
+        return -len(self.instance_nodes)
 
     def _field(
         self,

@@ -264,6 +264,11 @@ _TABLE: dict[str, Keyword] = {
         "SLAVE MASTER TOTALS FREQUENCY FREQUENCYF TIMEPOINTS",
         "SUMMARY NSET",
     ),
+    "SECTION PRINT": Keyword(
+        card("output.section_print"),
+        "SURFACE FREQUENCY FREQUENCYF TIMEPOINTS",
+        "NAME AXES UPDATE TOTALS",
+    ),
     "CONTACT FILE": Keyword(card("output.contact_file"), _FILE, "NSET SLAVE MASTER"),
     "CONTACT OUTPUT": Keyword(
         card("output.contact_file"),
@@ -271,17 +276,23 @@ _TABLE: dict[str, Keyword] = {
         "NSET SLAVE MASTER VARIABLE CPSET SURFACE",
     ),
     "BOUNDARY": Keyword(
-        card("supports.boundary"), "OP AMPLITUDE TYPE LOADCASE FIXED", "REGIONTYPE"
+        card("supports.boundary"), "OP AMPLITUDE TYPE LOADCASE FIXED REAL IMAGINARY", "REGIONTYPE"
     ),
     "BASE MOTION": Keyword(
         card("dynamic.base_motion"), "DOF AMPLITUDE TYPE SCALE LOADCASE", "BASENAME"
     ),
-    "CLOAD": Keyword(card("loads.cload"), "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE"),
+    "CLOAD": Keyword(
+        card("loads.cload"), "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY", "REGIONTYPE"
+    ),
     "DLOAD": Keyword(
-        card("loads.dload"), "OP AMPLITUDE LOADCASE FOLLOWER", "REGIONTYPE CONSTANTRESULTANT"
+        card("loads.dload"),
+        "OP AMPLITUDE LOADCASE FOLLOWER REAL IMAGINARY",
+        "REGIONTYPE CONSTANTRESULTANT",
     ),
     "DSLOAD": Keyword(
-        card("loads.dsload"), "OP AMPLITUDE FOLLOWER LOADCASE", "REGIONTYPE CONSTANTRESULTANT"
+        card("loads.dsload"),
+        "OP AMPLITUDE FOLLOWER LOADCASE REAL IMAGINARY",
+        "REGIONTYPE CONSTANTRESULTANT",
     ),
     "TEMPERATURE": Keyword(card("thermal.temperature"), "OP AMPLITUDE", "LOADCASE"),
     "NODE PRINT": Keyword(card("output.node_print"), f"NSET {_PRINT} GLOBAL", "SUMMARY"),
@@ -291,7 +302,9 @@ _TABLE: dict[str, Keyword] = {
     "EL FILE": Keyword(card("output.el_file"), f"NSET ELSET {_FILE}", _FILE_IGNORED),
     "ELEMENT OUTPUT": Keyword(card("output.el_file"), f"NSET ELSET {_FILE}", _FILE_IGNORED),
     "RESTART": Keyword(
-        card("output.restart"), "WRITE READ FREQUENCY STEP INC ENDSTEP JOB", "OVERLAY"
+        card("output.restart"),
+        "WRITE READ FREQUENCY STEP INC ENDSTEP JOB",
+        "OVERLAY NUMBERINTERVAL TIMEMARKS",
     ),
     "OUTPUT": Keyword(
         card("output.output"),
@@ -309,6 +322,6 @@ _TABLE: dict[str, Keyword] = {
 KEYWORDS: dict[str, Keyword] = {key(name): keyword for name, keyword in _TABLE.items()}
 
 #: Usual spelling of names of several words.
-SPELLED = {key(name): name for name in (*_TABLE, "SECTION PRINT")}
+SPELLED = {key(name): name for name in _TABLE}
 
 __all__ = ["KEYWORDS", "SPELLED", "Keyword"]

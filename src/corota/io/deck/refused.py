@@ -32,7 +32,6 @@ IGNORED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "SECTIONPRINT",
             "SECTIONFILE",
             "INTEGRATEDOUTPUT",
             "INTEGRATEDOUTPUTSECTION",

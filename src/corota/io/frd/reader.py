@@ -241,7 +241,7 @@ def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Fra
         time,
         time,
         1.0,
-        np.zeros((n, 2)) if shift is None else shift[:, :2],
+        nothing[:, :2] if shift is None else shift[:, :2],
         np.zeros(n),
         nothing if force is None else np.column_stack([force[:, :2], np.zeros(n)]),
         nothing,
@@ -249,7 +249,9 @@ def _frame(step: int, increment: int, time: float, n: int, at_nodes: Any) -> Fra
         C=traction,
         T=None if heat is None else heat[:, 0],
         averages=averages,
-        absent=frozenset({"F"} if force is not None else {"RF", "F"}),
+        absent=frozenset(
+            name for name, values in (("U", shift), ("RF", force), ("F", None)) if values is None
+        ),
     )
 
 

@@ -17,6 +17,8 @@ from corota.errors import InputError
 from corota.io.tables.dat_contact import VARIABLES as CONTACT_VARIABLES
 from corota.io.tables.dat_contact import contact_tables
 from corota.io.tables.dat_numbers import fortran, rows
+from corota.io.tables.dat_section import VARIABLES as SECTION_VARIABLES
+from corota.io.tables.dat_section import section_tables
 from corota.mesh.parts import cells_of
 from corota.results.table import TABLE, variables
 
@@ -71,6 +73,7 @@ def check_requests(steps: list[Step]) -> None:
                 "node print": [*node_titles()],
                 "el print": [*point_titles(), *ELEMENT_TITLES],
                 "contact print": [*CONTACT_VARIABLES],
+                "section print": [*SECTION_VARIABLES],
             }[output.kind]
             for name in output.variables:
                 if name.upper() not in valid:
@@ -95,6 +98,7 @@ def dat_blocks(model: Model, outputs: Sequence[Output], frame: Frame) -> str:
         "node print": _node_tables,
         "el print": _element_tables,
         "contact print": contact_tables,
+        "section print": section_tables,
     }
     requested = (o for o in outputs if o.kind in tables)
     return "".join(text for o in requested for text in tables[o.kind](model, o, frame))

@@ -260,7 +260,7 @@ class MeshBuilder:
             line_labels, line_rows = [], []
             trusses = _truss_labels(view.scope)
             for block in blocks:
-                nodes = view.nodes(block.nodes)
+                nodes = self._nodes_of(view, block)
                 good = self._known(block, nodes)
                 if repeated is not None:
                     good &= ~np.isin(block.labels, repeated)
@@ -316,6 +316,15 @@ class MeshBuilder:
             self.deck.error(None, None, "the deck has no elements")
         return placed
 
+    def _nodes_of(self, view: View, block: ElementBlock) -> Ints:
+        """Node indices of a block, -1 for unknown ones; of instances too, where it names them."""
+        nodes = view.nodes(block.nodes)
+        for at in zip(*np.nonzero(block.nodes < 0), strict=True):
+            found = view_of(self.views, self.deck.instance_nodes[-1 - block.nodes[at]])
+            if found is not None:
+                nodes[at] = found[0].nodes(np.array([int(found[1])]))[0]
+        return nodes
+
     def _trusses(self, view: View, block: ElementBlock, nodes: Ints, mine: Ints) -> list[Placed]:
         if LINES[block.type] != 2:
             at = int(np.flatnonzero(mine)[0])
@@ -367,6 +376,8 @@ class MeshBuilder:
         bad = np.flatnonzero((nodes < 0).any(axis=1))
         for at in bad[:MAX_LISTED]:
             missing = block.nodes[at][nodes[at] < 0][0]
+            if missing < 0:
+                missing = self.deck.instance_nodes[-1 - missing]
             self._block_fault(block, int(at), f"node {missing} is not defined")
         self._more(len(bad), "elements have undefined nodes")
         return np.asarray((nodes >= 0).all(axis=1))

@@ -198,6 +198,14 @@ class ModelBuilder:
 
     def _is_imaginary(self, item: Draft, draft: StepDraft) -> bool:
         """Whether ``LOAD CASE=2`` makes a load of a harmonic step act out of phase."""
+        if item.card.has("REAL") or item.card.has("IMAGINARY"):
+            # Abaqus's words for the load cases of CalculiX.
+            part = "IMAGINARY" if item.card.has("IMAGINARY") else "REAL"
+            if draft.make is not SteadyState:
+                self.deck.error(
+                    item.card, item.card.at(part), f"{part} belongs to *STEADY STATE DYNAMICS"
+                )
+            return part == "IMAGINARY" and draft.make is SteadyState
         case = item.card.value("LOADCASE") or "1"
         if case not in ("1", "2"):
             self.deck.error(
@@ -216,6 +224,7 @@ class ModelBuilder:
             "node print": self.mesh.node_sets,
             "el print": self.mesh.cell_sets,
             "contact print": {pair.name: None for pair in self.model.contacts},
+            "section print": self.mesh.edge_sets,
         }
         tables = known.get(kind, {**self.mesh.node_sets, **self.mesh.cell_sets})
         request = next(o for o in draft.outputs if o.kind == kind and o.where == where)
@@ -229,6 +238,7 @@ class ModelBuilder:
             "node print": "node set",
             "el print": "element set",
             "contact print": "contact pair",
+            "section print": "surface",
         }.get(kind, "set")
         self.deck.error(
             None, request.source, f"no {what} named {where!r}", hint=nearest(where, tables)

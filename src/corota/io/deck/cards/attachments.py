@@ -35,10 +35,10 @@ def elements(deck: Deck, card: Card, type_: str) -> None:
     for row in card.rows():
         deck.extra_fields(card, row, count + 1)
         numbers = [deck.integer(card, row, 0, "the element number")]
-        numbers += [deck.integer(card, row, i, f"node {i}") for i in range(1, count + 1)]
+        numbers += [deck.node(card, row, i, f"node {i}") for i in range(1, count + 1)]
         if None in numbers:
             continue
-        if len(set(numbers[1:])) < count:
+        if len({row.get(i) for i in range(1, count + 1)}) < count:
             deck.row_error(card, row, 2, f"node {numbers[1]} occurs twice")
             continue
         draft.labels.append(int(numbers[0] or 0))

@@ -186,7 +186,7 @@ def _element_rows(deck: Deck, card: Card, chunk: Chunk, size: int) -> tuple[Ints
                 f"{card.value('TYPE')} has {size} nodes, found {count}",
             )
             continue
-        nodes = [deck.integer(card, row, i, f"node {i}") for i in range(1, size + 1)]
+        nodes = [deck.node(card, row, i, f"node {i}") for i in range(1, size + 1)]
         if label is not None and None not in nodes:
             table.append([label, *nodes])
             lines.append(row.where.line)

@@ -15,12 +15,21 @@ if TYPE_CHECKING:
     from corota.io.deck.deck import Deck
     from corota.io.deck.lexer import Card
 
-Kind = Literal["node print", "el print", "contact print", "node file", "el file", "contact file"]
+Kind = Literal[
+    "node print",
+    "el print",
+    "contact print",
+    "section print",
+    "node file",
+    "el file",
+    "contact file",
+]
 
 #: Variables that are written, by their location; of the tables of nodes and points see `written`.
 WRITTEN = {
     "node": (),
     "el": ("ELSE", "ELKE", "EVOL"),
+    "section": ("SOF", "SOM", "SOAREA"),
     "contact": ("CDIS", "CSTR", "CELS", "CNUM", "CF", "CFN", "CFS"),
 }
 #: Names of Abaqus for the same.
@@ -29,7 +38,7 @@ ALIASES = {"CSTRESS": "CSTR", "CDISP": "CDIS", "CFORCE": "CF", "NT11": "NT"}
 
 def written(place: str) -> tuple[str, ...]:
     """Variables that are written at nodes, in elements or of contact."""
-    rows = {n: r for n, r in variables().items() if r.title and place != "contact"}
+    rows = {n: r for n, r in variables().items() if r.title and place in ("node", "el")}
     own = tuple(n for n, r in rows.items() if bool(r.frame) == (place == "node"))
     return own + WRITTEN[place]
 
@@ -81,6 +90,13 @@ def contact_print(deck: Deck, card: Card) -> None:
         deck.error(card, card.where, "SLAVE= and MASTER= belong together")
         return
     _request(deck, card, "contact print", f"{slave}-{master}" if slave else "")
+
+
+def section_print(deck: Deck, card: Card) -> None:
+    """``*SECTION PRINT, SURFACE=[, NAME=]``: force and moment on a surface in ``<job>.dat``."""
+    surface = deck.required(card, "SURFACE")
+    if surface:
+        _request(deck, card, "section print", surface)
 
 
 def contact_file(deck: Deck, card: Card) -> None:

@@ -134,8 +134,8 @@ class _Says:
     def head(self, ramp: str = "", *, perturbs: bool = False, increments: int = 0) -> str:
         """``*STEP`` with its parameters; `ramp` is ``RAMP``, ``STEP`` or empty."""
         step = self.step
-        options = ", PERTURBATION" if perturbs else ""
-        options += ", NLGEOM" if step.nlgeom else ", NLGEOM=NO"
+        # A perturbation is about the state as it is; with NLGEOM later steps would have it too.
+        options = ", PERTURBATION" if perturbs else ", NLGEOM" if step.nlgeom else ", NLGEOM=NO"
         options += f", INC={increments or step.max_increments}"
         options += f", AMPLITUDE={ramp}" if ramp else ""
         return f"*STEP{options}\n"
@@ -278,6 +278,8 @@ def _outputs(writer: Writer, step: Step) -> Iterator[str]:
             pairs = {p.name: p for p in writer.model.contacts}
             slave, master = surfaces(writer, pairs[request.where])
             yield f", SLAVE={slave}, MASTER={master}"
+        elif request.kind == "section print":
+            yield f", SURFACE={writer.edge_set(request.where)}, NAME={plain(request.where)}"
         elif request.where:
             yield f", {'N' if 'node' in request.kind else 'EL'}SET={plain(request.where)}"
         if request.in_global:

@@ -1,0 +1,114 @@
+"""Statistics of ``*SECTION PRINT`` in the layout of CalculiX's ``.dat`` file.
+
+CalculiX integrates stresses extrapolated to the surface. Here the force is that of the nodes of the
+surface on its elements: it is in equilibrium with loads and reactions.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.arrays import distinct
+from corota.errors import UnsupportedError
+from corota.io.tables.dat_numbers import fortran
+from corota.model.sections import thickness_at
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from corota.model.model import Model
+    from corota.model.steps import Output
+    from corota.results.results import Frame
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+
+#: Variables of sections that are printed, all in one block.
+VARIABLES = ("SOF", "SOM", "SOAREA")
+
+
+def section_tables(model: Model, output: Output, frame: Frame) -> Iterator[str]:
+    """Text of one request at a frame.
+
+    Raises
+    ------
+    UnsupportedError
+        If the forces of the elements are not known.
+    """
+    edges = model.mesh.edge_pairs(output.where)
+    if not frame.increment or not frame.fields:
+        return
+    # Linear steps are in equilibrium in the undeformed state.
+    linear = any(not getattr(s, "nlgeom", True) for s in model.steps[frame.step - 1 : frame.step])
+    x = model.mesh.points + (0.0 if linear else frame.U)
+    force, moment = _resultant(model, frame, edges, x)
+    area, center, normal = _geometry(model, edges, x)
+    about_center = moment - (center[0] * force[1] - center[1] * force[0])
+    along = float(force @ normal)
+    across = math.hypot(*(force - along * normal))
+
+    def line(*values: float) -> str:
+        return "    " + " ".join(f"{float(v) + 0.0:13.6E}" for v in values) + "\n"
+
+    yield (
+        f"\n statistics for surface set {output.where.upper()} and time "
+        f"{fortran(frame.time, 7):>14}\n\n"
+        "   total surface force (fx,fy,fz) and moment about the origin(mx,my,mz)\n\n"
+        + line(force[0], force[1], 0.0, 0.0, 0.0, moment)
+        + "\n   center of gravity and mean normal\n\n"
+        + line(*center, 0.0, *normal, 0.0)
+        + "\n   moment about the center of gravity(mx,my,mz)\n\n"
+        + line(0.0, 0.0, about_center)
+        + "\n   area, normal force (+ = tension), shear force (size), torque and bending moment "
+        "(size)\n\n" + line(area, along, across, 0.0, abs(about_center))
+    )
+
+
+def _resultant(model: Model, frame: Frame, edges: Ints, x: Floats) -> tuple[Floats, float]:
+    """Force of the surface's nodes on its elements, and its moment about the origin."""
+    mesh = model.mesh
+    inside = np.zeros(mesh.n_nodes, bool)
+    inside[mesh.edge_set_nodes(edges)] = True
+    cells = distinct(edges[:, 0])
+    force, moment, count = np.zeros(2), 0.0, 0
+    for block in frame.fields:
+        mine = np.flatnonzero(np.isin(block.cells, cells))
+        if not len(mine):
+            continue
+        if block.forces is None:
+            raise UnsupportedError(
+                "*SECTION PRINT: these results contain no forces of the elements; print it in the "
+                "run itself"
+            )
+        count += len(mine)
+        for row in mine.tolist():
+            where, local = mesh.locate(int(block.cells[row]))
+            nodes = mesh.cells[where].nodes[local]
+            on = inside[nodes]
+            f, at = block.forces[row][on], x[nodes[on]]
+            force = force + f[:, :2].sum(axis=0)
+            moment += float((at[:, 0] * f[:, 1] - at[:, 1] * f[:, 0]).sum())
+            if f.shape[1] > 2:
+                moment += float(f[:, 2].sum())
+    return force, moment
+
+
+def _geometry(model: Model, edges: Ints, x: Floats) -> tuple[float, Floats, Floats]:
+    """Area of a surface, its center and its mean outward normal, in the current state."""
+    ends = np.array([nodes[:2] for nodes in model.mesh.edge_nodes(edges)])
+    chord = x[ends[:, 1]] - x[ends[:, 0]]
+    thickness = thickness_at(model.mesh, model.sections, edges[:, 0], ends)
+    weight = 0.5 * thickness * np.hypot(*chord.T)[:, None]
+    area = float(weight.sum())
+    center = np.einsum("ij,ijk->k", weight, x[ends]) / area
+    normal = np.array([chord[:, 1], -chord[:, 0]]) @ thickness.mean(axis=1)
+    return area, center, normal / (math.hypot(*normal) or 1.0)
+
+
+__all__ = ["VARIABLES", "section_tables"]
