@@ -31,7 +31,7 @@ pub fn order(graph: &Graph<'_>, part: &mut [u32], scratch: &mut Scratch) {
     }
     known.sort_unstable();
     known.dedup();
-    let words = (n + known.len()).div_ceil(BITS);
+    let words = (n + known.len()).div_ceil(BITS).max(1);
     rows.clear();
     rows.resize(words * n, 0);
     for (i, &v) in part.iter().enumerate() {
