@@ -82,6 +82,13 @@ def test_a_leaf_has_cells_through_its_thickness():
     assert mesh.n_cells < 1500
 
 
+def test_a_strip_has_rows_of_cells():
+    """Four sides, slender: 4 x 60 quadrilaterals, no longer than five times their height."""
+    strip = outline(polyline([(0, 0), (60, 0), (60, 0.8), (0, 0.8)], closed=True))
+    assert [(c.kind, len(c)) for c in strip.cells] == [("quad4", 4 * 60)]
+    assert covered(strip) == pytest.approx(48.0, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("options", "kinds"),
     [({}, {"quad4"}), ({"triangles": True}, {"tri3"}), ({"quadratic": True}, {"quad8"})],

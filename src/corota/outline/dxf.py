@@ -107,36 +107,27 @@ def _name(entity: Any, layer: str) -> str:
 def _curves_of(entity: Any, kind: str, name: str) -> list[Curve] | None:
     """Curves of an entity; None if it is none."""
     data, source = entity.dxf, f"{kind} #{entity.dxf.handle}"
-    mirrored = data.hasattr("extrusion") and data.extrusion.z < 0.0
+    # Coordinates of the object: in a plane that is seen from below x runs the other way.
+    way = -1.0 if data.hasattr("extrusion") and data.extrusion.z < 0.0 else 1.0
     if kind == "LINE":
         return [line(_xy(data.start), _xy(data.end), name, source)]
-    if kind in ("ARC", "CIRCLE", "LWPOLYLINE", "POLYLINE") and mirrored:
-        # Object coordinates of a mirrored plane: the outline is that of its points.
-        from ezdxf import path as paths
-
-        whole = paths.make_path(entity)
-        return spline([_xy(p) for p in whole.flattening(_tolerance(whole))], name, source)
-    if kind == "CIRCLE":
-        return circle(_xy(data.center), float(data.radius), name, source)
-    if kind == "ARC":
-        start = math.radians(float(data.start_angle))
-        turn = math.radians(float(data.end_angle)) - start
-        return arc(
-            _xy(data.center),
-            float(data.radius),
-            start,
-            start + turn % (2.0 * math.pi),
-            name,
-            source,
-        )
+    if kind in ("CIRCLE", "ARC"):
+        center = (way * float(data.center[0]), float(data.center[1]))
+        if kind == "CIRCLE":
+            return circle(center, float(data.radius), name, source)
+        start, end = (math.radians(float(a)) for a in (data.start_angle, data.end_angle))
+        if way < 0.0:
+            start, end = math.pi - end, math.pi - start
+        turn = (end - start) % (2.0 * math.pi)
+        return arc(center, float(data.radius), start, start + turn, name, source)
     if kind == "LWPOLYLINE":
-        points = [(float(x), float(y), float(b)) for x, y, b in entity.get_points("xyb")]
+        points = [
+            (way * float(x), float(y), way * float(b)) for x, y, b in entity.get_points("xyb")
+        ]
         return _bulged(points, bool(entity.closed), name, source)
     if kind == "POLYLINE" and entity.is_2d_polyline:
-        points = [
-            (float(v.dxf.location.x), float(v.dxf.location.y), float(v.dxf.get("bulge", 0.0)))
-            for v in entity.vertices
-        ]
+        at = [(v.dxf.location, float(v.dxf.get("bulge", 0.0))) for v in entity.vertices]
+        points = [(way * float(p.x), float(p.y), way * bend) for p, bend in at]
         return _bulged(points, bool(entity.is_closed), name, source)
     if kind in ("SPLINE", "ELLIPSE"):
         from ezdxf import path as paths

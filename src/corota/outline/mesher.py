@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import math
 import re
 import tempfile
 from itertools import pairwise
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 SIZE = 0.03
 #: Cells along a full circle.
 AROUND = 24
+#: Length over thickness from which a part with four sides is meshed in rows, and the largest length
+#: of its cells over their height.
+SLENDER, ASPECT = 4.0, 5.0
 #: Growth of the cell size with the distance from a place of small cells.
 GROWTH = 0.25
 #: Numbers of Gmsh: frontal quadrilaterals, blossom recombination.
@@ -116,7 +120,7 @@ def outline(
         else:
             loops = clean(curves, gap)
             notes = [*loops.report, *notes]
-            _build(gmsh, loops, texts)
+            _build(gmsh, loops, texts, size, through)
             sizes = _sizes(loops, size, through)
         mesh = _mesh(gmsh, sizes, triangles, quadratic, path)
     except Exception as error:
@@ -143,8 +147,14 @@ def _gmsh() -> Any:
     return gmsh
 
 
-def _build(gmsh: Any, loops: Loops, texts: list[tuple[str, tuple[float, float]]]) -> None:
-    """Give the loops to Gmsh, with a physical group for each name."""
+def _build(
+    gmsh: Any,
+    loops: Loops,
+    texts: list[tuple[str, tuple[float, float]]],
+    size: float,
+    through: int,
+) -> None:
+    """Give the loops to Gmsh, with a physical group for each name; strips are structured."""
     geo = gmsh.model.geo
     corner = [geo.addPoint(x, y, 0.0) for x, y in loops.points]
     tags: list[int] = []
@@ -165,6 +175,12 @@ def _build(gmsh: Any, loops: Loops, texts: list[tuple[str, tuple[float, float]]]
         geo.addCurveLoop([-tags[n] if back else tags[n] for n, back in k]) for k in loops.loops
     ]
     surfaces = [geo.addPlaneSurface([rings[k] for k in part]) for part in loops.parts]
+    for part, surface in zip(loops.parts, surfaces, strict=True):
+        counts = _strip(loops, part, size or _largest(loops), through)
+        for (number, _), count in zip(loops.loops[part[0]], counts, strict=False):
+            geo.mesh.setTransfiniteCurve(tags[number], count + 1)
+        if counts:
+            geo.mesh.setTransfiniteSurface(surface)
     geo.synchronize()
     for name, members in groups.items():
         gmsh.model.addPhysicalGroup(1, members, name=name)
@@ -177,6 +193,32 @@ def _build(gmsh: Any, loops: Loops, texts: list[tuple[str, tuple[float, float]]]
         names.setdefault(plain if name in groups else name, []).append(surface)
     for name, members in names.items():
         gmsh.model.addPhysicalGroup(2, members, name=name)
+
+
+def _largest(loops: Loops) -> float:
+    """Largest cell where no size is given [length]."""
+    return SIZE * float(np.hypot(*np.ptp(loops.points, axis=0)))
+
+
+def _strip(loops: Loops, part: list[int], size: float, through: int) -> list[int]:
+    """Cells along the four sides of a slender part without holes; empty for other parts."""
+    sides = [loops.curves[number] for number, _ in loops.loops[part[0]]]
+    if len(part) > 1 or len(sides) != 4:
+        return []
+    pairs = [0.5 * (sides[k].length + sides[k + 2].length) for k in (0, 1)]
+    thin, long = min(pairs), max(pairs)
+    if long < SLENDER * thin:
+        return []
+    across = max(through, math.ceil(thin / size))
+    along = math.ceil(long / min(size, ASPECT * thin / across))
+    for side in sides:
+        if side.center is not None or side.smooth:
+            first, last = side.points[1] - side.points[0], side.points[-1] - side.points[-2]
+            turn = abs(math.remainder(math.atan2(last[1], last[0]) - math.atan2(first[1], first[0]),
+                                      2.0 * math.pi))  # fmt: skip
+            along = max(along, math.ceil(AROUND * turn / (2.0 * math.pi)))
+    counts = [along, across] if pairs[0] > pairs[1] else [across, along]
+    return counts * 2
 
 
 def _import(gmsh: Any, path: Path, size: float) -> Callable[..., float]:
@@ -207,7 +249,7 @@ def _sizes(loops: Loops, size: float, through: int) -> Callable[..., float]:
     """Size of the cells at a place, as Gmsh requests it."""
     from scipy.spatial import cKDTree
 
-    largest = size or SIZE * float(np.hypot(*np.ptp(loops.points, axis=0)))
+    largest = size or _largest(loops)
     places, wanted = [], []
     starts, steps = [], []
     for loop in range(len(loops.loops)):
@@ -222,6 +264,8 @@ def _sizes(loops: Loops, size: float, through: int) -> Callable[..., float]:
         if curve.center is not None:
             radius = float(np.hypot(*(curve.points[0] - curve.center)))
             limit = np.minimum(limit, 2.0 * np.pi * radius / AROUND)
+        elif curve.smooth:
+            limit = np.minimum(limit, 2.0 * np.pi * _radii(curve.points, middle) / AROUND)
         along = np.diff(at, axis=0)
         normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
         if _runs_backwards(loops, number):
@@ -245,6 +289,20 @@ def _spaced(points: Floats, size: float) -> Floats:
         count = max(1, int(np.ceil(np.hypot(*(b - a)) / size)))
         found.append(a + (b - a) * (np.arange(1, count + 1) / count)[:, None])
     return np.vstack(found)
+
+
+def _radii(points: Floats, at: Floats) -> Floats:
+    """Radius of curvature of a spline, by the circle through three points, at the nearest ones."""
+    if len(points) < 3:
+        return np.full(len(at), np.inf)
+    before, after = np.diff(points[:-1], axis=0), np.diff(points[1:], axis=0)
+    chord = points[2:] - points[:-2]
+    turn = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+    product = np.hypot(*before.T) * np.hypot(*after.T) * np.hypot(*chord.T)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        radius = np.where(turn > 1e-12 * product.max() ** (2 / 3), product / (2.0 * turn), np.inf)
+    apart = np.linalg.norm(at[:, None] - points[None, 1:-1], axis=2)
+    return np.asarray(radius[apart.argmin(axis=1)])
 
 
 def _runs_backwards(loops: Loops, number: int) -> bool:
