@@ -226,7 +226,12 @@ class Problem:
 
 class EdgeLoads:
     def __init__(
-        self, points: _Floats, nodes: _Indices, thickness: _Floats, alpha_b: _Floats
+        self,
+        points: _Floats,
+        nodes: _Indices,
+        thickness: _Floats,
+        alpha_b: _Floats,
+        ring: bool = False,
     ) -> None: ...
     def traction(
         self, u: _Floats, n_nodes: int, t: tuple[float, float]

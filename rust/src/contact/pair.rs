@@ -7,7 +7,7 @@ use super::discretization::{Discretization, Entry};
 use super::master::Surface;
 use super::search::Candidate;
 use super::sides::{Distances, Sides};
-use super::slave::Slave;
+use super::slave::{Depth, Slave};
 use super::terms::{Terms, WIDTH};
 use super::travel::Start;
 
@@ -29,7 +29,7 @@ impl Contact {
     /// of their own: those of the master, and those of the slave where its nodes have means.
     pub fn new(
         x: &[[f64; 3]],
-        slave: (Vec<Edge>, Vec<f64>),
+        slave: (Vec<Edge>, Vec<Depth>),
         master: Option<Surface>,
         entry: &Entry,
         distances: Distances,

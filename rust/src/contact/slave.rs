@@ -2,13 +2,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::curve::{Edge, GAUSS, dot};
+use crate::base::Smooth;
 use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+/// What a length of an edge is multiplied with to give its area.
+#[derive(Clone, Copy, Debug)]
+pub enum Depth {
+    Thickness(f64),
+    /// That of a ring, `2 pi` times the radius x.
+    Circumference,
+}
+
+impl Depth {
+    /// Area of a length at the radius `x` on the reference.
+    #[inline]
+    pub fn area<T: Smooth>(self, length: T, x: impl FnOnce() -> T) -> T {
+        match self {
+            Self::Thickness(t) => length.scale(t),
+            Self::Circumference => (length * x()).scale(TAU),
+        }
+    }
+}
 
 /// Edges of the slave side with what follows from the reference configuration.
 #[derive(Clone, Debug)]
 pub struct Slave {
     pub edges: Vec<Edge>,
-    pub thickness: Vec<f64>,
+    pub thickness: Vec<Depth>,
     /// Mesh node of each constraint.
     pub nodes: Vec<u32>,
     /// Constraints of each edge's nodes.
@@ -22,7 +43,7 @@ impl Slave {
     pub fn new(
         reference: &[[f64; 3]],
         edges: Vec<Edge>,
-        thickness: Vec<f64>,
+        thickness: Vec<Depth>,
         middles: bool,
     ) -> Self {
         let (mut nodes, mut area) = (Vec::new(), Vec::new());
@@ -41,7 +62,7 @@ impl Slave {
             }
             for (r, w) in GAUSS {
                 let t = curve.slope(r);
-                let da = w * thickness * dot(t, t).sqrt();
+                let da = thickness.area(w * dot(t, t).sqrt(), || curve.at(r)[0]);
                 let psi = weights(n, r);
                 for a in 0..n {
                     area[mine[a]] += psi[a] * da;

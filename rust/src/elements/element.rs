@@ -6,8 +6,19 @@ use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal};
 use crate::elements::line::Resultants;
 use crate::elements::shapes;
-use crate::kinematics::integrate::{self, History, Local, Section};
+use crate::kinematics::corotation::Frame;
+use crate::kinematics::integrate::{self, History, Local, PointKinematics, Section};
 use crate::kinematics::per_point::PerPoint;
+
+/// What is wanted of [`Element::respond`].
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// Whether frames turn.
+    pub nlgeom: bool,
+    /// Whether the tangent has the stress stiffness of a linear state.
+    pub stressed: bool,
+    pub tangent: bool,
+}
 
 /// Quadrature point with the shape functions there, computed once per block.
 #[derive(Clone, Debug)]
@@ -25,16 +36,21 @@ pub struct Point<const N: usize> {
 pub trait Operator<T: Real, const N: usize, const M: usize>: Copy {
     /// Whether the operator carries a drilling row (skew gradient minus rotation).
     const DRILL: bool;
+    /// Whether the fifth row is the hoop stretch, see [`Hoop`].
+    const HOOP: bool = false;
 
     /// Gradient that the nodal values give.
     fn gradient(&self, q: &Nodal<T, N, M>) -> [T; 4];
-    /// Value of the drilling row.
+    /// Value of the fifth row: of drilling, or of the hoop.
     fn drill(&self, q: &Nodal<T, N, M>) -> T;
     /// `f += H^T p + r^T drill`.
     fn add_force(&self, p: &[T; 4], drill: T, f: &mut Nodal<T, N, M>);
     /// `K += H^T A H + gamma r^T r`, blocks `a <= b`; `A` symmetric.
     fn add_stiffness(&self, a: &Mat<T, 4>, gamma: T, k: &mut Blocks<T, N, M>);
-    /// Rows of one nodal value: gradient and drilling row of dof `i` of node `a`.
+    /// `K += H^T c r^T + r c^T H`: coupling of the gradient with the fifth row; only with a hoop.
+    #[inline(always)]
+    fn add_coupling(&self, _c: &[T; 4], _k: &mut Blocks<T, N, M>) {}
+    /// Rows of one nodal value: gradient and fifth row of dof `i` of node `a`.
     fn column(&self, a: usize, i: usize) -> ([T; 4], T);
 }
 
@@ -66,6 +82,8 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     const SPRING: bool = false;
     /// Whether its frame turns with it.
     const TURNS: bool = true;
+    /// Whether it is a solid of revolution, see [`crate::elements::ring`].
+    const RING: bool = false;
     /// Names of its resultants, at most four; line elements only.
     const OUTPUTS: &'static [&'static str] = &[];
 
@@ -142,6 +160,56 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         out: &mut Local<T, N, M>,
     ) {
         integrate::local_into::<Self, T, N, M, A>(x, q, section, history, tangent, out);
+    }
+    /// Force and, with `tangent`, stiffness in global axes at displacements `u`, into a zero `out`.
+    #[inline(always)]
+    fn respond<T: Real>(
+        x: &Nodal<T, N, 2>,
+        u: &Nodal<T, N, M>,
+        section: &Section<N>,
+        history: &mut History<'_>,
+        wanted: Wanted,
+        out: &mut Local<T, N, M>,
+    ) {
+        let mut frame = Frame::new(x, u, wanted.nlgeom && Self::TURNS);
+        let (q, tangent) = (&frame.q, wanted.tangent);
+        if T::LANES == 1 {
+            integrate::single_into::<Self, T, N, M, A>(x, q, section, history, tangent, out);
+        } else {
+            Self::law_into(x, q, section, history, tangent, out);
+        }
+        let local = out.force;
+        out.force = frame.force(&local);
+        if wanted.stressed && Self::TURNS {
+            // Forces turn with the element, from the reference on.
+            frame = Frame::new(x, &[[T::zero(); M]; N], true);
+        }
+        if wanted.tangent && Self::TURNS {
+            frame.stiffness(&local, &mut out.stiffness);
+        }
+    }
+    /// Kinematics at the points, with the internal modes `alpha`.
+    fn kinematics(
+        x: &Nodal<f64, N, 2>,
+        u: &Nodal<f64, N, M>,
+        alpha: &Nodal<f64, A, 2>,
+        section: &Section<N>,
+        own: &PerPoint<'_>,
+        nlgeom: bool,
+    ) -> Vec<PointKinematics> {
+        let frame = Frame::new(x, u, nlgeom && Self::TURNS);
+        integrate::kinematics::<Self, N, M, A>(x, &frame.q, alpha, section, own)
+    }
+    /// [`integrate::absorbed`] at displacements `u`.
+    fn absorbed(
+        x: &Nodal<f64, N, 2>,
+        u: &Nodal<f64, N, M>,
+        section: &Section<N>,
+        history: &mut History<'_>,
+        nlgeom: bool,
+    ) -> f64 {
+        let frame = Frame::new(x, u, nlgeom && Self::TURNS);
+        integrate::absorbed::<Self, N, M, A>(x, &frame.q, section, history)
     }
     /// Energies of what keeps an element of a reduced rule from deforming freely between its points,
     /// each with the stiffness to which it is proportional; `memory` of the state, empty where the

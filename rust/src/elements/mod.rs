@@ -12,8 +12,10 @@ pub mod q4r;
 pub mod q4s;
 pub mod q8;
 pub mod q9;
+pub mod ring;
 pub mod shapes;
 pub mod t3;
 pub mod t6;
 
 pub use element::{Drilling, Element, Full, Grad, Operator, Point, Sample};
+pub use ring::{LocalRing, Revolved, Ring};

@@ -4,9 +4,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Grad, Point, Sample};
+use super::ring::{Hoop, Revolved, radius};
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::{Nodal, inverse2};
+use std::f64::consts::TAU;
 
 #[derive(Clone, Copy)]
 pub struct Q4i;
@@ -57,4 +59,43 @@ impl Element<4, 2, 2> for Q4i {
         }
         Sample { op: Grad(g), modes, weight }
     }
+}
+
+impl Revolved<4, 2> for Q4i {
+    #[inline(always)]
+    fn ring<T: Real>(
+        x: &Nodal<T, 4, 2>,
+        centre: &Centre<T>,
+        point: &Point<4>,
+    ) -> Sample<T, Hoop<T, 4>, 2> {
+        ring_sample(x, centre, point)
+    }
+}
+
+/// Sample of the ring: the modes are `1 - (r - c)^2` about the center of the circumference, where
+/// the mean of `r` weighted with the radius vanishes.
+#[inline(always)]
+pub fn ring_sample<T: Real>(
+    x: &Nodal<T, 4, 2>,
+    centre: &Centre<T>,
+    point: &Point<4>,
+) -> Sample<T, Hoop<T, 4>, 2> {
+    let Sample { op: Grad(grad), mut modes, weight } = Q4i::sample(x, centre, point);
+    let (n, dn) = shapes::square_linear([0.0, 0.0]);
+    let slope = shapes::jacobian(x, &dn)[0];
+    let middle = radius(x, &n).scale(3.0).recip();
+    let ratio = centre.det.scale(point.weight) / weight;
+    for m in 0..2 {
+        let shift = (slope[m] * middle * ratio).scale(2.0);
+        for i in 0..2 {
+            modes[m][i] = centre.inverse[m][i].fma(shift, modes[m][i]);
+        }
+    }
+    let r = radius(x, &point.n);
+    let inverse = r.recip();
+    let row = point.n.map(
+        #[inline(always)]
+        |n| inverse.scale(n),
+    );
+    Sample { op: Hoop { grad, row }, modes, weight: (weight * r).scale(TAU) }
 }

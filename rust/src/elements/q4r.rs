@@ -4,12 +4,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Grad, Point, Sample};
+use super::ring::{Hoop, LocalRing, Revolved, radius};
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::Nodal;
 use crate::kinematics::hourglass;
 use crate::kinematics::integrate::{History, Local, Section};
 use crate::kinematics::per_point::PerPoint;
+use std::f64::consts::TAU;
 
 #[derive(Clone, Copy)]
 pub struct Q4r;
@@ -48,7 +50,7 @@ impl Element<4, 2, 0> for Q4r {
         tangent: bool,
         out: &mut Local<T, 4, 2>,
     ) {
-        hourglass::local_into::<Self, T>(x, q, section, history, tangent, out);
+        hourglass::local_into::<Self, T, 2>(x, q, section, history, tangent, out);
     }
     #[inline(always)]
     fn stabilization<T: Real>(
@@ -58,6 +60,62 @@ impl Element<4, 2, 0> for Q4r {
         own: &PerPoint<'_>,
         memory: &[f64],
     ) -> [[T; 2]; 2] {
-        hourglass::energy(x, q, section, own, memory)
+        hourglass::energy::<Self, T, 2>(x, q, section, own, memory)
     }
 }
+
+impl Revolved<4, 0> for Q4r {
+    /// Means over the ring of the gradient and of the hoop stretch: a uniform stress then has the
+    /// exact nodal forces (Flanagan & Belytschko 1981).
+    #[inline(always)]
+    fn ring<T: Real>(x: &Nodal<T, 4, 2>, (): &(), _: &Point<4>) -> Sample<T, Hoop<T, 4>, 0> {
+        let o = T::zero();
+        let (mut grad, mut row, mut volume) = ([[o; 2]; 4], [o; 4], o);
+        for [r, s, weight] in CORNERS {
+            let (n, dn) = shapes::square_linear([r, s]);
+            let (g, area) = shapes::gradients(x, &Point { xi: [r, s], weight, n, dn });
+            let w = area * radius(x, &n);
+            volume += w;
+            for a in 0..4 {
+                row[a] = area.fma(T::real(n[a]), row[a]);
+                for j in 0..2 {
+                    grad[a][j] = w.fma(g[a][j], grad[a][j]);
+                }
+            }
+        }
+        let inverse = volume.recip();
+        for a in 0..4 {
+            row[a] = row[a] * inverse;
+            for j in 0..2 {
+                grad[a][j] = grad[a][j] * inverse;
+            }
+        }
+        Sample { op: Hoop { grad, row }, modes: [], weight: volume.scale(TAU) }
+    }
+    #[inline(always)]
+    fn ring_into<T: Real>(
+        x: &Nodal<T, 4, 2>,
+        q: &Nodal<T, 4, 3>,
+        section: &Section<4>,
+        history: &mut History<'_>,
+        tangent: bool,
+        out: &mut Local<T, 4, 3>,
+    ) {
+        hourglass::local_into::<LocalRing<Self>, T, 3>(x, q, section, history, tangent, out);
+    }
+    #[inline(always)]
+    fn ring_stabilization<T: Real>(
+        x: &Nodal<T, 4, 2>,
+        q: &Nodal<T, 4, 3>,
+        section: &Section<4>,
+        own: &PerPoint<'_>,
+        memory: &[f64],
+    ) -> [[T; 2]; 2] {
+        hourglass::energy::<LocalRing<Self>, T, 3>(x, q, section, own, memory)
+    }
+}
+
+/// Gauss's rule with two points a direction.
+const GAUSS: f64 = 0.577_350_269_189_625_8;
+const CORNERS: [[f64; 3]; 4] =
+    [[-GAUSS, -GAUSS, 1.0], [GAUSS, -GAUSS, 1.0], [-GAUSS, GAUSS, 1.0], [GAUSS, GAUSS, 1.0]];

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Grad, Point, Sample};
-use super::q4i::{Centre, Q4i};
+use super::q4i::{Centre, Q4i, ring_sample};
+use super::ring::{Hoop, Revolved};
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::Nodal;
@@ -42,5 +43,16 @@ impl Element<4, 2, 2> for Q4s {
     #[inline(always)]
     fn mean<T: Real>(_: &Nodal<T, 4, 2>, centre: &Centre<T>) -> Grad<T, 4> {
         Grad(shapes::push(&centre.inverse, &shapes::square_linear([0.0, 0.0]).1))
+    }
+}
+
+impl Revolved<4, 2> for Q4s {
+    #[inline(always)]
+    fn ring<T: Real>(
+        x: &Nodal<T, 4, 2>,
+        centre: &Centre<T>,
+        point: &Point<4>,
+    ) -> Sample<T, Hoop<T, 4>, 2> {
+        ring_sample(x, centre, point)
     }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Grad, Point, Sample};
+use super::ring::Revolved;
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::Nodal;
@@ -61,3 +62,6 @@ impl Element<8, 2, 0> for Q8r {
         Q8::sample(x, &(), point)
     }
 }
+
+impl Revolved<8, 0> for Q8 {}
+impl Revolved<8, 0> for Q8r {}

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Grad, Point, Sample};
+use super::ring::Revolved;
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::Nodal;
@@ -32,3 +33,5 @@ impl Element<9, 2, 0> for Q9 {
         Sample { op: Grad(g), modes: [], weight }
     }
 }
+
+impl Revolved<9, 0> for Q9 {}

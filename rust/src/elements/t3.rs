@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Grad, Point, Sample};
+use super::ring::Revolved;
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::Nodal;
@@ -33,3 +34,5 @@ impl Element<3, 2, 0> for T3 {
         Sample { op: Grad(g), modes: [], weight }
     }
 }
+
+impl Revolved<3, 0> for T3 {}

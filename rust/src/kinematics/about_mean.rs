@@ -41,6 +41,8 @@ pub struct AboutMean<T, Op, const N: usize, const M: usize> {
 pub struct MixedTangent<T> {
     pub mixed: Mat<T, 4>,
     square: Mat<T, 4>,
+    /// With the hoop stretch.
+    around: [T; 4],
 }
 
 /// Strain rows of `sym(G K)`.
@@ -201,9 +203,10 @@ where
         }
     }
 
-    /// Derivatives by the mean gradient of what a point gives, for weighted stress and tangent.
+    /// Derivatives by the mean gradient of what a point gives, for weighted stress, tangent, and
+    /// derivative `around` of the stress by the hoop stretch.
     #[inline(always)]
-    pub fn mixed(&self, h: &[T; 4], s: &[T; 3], d: &Mat<T, 3>) -> MixedTangent<T> {
+    pub fn mixed(&self, h: &[T; 4], s: &[T; 3], d: &Mat<T, 3>, around: &[T; 3]) -> MixedTangent<T> {
         let k = self.finite_fluctuation(h);
         let own = rows(&self.g);
         let t = tensor(s);
@@ -245,7 +248,13 @@ where
         add_product(&own, &stressed, &mut mixed);
         let mut square = [[o; 4]; 4];
         add_product(&by_mean, &stressed, &mut square);
-        MixedTangent { mixed, square }
+        let mut with_hoop = [o; 4];
+        for r in 0..3 {
+            for j in 0..4 {
+                with_hoop[j] = by_mean[r][j].fma(around[r], with_hoop[j]);
+            }
+        }
+        MixedTangent { mixed, square, around: with_hoop }
     }
 
     /// Add what [`AboutMean::mixed`] gave, with the operator of the point.
@@ -253,7 +262,7 @@ where
     pub fn add(&mut self, op: &Op, part: &MixedTangent<T>) {
         for c in 0..4 {
             let m = &part.mixed;
-            op.add_force(&[m[0][c], m[1][c], m[2][c], m[3][c]], T::zero(), &mut self.mixed[c]);
+            op.add_force(&[m[0][c], m[1][c], m[2][c], m[3][c]], part.around[c], &mut self.mixed[c]);
             for r in 0..4 {
                 self.square[r][c] += part.square[r][c];
             }

@@ -21,9 +21,10 @@
 
 use super::corotation::Frame;
 use super::inertia::{Mass, MassKind};
-use super::integrate::{History, Section, absorbed, flowed, local};
+use super::integrate::{History, Local, Section, absorbed, flowed, local};
 use crate::base::small::{Blocks, Nodal, blocks, nodal};
 use crate::elements::Element;
+use crate::elements::element::Wanted;
 
 /// Points of Gauss's rule on the increment, each of weight one half.
 const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
@@ -158,6 +159,9 @@ pub fn element<E, const N: usize, const M: usize, const A: usize>(
 where
     E: Element<N, M, A>,
 {
+    if E::RING {
+        return ring::<E, N, M, A>(x, section, history, mass, step);
+    }
     let f0 = Frame::new(x, step.u0, step.nlgeom);
     let f1 = Frame::new(x, step.u1, step.nlgeom);
     // Linear in all: the energy is quadratic, and the mean force of both ends exact.
@@ -231,6 +235,65 @@ where
     } else {
         plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent)
     };
+    Answer { internal, inertia, tangent, failed }
+}
+
+/// [`element`] for a solid of revolution. Of the momenta only that along the axis is conserved,
+/// so no turn has to be kept: the force is the mean over the straight line from `u0` to `u1`, and
+/// what makes its work the difference of the energies has no resultant along the axis.
+fn ring<E, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<f64, N, 2>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    mass: (&Mass<f64, N>, MassKind),
+    step: &Step<'_, N, M>,
+) -> Answer<N, M>
+where
+    E: Element<N, M, A>,
+{
+    let accounts = section.law.n_state() == 0 || section.law.work_member().is_some();
+    let mut failed = false;
+    let mut tangent = blocks::<f64, N, M>();
+    let mut internal = nodal::<f64, N, M>();
+    let mut energy = [0.0; 2];
+    let mut respond = |u: &Nodal<f64, N, M>, history: &mut History<'_>, tangent: bool| {
+        let wanted = Wanted { nlgeom: step.nlgeom, stressed: false, tangent };
+        let mut answer = Local::zero();
+        E::respond(x, u, section, history, wanted, &mut answer);
+        failed |= answer.failed;
+        answer
+    };
+    respond(step.u0, history, false);
+    if accounts {
+        energy[0] = E::absorbed(x, step.u0, section, history, step.nlgeom);
+    }
+    for s in ALONG {
+        let at = respond(&between_ends(step.u0, step.u1, s), history, step.tangent);
+        for (to, from) in internal.as_flattened_mut().iter_mut().zip(at.force.as_flattened()) {
+            *to += 0.5 * from;
+        }
+        let all = tangent.as_flattened_mut().as_flattened_mut().as_flattened_mut();
+        let part = at.stiffness.as_flattened().as_flattened().as_flattened();
+        for (to, from) in all.iter_mut().zip(part) {
+            *to += 0.5 * s * from;
+        }
+    }
+    // The history is that of the end again.
+    respond(step.u1, history, false);
+    if accounts {
+        energy[1] = E::absorbed(x, step.u1, section, history, step.nlgeom);
+        let (mut u0, mut u1) = (*step.u0, *step.u1);
+        for u in [&mut u0, &mut u1] {
+            let mean = u.iter().map(|v| v[1]).sum::<f64>() / N as f64;
+            for v in u {
+                v[1] -= mean;
+            }
+        }
+        discrete_gradient(x, [&u0, &u1], energy, &mut internal);
+    }
+    let frame = Frame::new(x, step.u0, false);
+    let between = Between::new(x, step, &frame, &frame);
+    let inertia = plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent);
     Answer { internal, inertia, tangent, failed }
 }
 

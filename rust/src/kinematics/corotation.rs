@@ -149,6 +149,26 @@ impl<T: Real, const N: usize, const M: usize> Frame<T, N, M> {
         }
     }
 
+    /// Turn columns of local forces, `k[a][b][i][0]` for column `b`, to global axes in place: the
+    /// derivative of [`Frame::force`] by what changes the local force beside the local dofs.
+    #[inline(always)]
+    pub fn turn_columns(&self, k: &mut Blocks<T, N, M>) {
+        for b in 0..N {
+            let mut moment = T::zero();
+            for a in 0..N {
+                for i in 0..2 {
+                    moment = self.a[a][i].fma(k[a][b][i][0], moment);
+                }
+            }
+            for a in 0..N {
+                let at = |i: usize| (-self.g[a][i]).fma(moment, k[a][b][i][0]);
+                let v = self.to_global([at(0), at(1)]);
+                k[a][b][0][0] = v[0];
+                k[a][b][1][0] = v[1];
+            }
+        }
+    }
+
     #[inline(always)]
     fn balanced(&self, local: &Nodal<T, N, M>) -> Nodal<T, N, M> {
         let moment = dot(&self.a, local);

@@ -75,10 +75,16 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
         for point in &section.points {
             let s = E::sample(x, prepared, point);
             let h = gradient(&s, q, alpha);
-            let (value, slope) = bar.kind.volume(&h);
+            let (mut value, slope) = bar.kind.volume(&h);
             let slope = times(&slope, s.weight);
+            let mut around = o;
+            if E::Op::<T>::HOOP {
+                let [e, first, _] = bar.kind.hoop(s.op.drill(q));
+                value += e;
+                around = first * s.weight;
+            }
             bar.mean = s.weight.fma(value, bar.mean);
-            s.op.add_force(&slope, o, &mut bar.rows);
+            s.op.add_force(&slope, around, &mut bar.rows);
             for (sum, v) in bar.modes.iter_mut().zip(by_modes(&s.modes, &slope)) {
                 *sum += v;
             }
@@ -98,6 +104,70 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
         let change = (self.mean - e[0] - e[1]).scale(0.5);
         e[0] += change;
         e[1] += change;
+    }
+
+    /// Put the mean into the strain of a ring, whose hoop strain is `around`.
+    #[inline(always)]
+    pub fn apply_to_ring(&self, e: &mut [T; 3], around: &mut T) {
+        let change = (self.mean - e[0] - e[1] - *around).scale(1.0 / 3.0);
+        e[0] += change;
+        e[1] += change;
+        *around += change;
+    }
+
+    /// [`Dilatation::gradient`] of a ring: gradient in the plane, and hoop stretch less one.
+    #[inline(always)]
+    pub fn ring_gradient(&self, h: &[T; 4], w: T) -> ([T; 4], T) {
+        let volume = self.kind.volume(h).0 + self.kind.hoop(w)[0];
+        let change = (self.mean - volume).scale(1.0 / 3.0);
+        let [mut a, b, c, mut d] = *h;
+        match self.kind {
+            LocalStrain::Logarithmic => {
+                let k = change.exp();
+                let scaled = |v: T| (v + T::one()).fma(k, -T::one());
+                ([scaled(a), b * k, c * k, scaled(d)], scaled(w))
+            }
+            LocalStrain::GreenLagrange => (*h, w),
+            LocalStrain::Linear | LocalStrain::Stressed(_) => {
+                a += change;
+                d += change;
+                ([a, b, c, d], w + change)
+            }
+        }
+    }
+
+    /// Take the mean stress of a ring out of its parts, and keep it with the weight `w`.
+    #[inline(always)]
+    pub fn split_ring_stress(&mut self, s: &mut [T; 3], around: &mut T, w: T) {
+        let mean = (s[0] + s[1] + *around).scale(1.0 / 3.0);
+        s[0] -= mean;
+        s[1] -= mean;
+        *around -= mean;
+        self.pressure = mean.fma(w, self.pressure);
+    }
+
+    /// [`Dilatation::split_tangent`] of a ring, whose tangent has the rows xx, yy, xy, zz.
+    #[inline(always)]
+    pub fn split_ring_tangent(d: &mut Mat<T, 4>) -> ([T; 4], T) {
+        const NORMAL: [usize; 3] = [0, 1, 3];
+        let mut column = [T::zero(); 4];
+        for i in 0..4 {
+            column[i] = (d[i][0] + d[i][1] + d[i][3]).scale(1.0 / 3.0);
+        }
+        let square = (column[0] + column[1] + column[3]).scale(1.0 / 3.0);
+        for i in 0..4 {
+            for k in NORMAL {
+                d[i][k] -= column[i];
+                d[k][i] -= column[i];
+            }
+        }
+        for i in NORMAL {
+            for k in NORMAL {
+                d[i][k] += square;
+            }
+            column[i] -= square;
+        }
+        (column, square)
     }
 
     /// Gradient that has the strain with the mean, up to a rotation; the Green-Lagrange strain
@@ -155,13 +225,18 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
     }
 
     /// Add what [`Dilatation::split_tangent`] gave at a point, as a weighted column of gradient
-    /// components.
+    /// components; `around` is that of the hoop.
     #[inline(always)]
-    pub fn add<Op, const A: usize>(&mut self, s: &Sample<T, Op, A>, mixed: &[T; 4], square: T)
-    where
+    pub fn add<Op, const A: usize>(
+        &mut self,
+        s: &Sample<T, Op, A>,
+        mixed: &[T; 4],
+        around: T,
+        square: T,
+    ) where
         Op: Operator<T, N, M>,
     {
-        s.op.add_force(mixed, T::zero(), &mut self.mixed);
+        s.op.add_force(mixed, around, &mut self.mixed);
         for (sum, v) in self.mixed_modes.iter_mut().zip(by_modes(&s.modes, mixed)) {
             *sum += v;
         }
@@ -177,6 +252,12 @@ impl<T: Real, const N: usize, const M: usize> Dilatation<T, N, M> {
             *v = *v * factor;
         }
         a
+    }
+
+    /// [`Dilatation::curvature`] by the hoop stretch.
+    #[inline(always)]
+    pub fn hoop_curvature(&self, w: T, weight: T) -> T {
+        self.kind.hoop(w)[2] * self.pressure * self.inverse * weight
     }
 
     /// Add the force of the mean in-plane stress.

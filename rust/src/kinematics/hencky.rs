@@ -45,7 +45,7 @@ fn phi<T: Real>(w: T) -> [T; 3] {
 
 /// `ln(1 + x)`, without cancellation for small `x`.
 #[inline(always)]
-fn log1p<T: Real>(x: T) -> T {
+pub(super) fn log1p<T: Real>(x: T) -> T {
     let z = x / (x + T::real(2.0));
     z.scale(2.0) * phi(z * z)[0]
 }

@@ -18,7 +18,9 @@ use super::integrate::{History, Local, Section, pass};
 use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Mat, Nodal, inverse2};
-use crate::elements::{Element, shapes};
+use crate::elements::ring::radius;
+use crate::elements::{Element, Operator, shapes};
+use std::f64::consts::TAU;
 
 /// Members of the memory.
 pub const MEMORY: usize = 7;
@@ -69,7 +71,7 @@ impl<T: Real> Hourglass<T> {
     }
 
     #[inline(always)]
-    fn strain(&self, q: &Nodal<T, 4, 2>) -> [T; 2] {
+    fn strain<const M: usize>(&self, q: &Nodal<T, 4, M>) -> [T; 2] {
         let mut g = [T::zero(); 2];
         for a in 0..4 {
             for i in 0..2 {
@@ -124,22 +126,35 @@ fn elastic<T: Real, const N: usize>(
     [one(0), one(1)]
 }
 
+/// Thickness, or the circumference at the center of a ring.
+#[inline(always)]
+fn depth<E, T: Real, const M: usize>(
+    x: &Nodal<T, 4, 2>,
+    section: &Section<4>,
+    own: &PerPoint<'_>,
+) -> T
+where
+    E: Element<4, M, 0>,
+{
+    if E::Op::<T>::HOOP { radius(x, &[0.25; 4]).scale(TAU) } else { own.thickness(0, section) }
+}
+
 /// Local force and stiffness into a zero `out`.
 #[inline(always)]
-pub fn local_into<E, T: Real>(
+pub fn local_into<E, T: Real, const M: usize>(
     x: &Nodal<T, 4, 2>,
-    q: &Nodal<T, 4, 2>,
+    q: &Nodal<T, 4, M>,
     section: &Section<4>,
     history: &mut History<'_>,
     tangent: bool,
-    out: &mut Local<T, 4, 2>,
+    out: &mut Local<T, 4, M>,
 ) where
-    E: Element<4, 2, 0>,
+    E: Element<4, M, 0>,
 {
-    let sums = pass::<E, T, 4, 2, 0>(x, q, &[], section, history, Some(&mut *out), tangent);
+    let sums = pass::<E, T, 4, M, 0>(x, q, &[], section, history, Some(&mut *out), tangent);
     out.failed = sums.failed;
     let own = history.per_point;
-    let h = Hourglass::new(x, own.thickness(0, section));
+    let h = Hourglass::new(x, depth::<E, T, M>(x, section, &own));
     let strain = h.strain(q);
     let modulus = elastic(&h, section, &own);
     let mut stiffness = modulus;
@@ -195,14 +210,17 @@ pub fn local_into<E, T: Real>(
 /// Energy that the hourglass stress of each axis stores, given the memory of the state or none, and
 /// the stiffness to which it is proportional.
 #[inline(always)]
-pub fn energy<T: Real>(
+pub fn energy<E, T: Real, const M: usize>(
     x: &Nodal<T, 4, 2>,
-    q: &Nodal<T, 4, 2>,
+    q: &Nodal<T, 4, M>,
     section: &Section<4>,
     own: &PerPoint<'_>,
     memory: &[f64],
-) -> [[T; 2]; 2] {
-    let h = Hourglass::new(x, own.thickness(0, section));
+) -> [[T; 2]; 2]
+where
+    E: Element<4, M, 0>,
+{
+    let h = Hourglass::new(x, depth::<E, T, M>(x, section, own));
     let (strain, modulus) = (h.strain(q), elastic(&h, section, own));
     [0, 1].map(|axis| {
         let mut stress = modulus[axis] * strain[axis];

@@ -10,7 +10,7 @@ use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
 use crate::elements::{Element, Operator, Point, Sample};
-use crate::materials::{Law, Plane, PointState};
+use crate::materials::{Law, Plane, PointState, Response, SolidResponse};
 
 /// Least stiffness of an internal mode, relative to the elastic one in shear. Where all points
 /// of an element flow alike without hardening, a mode may have none at all; then its coupling
@@ -25,6 +25,8 @@ pub struct Section<const N: usize> {
     pub points: Vec<Point<N>>,
     pub law: Law,
     pub plane: Plane,
+    /// Whether it is a solid of revolution.
+    pub ring: bool,
     pub strain: LocalStrain,
     /// Thickness; of line elements the area of the cross-section.
     pub thickness: f64,
@@ -59,8 +61,8 @@ pub struct History<'a> {
     pub new: &'a mut [f64],
     pub alpha: &'a mut [f64],
     /// Initial strain: by point rows xx, yy, xy and, through the thickness, a strain in plane
-    /// stress or a stress in plane strain (see [`crate::materials::Material::spherical`]);
-    /// empty where there is none.
+    /// stress and around a ring, or a stress in plane strain (see
+    /// [`crate::materials::Material::spherical`]); empty where there is none.
     pub initial: &'a [f64],
     pub stride: usize,
     pub per_point: PerPoint<'a>,
@@ -88,7 +90,7 @@ impl History<'_> {
     /// Part of the initial stress through the thickness that acts in the plane.
     #[inline(always)]
     fn spherical<T: Real, const N: usize>(&self, p: usize, section: &Section<N>) -> T {
-        if section.plane == Plane::Strain && section.law.spherical() {
+        if section.plane == Plane::Strain && !section.ring && section.law.spherical() {
             self.initial_strain(p, 3)
         } else {
             T::zero()
@@ -105,6 +107,9 @@ impl History<'_> {
         for p in 0..section.points.len() {
             for row in 0..3 {
                 size = size.max(self.initial_strain::<T>(p, row).abs());
+            }
+            if section.ring {
+                size = size.max(self.initial_strain::<T>(p, 3).abs());
             }
             size = size.max(self.spherical::<T, N>(p, section).scale(softness).abs());
         }
@@ -183,6 +188,76 @@ fn folded<T: Real, const N: usize, const M: usize>(
     failed
 }
 
+/// Hoop strain of a ring at a point, and what the law gives there beside the plane.
+struct Around<T> {
+    /// Hoop stretch less one.
+    w: T,
+    strain: T,
+    /// Derivatives of the strain by the stretch.
+    slope: T,
+    curvature: T,
+    stress: T,
+    /// Tangent between the plane and the hoop, and of the hoop.
+    column: [T; 3],
+    square: T,
+}
+
+impl<T: Real> Around<T> {
+    /// None unless the operator has a hoop row.
+    #[inline(always)]
+    fn new<Op, const N: usize, const M: usize>(
+        op: &Op,
+        q: &Nodal<T, N, M>,
+        kind: LocalStrain,
+    ) -> Option<Self>
+    where
+        Op: Operator<T, N, M>,
+    {
+        if !Op::HOOP {
+            return None;
+        }
+        let o = T::zero();
+        let w = op.drill(q);
+        let [strain, slope, curvature] = kind.hoop(w);
+        Some(Self { w, strain, slope, curvature, stress: o, column: [o; 3], square: o })
+    }
+
+    /// Take the answer of a law apart: what remains is that in the plane.
+    #[inline(always)]
+    fn take(&mut self, solid: &SolidResponse<T>) -> Response<T> {
+        let [xx, yy, xy, zz] = solid.stress;
+        self.stress = zz;
+        Response { stress: [xx, yy, xy], tangent: self.part(&solid.tangent), failed: solid.failed }
+    }
+
+    /// Take a tangent with the rows xx, yy, xy, zz apart.
+    #[inline(always)]
+    fn part(&mut self, d: &Mat<T, 4>) -> Mat<T, 3> {
+        let mut plane = [[T::zero(); 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                plane[i][j] = d[i][j];
+            }
+            self.column[i] = d[i][3];
+        }
+        self.square = d[3][3];
+        plane
+    }
+
+    /// The whole tangent.
+    #[inline(always)]
+    fn join(&self, plane: &Mat<T, 3>) -> Mat<T, 4> {
+        let mut d = [[self.square; 4]; 4];
+        for i in 0..3 {
+            for j in 0..3 {
+                d[i][j] = plane[i][j];
+            }
+            (d[i][3], d[3][i]) = (self.column[i], self.column[i]);
+        }
+        d
+    }
+}
+
 /// Drilling row of an internal mode: its skew gradient.
 #[inline(always)]
 fn mode_drill<T: Real>(mode: &[T; 2], i: usize) -> T {
@@ -248,16 +323,31 @@ where
             Some(about) => about.strain(&h),
             None => section.strain.strain(&h),
         };
+        let mut around = Around::<T>::new::<E::Op<T>, N, M>(&s.op, q, section.strain);
         if let Some(bar) = &bar {
-            bar.apply(&mut strain);
+            match &mut around {
+                Some(around) => bar.apply_to_ring(&mut strain, &mut around.strain),
+                None => bar.apply(&mut strain),
+            }
         }
         let strain = history.elastic(p, strain);
         let law = own.law::<T, N>(p, section);
-        let mut answer = law.update(strain, &mut history.point(p, members));
-        if !history.initial.is_empty() {
-            let pressure = history.spherical::<T, N>(p, section);
-            answer.stress[0] += pressure;
-            answer.stress[1] += pressure;
+        let mut answer;
+        if let Some(around) = &mut around {
+            if !history.initial.is_empty() {
+                around.strain -= history.initial_strain(p, 3);
+            }
+            let [xx, yy, xy] = strain;
+            let state = &mut history.point(p, members);
+            let solid = law.update_solid([xx, yy, xy, around.strain], state);
+            answer = around.take(&solid);
+        } else {
+            answer = law.update(strain, &mut history.point(p, members));
+            if !history.initial.is_empty() {
+                let pressure = history.spherical::<T, N>(p, section);
+                answer.stress[0] += pressure;
+                answer.stress[1] += pressure;
+            }
         }
         sums.tangent = answer.tangent;
         for v in &answer.stress {
@@ -267,9 +357,17 @@ where
         if section.finite {
             let seen = if let Some(about) = &about { &about.h } else { &h };
             sums.failed = T::or(sums.failed, det(seen).lt(o));
+            if let Some(around) = &around {
+                sums.failed = T::or(sums.failed, (around.w + T::one()).lt(o));
+            }
         }
         if let Some(bar) = &mut bar {
-            bar.split_stress(&mut answer.stress, w);
+            match &mut around {
+                Some(around) => {
+                    bar.split_ring_stress(&mut answer.stress, &mut around.stress, w);
+                }
+                None => bar.split_stress(&mut answer.stress, w),
+            }
         }
         let mut stress = match &about {
             Some(about) => about.pull(&answer.stress),
@@ -286,8 +384,11 @@ where
             }
             about.keep(&h, &answer.stress, &stress);
         }
-        let gamma = if E::Op::<T>::DRILL { w.scale(parameter) } else { o };
+        let mut gamma = if E::Op::<T>::DRILL { w.scale(parameter) } else { o };
         let mut drill = o;
+        if let Some(around) = &around {
+            drill = around.stress * around.slope * w;
+        }
         if E::Op::<T>::DRILL {
             drill = s.op.drill(q);
             for m in 0..A {
@@ -304,8 +405,29 @@ where
             continue;
         }
         if let Some(bar) = &mut bar {
-            let (mixed, square) = Dilatation::<T, N, M>::split_tangent(&mut answer.tangent);
-            bar.add(&s, &times(&section.strain.pull(&h, &mixed), w), square * w);
+            if let Some(around) = &mut around {
+                let mut d = around.join(&answer.tangent);
+                let (mixed, square) = Dilatation::<T, N, M>::split_ring_tangent(&mut d);
+                answer.tangent = around.part(&d);
+                let plane = section.strain.pull(&h, &[mixed[0], mixed[1], mixed[2]]);
+                bar.add(&s, &times(&plane, w), mixed[3] * around.slope * w, square * w);
+            } else {
+                let (mixed, square) = Dilatation::<T, N, M>::split_tangent(&mut answer.tangent);
+                bar.add(&s, &times(&section.strain.pull(&h, &mixed), w), o, square * w);
+            }
+        }
+        // Derivative of the hoop force by the hoop stretch, and of the stress in the plane.
+        let (mut coupling, mut by_hoop) = ([o; 4], [o; 3]);
+        if let Some(around) = &around {
+            let slope = around.slope;
+            gamma = (around.square * slope).fma(slope, around.stress * around.curvature) * w;
+            for r in 0..3 {
+                by_hoop[r] = around.column[r] * slope * w;
+            }
+            coupling = match &about {
+                Some(about) => about.pull(&by_hoop),
+                None => section.strain.pull(&h, &by_hoop),
+            };
         }
         let mut a = match &about {
             Some(about) => about.tangent(&answer.tangent),
@@ -325,12 +447,13 @@ where
                     *v = *v * w;
                 }
             }
-            let part = about.mixed(&h, &answer.stress, &answer.tangent);
+            let part = about.mixed(&h, &answer.stress, &answer.tangent, &by_hoop);
             about.add(&s.op, &part);
             by_mean = Some(part.mixed);
         }
         if tangent && let Some(out) = out.as_deref_mut() {
             s.op.add_stiffness(&a, gamma, &mut out.stiffness);
+            s.op.add_coupling(&coupling, &mut out.stiffness);
         }
         for m in 0..A {
             let square = s.modes[m][0].fma(s.modes[m][0], s.modes[m][1] * s.modes[m][1]);
@@ -353,7 +476,11 @@ where
                 for c in 0..4 {
                     t[c] = mode[0].fma(a[2 * i][c], mode[1] * a[2 * i + 1][c]);
                 }
-                let skew = mode_drill(mode, i) * gamma;
+                let skew = if E::Op::<T>::HOOP {
+                    mode[0].fma(coupling[2 * i], mode[1] * coupling[2 * i + 1])
+                } else {
+                    mode_drill(mode, i) * gamma
+                };
                 if E::Op::<T>::DRILL {
                     sums.force[r] = mode_drill(mode, i).fma(drill, sums.force[r]);
                 }
@@ -423,7 +550,11 @@ fn finish_dilatation<E, T: Real, const N: usize, const M: usize, const A: usize>
         let s = E::sample(x, prepared, point);
         let a = bar.curvature(&gradient(&s, q, alpha), s.weight);
         if tangent && let Some(out) = out.as_deref_mut() {
-            s.op.add_stiffness(&a, T::zero(), &mut out.stiffness);
+            let mut gamma = T::zero();
+            if E::Op::<T>::HOOP {
+                gamma = bar.hoop_curvature(s.op.drill(q), s.weight);
+            }
+            s.op.add_stiffness(&a, gamma, &mut out.stiffness);
         }
         for m in 0..A {
             for i in 0..2 {
@@ -531,6 +662,76 @@ pub fn local_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
     out.failed = T::or(failed, sums.failed);
 }
 
+/// Kinematics of a point, for output.
+#[derive(Clone, Copy, Debug)]
+pub struct PointKinematics {
+    /// Local gradient that gives the Cauchy stress, and the hoop stretch less one.
+    pub h: [f64; 4],
+    pub hoop: f64,
+    /// Total local strain xx, yy, zz, xy; zz is that of the hoop, else zero.
+    pub strain: [f64; 4],
+    /// Reference volume.
+    pub volume: f64,
+    /// Energy of the drilling penalty.
+    pub penalty: f64,
+}
+
+/// Kinematics at the points of an element with local dofs `q` and internal modes `alpha`.
+pub fn kinematics<E, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<f64, N, 2>,
+    q: &Nodal<f64, N, M>,
+    alpha: &Nodal<f64, A, 2>,
+    section: &Section<N>,
+    own: &PerPoint<'_>,
+) -> Vec<PointKinematics>
+where
+    E: Element<N, M, A>,
+{
+    let parameter = own.parameter::<f64, N>(section);
+    let prepared = E::prepare(x, parameter, &own.sides(E::ALPHA_B));
+    let bar = Dilatation::<f64, N, M>::new::<E, A>(x, q, alpha, &prepared, section);
+    let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
+    let at = |(p, point): (usize, &Point<N>)| {
+        let s = E::sample(x, &prepared, point);
+        let volume = s.weight * own.thickness::<f64, N>(p, section);
+        let mut h = gradient(&s, q, alpha);
+        let mut strain = match &about {
+            Some(about) => about.strain(&h),
+            None => section.strain.strain(&h),
+        };
+        let (mut hoop, mut around) = (0.0, 0.0);
+        if E::Op::<f64>::HOOP {
+            hoop = s.op.drill(q);
+            around = section.strain.hoop(hoop)[0];
+        }
+        if let Some(bar) = &bar {
+            if E::Op::<f64>::HOOP {
+                bar.apply_to_ring(&mut strain, &mut around);
+                (h, hoop) = bar.ring_gradient(&h, hoop);
+            } else {
+                bar.apply(&mut strain);
+                h = bar.gradient(&h);
+            }
+        }
+        if let Some(about) = &about {
+            h = about.h;
+        }
+        let mut penalty = 0.0;
+        if E::Op::<f64>::DRILL {
+            let mut drill = s.op.drill(q);
+            for m in 0..A {
+                for i in 0..2 {
+                    drill += mode_drill(&s.modes[m], i) * alpha[m][i];
+                }
+            }
+            penalty = 0.5 * volume * parameter * drill * drill;
+        }
+        let strain = [strain[0], strain[1], around, strain[2]];
+        PointKinematics { h, hoop, strain, volume, penalty }
+    };
+    section.points.iter().enumerate().map(at).collect()
+}
+
 /// Work that an element has absorbed at local dofs `q`, with the stored internal modes: its
 /// recoverable energy, and the plastic work since the start of the increment.
 pub fn absorbed<E, const N: usize, const M: usize, const A: usize>(
@@ -550,42 +751,32 @@ where
     }
     let members = section.law.n_state();
     let own = history.per_point;
-    let parameter = own.parameter::<f64, N>(section);
-    let prepared = E::prepare(x, parameter, &own.sides(E::ALPHA_B));
-    let bar = Dilatation::<f64, N, M>::new::<E, A>(x, q, &alpha, &prepared, section);
-    let about = AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(x, q, &prepared, section);
     let mut energy = 0.0;
-    for (p, point) in section.points.iter().enumerate() {
-        let s = E::sample(x, &prepared, point);
-        let w = s.weight * own.thickness::<f64, N>(p, section);
-        let h = gradient(&s, q, &alpha);
-        let mut strain = match &about {
-            Some(about) => about.strain(&h),
-            None => section.strain.strain(&h),
-        };
-        if let Some(bar) = &bar {
-            bar.apply(&mut strain);
-        }
-        let strain = history.elastic(p, strain);
+    let points = kinematics::<E, N, M, A>(x, q, &alpha, section, &own);
+    for (p, at) in points.iter().enumerate() {
+        let w = at.volume;
+        let initial = [0, 1, 2, 3].map(|row| history.initial_strain::<f64>(p, row));
+        let [xx, yy, zz, xy] = at.strain;
+        let strain = [xx - initial[0], yy - initial[1], xy - initial[2]];
         let mut state = history.point(p, members);
         let law = own.law::<f64, N>(p, section);
-        let stress = law.update(strain, &mut state).stress;
-        let values: Vec<f64> = (0..members).map(|m| state.new[m * state.stride]).collect();
-        energy += w * law.energy(strain, stress, &values);
+        let values = |state: &PointState<'_>| -> Vec<f64> {
+            (0..members).map(|m| state.new[m * state.stride]).collect()
+        };
+        if section.ring {
+            let solid = [strain[0], strain[1], strain[2], zz - initial[3]];
+            let stress = law.update_solid(solid, &mut state).stress;
+            energy += w * law.energy_solid(solid, stress, &values(&state));
+        } else {
+            let stress = law.update(strain, &mut state).stress;
+            energy += w * law.energy(strain, stress, &values(&state));
+        }
         if let Some(work) = section.law.work_member() {
-            energy += w * (values[work] - state.old[work * state.stride]);
+            energy += w * (state.new[work * state.stride] - state.old[work * state.stride]);
         }
         // An initial stress through the thickness acts in the plane, beside that of the law.
         energy += w * history.spherical::<f64, N>(p, section) * (strain[0] + strain[1]);
-        if E::Op::<f64>::DRILL {
-            let mut drill = s.op.drill(q);
-            for m in 0..A {
-                for i in 0..2 {
-                    drill += mode_drill(&s.modes[m], i) * alpha[m][i];
-                }
-            }
-            energy += 0.5 * w * parameter * drill * drill;
-        }
+        energy += at.penalty;
     }
     // Elements of laws without a history have no memory either.
     let mut memory = Vec::new();

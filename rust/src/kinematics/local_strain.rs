@@ -186,6 +186,22 @@ impl LocalStrain {
         a
     }
 
+    /// Hoop strain of the stretch less one, `w`, with its first and second derivatives.
+    #[inline(always)]
+    pub fn hoop<T: Real>(self, w: T) -> [T; 3] {
+        let (o, one) = (T::zero(), T::one());
+        match self {
+            Self::Linear => [w, one, o],
+            Self::Stressed(Finite::GreenLagrange) => [w, one, one],
+            Self::Stressed(Finite::Logarithmic) => [w, one, -one],
+            Self::GreenLagrange => [(w * w).fma(T::real(0.5), w), one + w, one],
+            Self::Logarithmic => {
+                let slope = (one + w).recip();
+                [hencky::log1p(w), slope, -(slope * slope)]
+            }
+        }
+    }
+
     /// Stretch of the thickness that belongs to its strain.
     pub fn stretch(self, strain_zz: f64) -> f64 {
         match self {

@@ -24,22 +24,36 @@ pub struct Field {
     pub at_origin: [f64; 2],
     /// Square of the angular velocity [1/time^2].
     pub omega2: f64,
+    /// Whether the axis is y, in the plane: the acceleration has no component along it.
+    pub ring: bool,
 }
 
 impl Field {
     /// The same acceleration everywhere.
     pub fn uniform(b: [f64; 2]) -> Self {
-        Self { at_origin: b, omega2: 0.0 }
+        Self { at_origin: b, omega2: 0.0, ring: false }
     }
 
     /// Centrifugal acceleration about a point.
     pub fn centrifugal(omega2: f64, center: [f64; 2]) -> Self {
-        Self { at_origin: [-omega2 * center[0], -omega2 * center[1]], omega2 }
+        Self { at_origin: [-omega2 * center[0], -omega2 * center[1]], omega2, ring: false }
+    }
+
+    /// The field about the axis y.
+    pub fn about_axis(self) -> Self {
+        let along = if self.omega2 == 0.0 { self.at_origin[1] } else { 0.0 };
+        Self { at_origin: [self.at_origin[0], along], ring: true, ..self }
+    }
+
+    /// Square of the angular velocity for each direction.
+    fn growth(&self) -> [f64; 2] {
+        [self.omega2, if self.ring { 0.0 } else { self.omega2 }]
     }
 
     /// The field times a factor.
     pub fn times(self, factor: f64) -> Self {
-        Self { at_origin: self.at_origin.map(|b| factor * b), omega2: factor * self.omega2 }
+        let omega2 = factor * self.omega2;
+        Self { at_origin: self.at_origin.map(|b| factor * b), omega2, ring: self.ring }
     }
 }
 
@@ -56,16 +70,17 @@ pub fn force<const N: usize, const M: usize>(
 ) -> (Nodal<f64, N, M>, Blocks<f64, N, M>) {
     let (mut f, mut k) = (nodal::<f64, N, M>(), blocks::<f64, N, M>());
     let mut pull = [[0.0; 2]; N];
+    let growth = field.growth();
     for a in 0..N {
         for i in 0..2 {
-            pull[a][i] = field.at_origin[i] + field.omega2 * (x[a][i] + u[a][i]);
+            pull[a][i] = field.at_origin[i] + growth[i] * (x[a][i] + u[a][i]);
         }
     }
     for a in 0..N {
         for b in 0..N {
             for i in 0..2 {
                 f[a][i] += mass.nn[a][b] * pull[b][i];
-                k[a][b][i][i] = field.omega2 * mass.nn[a][b];
+                k[a][b][i][i] = growth[i] * mass.nn[a][b];
             }
         }
     }

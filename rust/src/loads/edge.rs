@@ -16,6 +16,8 @@
 //! boundaries and not at open ends.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use std::f64::consts::TAU;
+
 /// One loaded edge of two nodes, or three with the middle last.
 #[derive(Clone, Debug)]
 pub struct Edge {
@@ -28,6 +30,8 @@ pub struct Edge {
     pub alpha_b: f64,
     /// Undeformed positions of the nodes.
     pub x: [[f64; 2]; 3],
+    /// Whether it is turned about the axis: a pressure acts on the current circumference.
+    pub ring: bool,
 }
 
 /// Where an edge is: positions of its nodes, and the difference of its end rotations.
@@ -117,7 +121,9 @@ pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
     let mut k = EdgeStiffness::default();
     for (w, n, dn) in samples(edge.n_nodes) {
         let d = tangent(&at.x, &dn);
-        let s = w * edge.thickness(&n) * p;
+        let radius: f64 = (0..edge.n_nodes).map(|a| n[a] * at.x[a][0]).sum();
+        let depth = if edge.ring { TAU * radius } else { edge.thickness(&n) };
+        let s = w * depth * p;
         // Inward normal times length: the tangent turned to the left.
         for a in 0..edge.n_nodes {
             f[a][0] -= s * n[a] * d[1];
@@ -125,6 +131,11 @@ pub fn pressure(edge: &Edge, at: &Place, p: f64) -> (EdgeForce, EdgeStiffness) {
             for b in 0..edge.n_nodes {
                 k[a][b][0][1] -= s * n[a] * dn[b];
                 k[a][b][1][0] += s * n[a] * dn[b];
+                if edge.ring {
+                    let growth = w * p * TAU * n[a] * n[b];
+                    k[a][b][0][0] -= growth * d[1];
+                    k[a][b][1][0] += growth * d[0];
+                }
             }
         }
     }

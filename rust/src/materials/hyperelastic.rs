@@ -365,4 +365,7 @@ impl<W: Energy> Material for Hyperelastic<W> {
     fn energy(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> f64 {
         self.density(parts(&e), self.normal(e)).v
     }
+    fn energy_solid(&self, e: [f64; 4], _: [f64; 4], _: &[f64]) -> f64 {
+        self.density(parts(&[e[0], e[1], e[2]]), e[3]).v
+    }
 }

@@ -60,6 +60,12 @@ macro_rules! law {
             pub fn energy(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> f64 {
                 match self { $(Law::$name(m) => m.energy(e, s, state)),+ }
             }
+            pub fn energy_solid(&self, e: [f64; 4], s: [f64; 4], state: &[f64]) -> f64 {
+                match self { $(Law::$name(m) => m.energy_solid(e, s, state)),+ }
+            }
+            pub fn without_normal_strain(&self, s: [f64; 3], zz: f64) -> [f64; 3] {
+                match self { $(Law::$name(m) => m.without_normal_strain(s, zz)),+ }
+            }
             pub fn spherical(&self) -> bool {
                 match self { $(Law::$name(m) => m.spherical()),+ }
             }

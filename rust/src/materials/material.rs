@@ -122,6 +122,21 @@ pub trait Material: Sized {
     fn out_of_plane(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> (f64, f64);
     /// Recoverable energy density.
     fn energy(&self, strain: [f64; 3], stress: [f64; 3], state: &[f64]) -> f64;
+    /// Stress in the plane of the state that [`Material::update_solid`] asks [`Material::update`]
+    /// for, by the answer in the plane and the strain zz: that which [`Material::output`] takes.
+    fn without_normal_strain(&self, s: [f64; 3], zz: f64) -> [f64; 3] {
+        let rest = 3.0 * self.bulk().unwrap_or(0.0) * zz;
+        [s[0] - rest, s[1] - rest, s[2]]
+    }
+    /// Recoverable energy density of an answer of [`Material::update_solid`]. With a bulk modulus it
+    /// is that of the state in plane strain, and the difference in the volume.
+    fn energy_solid(&self, e: [f64; 4], s: [f64; 4], state: &[f64]) -> f64 {
+        let Some(bulk) = self.bulk() else { return f64::NAN };
+        let [x, y, xy, z] = e;
+        let plane = self.without_normal_strain([s[0], s[1], s[2]], z);
+        let rest = 1.5 * bulk * z * (2.0 * (x + y) - z);
+        self.energy([x - z, y - z, xy], plane, state) + rest
+    }
     /// Whether an initial stress through the thickness acts in all three directions (so that
     /// the deviator is left alone); else it stands beside what the law gives.
     fn spherical(&self) -> bool {

@@ -120,6 +120,9 @@ impl Material for Orthotropic {
     fn energy(&self, e: [f64; 3], s: [f64; 3], _: &[f64]) -> f64 {
         0.5 * (e[0] * s[0] + e[1] * s[1] + e[2] * s[2])
     }
+    fn energy_solid(&self, e: [f64; 4], s: [f64; 4], _: &[f64]) -> f64 {
+        0.5 * (e[0] * s[0] + e[1] * s[1] + e[2] * s[2] + e[3] * s[3])
+    }
     fn initial_energy(&self, _: [f64; 3], _: f64, initial: f64) -> f64 {
         0.5 * initial * initial * self.normal
     }

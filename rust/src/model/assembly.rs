@@ -8,8 +8,8 @@ use super::scatter::Sink;
 use crate::base::small::{Blocks, Nodal};
 use crate::base::{Kernel, Real};
 use crate::elements::Element;
-use crate::kinematics::corotation::Frame;
-use crate::kinematics::integrate::{History, Local, single_into};
+use crate::elements::element::Wanted;
+use crate::kinematics::integrate::{History, Local};
 use crate::kinematics::per_point::PerPoint;
 
 /// The assembly of a chunk, to be run with the processor's widest numbers.
@@ -42,9 +42,10 @@ where
         let members = usize::from(shared.section.law.n_state() > 0);
         let section =
             if context.stressed { &shared.stressed } else { shared.section(context.nlgeom) };
+        let wanted =
+            Wanted { nlgeom: context.nlgeom, stressed: context.stressed, tangent: context.tangent };
         for e in (0..n).step_by(T::LANES) {
             let (x, u) = self.gather::<T>(e, context);
-            let mut frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
             let mut history = History {
                 old: &self.old[e * members..],
                 new: &mut self.new[e * members..],
@@ -60,20 +61,7 @@ where
                 ),
             };
             let mut answer = Local::zero();
-            let (q, tangent) = (&frame.q, context.tangent);
-            if T::LANES == 1 {
-                single_into::<E, T, N, M, A>(&x, q, section, &mut history, tangent, &mut answer);
-            } else {
-                E::law_into(&x, q, section, &mut history, tangent, &mut answer);
-            }
-            let force = frame.force(&answer.force);
-            if context.stressed && E::TURNS {
-                // Forces turn with the element, from the reference on.
-                frame = Frame::new(&x, &[[T::zero(); M]; N], true);
-            }
-            if context.tangent && E::TURNS {
-                frame.stiffness(&answer.force, &mut answer.stiffness);
-            }
+            E::respond(&x, &u, section, &mut history, wanted, &mut answer);
             let count = T::LANES.min(n - e);
             if T::any(answer.failed) {
                 for l in 0..count {
@@ -82,7 +70,7 @@ where
                     }
                 }
             }
-            self.scatter_force(e, count, &force, context.dofs, sink);
+            self.scatter_force(e, count, &answer.force, context.dofs, sink);
             if context.tangent {
                 self.scatter_stiffness(e, count, &answer.stiffness, context.dofs, sink);
             }

@@ -6,12 +6,12 @@ use super::chunk_of::ChunkOf;
 use super::dofs::Dofs;
 use super::locality;
 use super::registry;
-use crate::elements::Element;
-use crate::for_each_element;
+use crate::elements::{Element, Ring};
 use crate::kinematics::integrate::Section;
 use crate::kinematics::local_strain::LocalStrain;
 use crate::materials::by_temperature::LawTable;
 use crate::materials::{Law, Plane};
+use crate::{for_each_element, for_each_ring};
 use std::sync::Arc;
 
 /// Elements of one type with one material and section.
@@ -21,6 +21,8 @@ pub struct BlockInput {
     pub law: String,
     pub parameters: Vec<f64>,
     pub plane: Plane,
+    /// Whether it is a solid of revolution; the plane is then in strain.
+    pub ring: bool,
     pub local_strain: String,
     pub thickness: f64,
     /// Thickness of the nodes, element by element; empty where it is the same everywhere.
@@ -104,6 +106,7 @@ pub fn build(
             },
             law: law.clone(),
             plane: input.plane,
+            ring: input.ring,
             profile: input.profile,
             table: input.table.clone(),
             mean_dilatation: input.options.mean_dilatation,
@@ -150,6 +153,17 @@ pub fn build(
                 return of::<$e, $n, $m, $a>(index, input, x, dofs);
             }
         };
+    }
+    macro_rules! turn {
+        ($e:ty, $n:literal, $a:literal) => {
+            if input.element == <$e as Element<$n, 2, $a>>::NAME {
+                return of::<Ring<$e>, $n, 2, $a>(index, input, x, dofs);
+            }
+        };
+    }
+    if input.ring {
+        for_each_ring!(turn);
+        return Err(format!("{} is no element of an axisymmetric body", input.element));
     }
     for_each_element!(pick);
     Err(format!("no element named {:?}", input.element))

@@ -166,7 +166,8 @@ where
                     *to = 0.5 * (*to + from);
                 }
             }
-            let (middle, mut k) = body::force(&mass, coupled, &x, &u, load.field, context.tangent);
+            let field = if E::RING { load.field.about_axis() } else { load.field };
+            let (middle, mut k) = body::force(&mass, coupled, &x, &u, field, context.tangent);
             let f = secant.unwrap_or(middle);
             self.scatter_force(e, 1, &f, context.dofs, sink);
             if context.tangent {

@@ -105,6 +105,7 @@ fn case(facts: &Facts, law: &str, strain: &str, nlgeom: bool) -> Case {
         law: law.into(),
         parameters: Law::examples(law)[0].to_vec(),
         plane: Plane::Stress,
+        ring: false,
         local_strain: strain.into(),
         thickness: 0.7,
         nodal_thickness: if strain == "logarithmic" {

@@ -4,10 +4,9 @@
 use super::chunk::Context;
 use super::chunk_of::ChunkOf;
 use crate::elements::Element;
-use crate::kinematics::about_mean::AboutMean;
+use crate::elements::element::Wanted;
 use crate::kinematics::corotation::Frame;
-use crate::kinematics::dilatation::Dilatation;
-use crate::kinematics::integrate::{History, gradient, local};
+use crate::kinematics::integrate::{History, Local};
 use crate::materials::{Law, Plane, PointState};
 
 /// Fields of one block, element by element, point by point.
@@ -179,8 +178,10 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             stride: 1,
             per_point: own,
         };
-        let answer = local::<E, f64, N, M, A>(&x, &frame.q, section, &mut history, false);
-        let forces = frame.force(&answer.force);
+        let wanted = Wanted { nlgeom: context.nlgeom, stressed: false, tangent: false };
+        let mut answer = Local::zero();
+        E::respond(&x, &u, section, &mut history, wanted, &mut answer);
+        let forces = answer.force;
         out.forces[e * N * M..(e + 1) * N * M].copy_from_slice(forces.as_flattened());
         if E::LINE {
             let axial = initial.first().copied().unwrap_or(0.0);
@@ -221,44 +222,46 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             modes[m] = [alpha[2 * m], alpha[2 * m + 1]];
         }
         let parameter = own.parameter::<f64, N>(section);
-        let prepared = E::prepare(&x, parameter, &own.sides(E::ALPHA_B));
-        let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
-        let about =
-            AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
-        for (p, point) in section.points.iter().enumerate() {
+        let kinematics = E::kinematics(&x, &u, &modes, section, &own, context.nlgeom);
+        for (p, (point, at)) in section.points.iter().zip(&kinematics).enumerate() {
             let (law, thickness) =
                 (own.law::<f64, N>(p, section), own.thickness::<f64, N>(p, section));
-            let s = E::sample(&x, &prepared, point);
-            let mut h = gradient(&s, &frame.q, &modes);
-            let mut total = section.strain.strain(&h);
-            if let Some(bar) = &bar {
-                bar.apply(&mut total);
-                h = bar.gradient(&h);
-            }
-            if let Some(about) = &about {
-                total = about.strain(&h);
-                h = about.h;
-            }
+            let h = at.h;
+            let total = [at.strain[0], at.strain[1], at.strain[3]];
             let offset = |row: usize| initial.get(4 * p + row).copied().unwrap_or(0.0);
             // What the law sees; output is the total strain.
             let strain = [total[0] - offset(0), total[1] - offset(1), total[2] - offset(2)];
             let range = p * members..(p + 1) * members;
             let mut state =
                 PointState { old: &old[range.clone()], new: &mut new[range.clone()], stride: 1 };
-            let mut stress = law.update(strain, &mut state).stress;
-            let state = &new[range];
-            let (mut strain_zz, mut stress_zz) = law.out_of_plane(strain, stress, state);
-            let normal = stress_zz;
-            let mut energy = law.energy(strain, stress, state);
-            match section.plane {
-                Plane::Stress => strain_zz += offset(3),
-                Plane::Strain => {
-                    energy += law.initial_energy(stress, stress_zz, offset(3));
-                    stress_zz += offset(3);
-                }
+            let (mut stress, mut strain_zz, mut stress_zz, mut energy);
+            if E::RING {
+                strain_zz = at.strain[2];
+                let solid = [strain[0], strain[1], strain[2], strain_zz - offset(3)];
+                let all = law.update_solid(solid, &mut state).stress;
+                energy = law.energy_solid(solid, all, &new[range.clone()]);
+                stress_zz = all[3];
+                stress = [all[0], all[1], all[2]];
+            } else {
+                stress = law.update(strain, &mut state).stress;
+                (strain_zz, stress_zz) = law.out_of_plane(strain, stress, &new[range.clone()]);
+                energy = law.energy(strain, stress, &new[range.clone()]);
             }
-            let own_stress = stress;
-            if section.plane == Plane::Strain && section.law.spherical() {
+            let state = &new[range];
+            let normal = stress_zz;
+            let in_strain = section.plane == Plane::Strain && !E::RING;
+            if section.plane == Plane::Stress {
+                strain_zz += offset(3);
+            } else if in_strain {
+                energy += law.initial_energy(stress, stress_zz, offset(3));
+                stress_zz += offset(3);
+            }
+            let own_stress = if E::RING {
+                law.without_normal_strain(stress, strain_zz - offset(3))
+            } else {
+                stress
+            };
+            if in_strain && section.law.spherical() {
                 stress[0] += offset(3);
                 stress[1] += offset(3);
             }
@@ -266,17 +269,20 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 for (row, v) in heat.iter_mut().zip(stress) {
                     *row = v;
                 }
-                if section.plane == Plane::Strain && !heat.is_empty() {
+                if E::RING && !heat.is_empty() {
+                    (heat[3], heat[4]) = (stress_zz, stress_zz);
+                } else if in_strain && !heat.is_empty() {
                     // The energy is quadratic in the initial stress.
                     let [up, down] = [1.0, -1.0].map(|s| law.initial_energy(own_stress, normal, s));
                     heat[3] = 0.5 * (down - up) - (up + down) * offset(3);
                     heat[4] = stress_zz;
                 }
             }
-            let stretch = section.strain.stretch(strain_zz);
+            let stretch = if E::RING { 1.0 + at.hoop } else { section.strain.stretch(strain_zz) };
             let [xx, yy, zz, xy] = section.strain.cauchy(&h, stress, stress_zz, stretch);
             let s_global = turn([xx, yy, xy], frame.cos, frame.sin);
             let e_global = turn([total[0], total[1], 0.5 * total[2]], frame.cos, frame.sin);
+            let at_strain = at.strain;
             let at = e * n_points + p;
             let mut position = [0.0; 2];
             for a in 0..N {
@@ -291,7 +297,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             let row = [e_global[0], e_global[1], strain_zz, 2.0 * e_global[2]];
             out.strain[4 * at..4 * at + 4].copy_from_slice(&row);
             out.energy[at] = energy;
-            out.volume[at] = s.weight * thickness;
+            out.volume[at] = kinematics[p].volume;
             for (i, values) in out.outputs.iter_mut().enumerate() {
                 values[at] = law.output(i, own_stress, state);
             }
@@ -302,17 +308,10 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
                 let t = turn([xx, yy, shear * xy], frame.cos, frame.sin);
                 values[4 * at..4 * at + 4].copy_from_slice(&[t[0], t[1], zz, t[2] / shear]);
             }
-            for v in total {
+            for v in at_strain {
                 out.largest_strain = out.largest_strain.max(v.abs());
             }
-            if E::Op::<f64>::DRILL {
-                let mut drill = s.op.drill(&frame.q);
-                for m in 0..A {
-                    drill += 0.5 * (s.modes[m][0] * modes[m][1] - s.modes[m][1] * modes[m][0]);
-                }
-                let gamma = parameter * thickness * s.weight;
-                out.penalty[e] += 0.5 * gamma * drill * drill;
-            }
+            out.penalty[e] += kinematics[p].penalty;
         }
         let drilling = out.penalty[e];
         let [first, second] = E::stabilization(&x, &frame.q, section, &own, &new[memory..]);
@@ -342,29 +341,16 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
     let stride = chunk.stride;
     for e in 0..chunk.nodes.len() {
         let (x, u) = chunk.gather::<f64>(e, context);
-        let frame = Frame::new(&x, &u, context.nlgeom && E::TURNS);
         let mut modes = [[0.0; 2]; A];
         for m in 0..A {
             modes[m] = [alpha[2 * m * stride + e], alpha[(2 * m + 1) * stride + e]];
         }
-        let own = chunk.per_point(e);
-        let parameter = own.parameter::<f64, N>(section);
-        let prepared = E::prepare(&x, parameter, &own.sides(E::ALPHA_B));
-        let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
-        let about =
-            AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
-        for (p, point) in section.points.iter().enumerate() {
-            let s = E::sample(&x, &prepared, point);
-            let h = gradient(&s, &frame.q, &modes);
+        let kinematics =
+            E::kinematics(&x, &u, &modes, section, &chunk.per_point(e), context.nlgeom);
+        for (p, at) in kinematics.iter().enumerate() {
+            let [xx, yy, _, xy] = at.strain;
             let at = 3 * (chunk.elements[e] as usize * n_points + p);
-            let mut strain = match &about {
-                Some(about) => about.strain(&h),
-                None => section.strain.strain(&h),
-            };
-            if let Some(bar) = &bar {
-                bar.apply(&mut strain);
-            }
-            out[at..at + 3].copy_from_slice(&strain);
+            out[at..at + 3].copy_from_slice(&[xx, yy, xy]);
         }
     }
 }

@@ -20,6 +20,22 @@ macro_rules! for_each_planar_element {
     };
 }
 
+/// Call `$then!(Type, N, A)` for every element that can be turned about an axis.
+#[macro_export]
+macro_rules! for_each_ring {
+    ($then:ident) => {
+        $then!($crate::elements::t3::T3, 3, 0);
+        $then!($crate::elements::t6::T6, 6, 0);
+        $then!($crate::elements::q4::Q4, 4, 0);
+        $then!($crate::elements::q4i::Q4i, 4, 2);
+        $then!($crate::elements::q4s::Q4s, 4, 2);
+        $then!($crate::elements::q4r::Q4r, 4, 0);
+        $then!($crate::elements::q8::Q8, 8, 0);
+        $then!($crate::elements::q8::Q8r, 8, 0);
+        $then!($crate::elements::q9::Q9, 9, 0);
+    };
+}
+
 /// Call `$then!(Type, N, M, A)` for every registered element.
 #[macro_export]
 macro_rules! for_each_element {
@@ -60,6 +76,8 @@ pub struct Facts {
     pub about_mean: bool,
     /// Whether it has one point and a stabilized hourglass.
     pub stabilized: bool,
+    /// Whether it can be turned about an axis.
+    pub revolved: bool,
     /// Line element.
     pub line: bool,
     /// Line element without mass, section and axial strain.
@@ -87,6 +105,7 @@ pub fn facts() -> Vec<Facts> {
             weighted: E::parameter_of(1.0).is_some(),
             about_mean: E::ABOUT_MEAN,
             stabilized: E::MEMORY > 0,
+            revolved: false,
             line: E::LINE,
             spring: E::SPRING,
             turns: E::TURNS,
@@ -100,6 +119,14 @@ pub fn facts() -> Vec<Facts> {
         };
     }
     for_each_element!(push);
+    macro_rules! mark {
+        ($e:ty, $n:literal, $a:literal) => {
+            for facts in &mut all {
+                facts.revolved |= facts.name == <$e as Element<$n, 2, $a>>::NAME;
+            }
+        };
+    }
+    for_each_ring!(mark);
     all
 }
 

@@ -26,6 +26,7 @@ fn sheet(n: usize, shuffled: bool) -> Problem {
         law: "elastic".into(),
         parameters: vec![1000.0, 0.3],
         plane: Plane::Stress,
+        ring: false,
         local_strain: "green_lagrange".into(),
         thickness: 1.0,
         nodal_thickness: Vec::new(),

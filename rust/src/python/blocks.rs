@@ -8,6 +8,9 @@ use pyo3::types::{PyDict, PyList};
 
 use super::problem::value_error;
 
+/// Name of the plane of solids of revolution.
+const RING: &str = "axisymmetric";
+
 /// Numbers that a block may have; none where it has not.
 fn numbers(block: &Bound<'_, PyDict>, key: &str) -> PyResult<Vec<f64>> {
     match block.get_item(key)? {
@@ -33,7 +36,8 @@ pub fn block_inputs(blocks: &Bound<'_, PyList>) -> PyResult<Vec<BlockInput>> {
             element: get("element")?.extract()?,
             law: get("law")?.extract()?,
             parameters: get("parameters")?.extract()?,
-            plane: super::material::plane(&plane)?,
+            plane: super::material::plane(if plane == RING { "strain" } else { &plane })?,
+            ring: plane == RING,
             local_strain: get("local_strain")?.extract()?,
             thickness: get("thickness")?.extract()?,
             profile: match d.get_item("profile")? {

@@ -3,6 +3,7 @@
 
 use crate::base::pool;
 use crate::contact::discretization::{self, DISCRETIZATIONS, Entry};
+use crate::contact::slave::Depth;
 use crate::contact::terms::WIDTH;
 use crate::contact::{Contact as Pair, Distances, Edge, Rigid, Shape, Surface, Terms};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -106,14 +107,20 @@ pub struct Contact {
     threads: usize,
 }
 
+/// Depths of the slave's edges: thicknesses, 0 for a circumference.
+pub(super) fn depths(thickness: &Floats<'_>) -> PyResult<Vec<Depth>> {
+    let depth = |&t: &f64| if t == 0.0 { Depth::Circumference } else { Depth::Thickness(t) };
+    Ok(thickness.as_slice()?.iter().map(depth).collect())
+}
+
 fn sides(
     x: &[[f64; 3]],
     nodes: &Numbers,
     alpha: &Floats,
     thickness: &Floats,
-) -> PyResult<(Vec<Edge>, Vec<f64>)> {
+) -> PyResult<(Vec<Edge>, Vec<Depth>)> {
     let edges = edges(x, nodes, alpha, "slave")?;
-    let thickness = thickness.as_slice()?.to_vec();
+    let thickness = depths(thickness)?;
     if thickness.len() != edges.len() {
         return Err(bad(format!("{} edges, {} thicknesses", edges.len(), thickness.len())));
     }
@@ -123,7 +130,7 @@ fn sides(
 impl Contact {
     fn wrap(
         x: &[[f64; 3]],
-        slave: (Vec<Edge>, Vec<f64>),
+        slave: (Vec<Edge>, Vec<Depth>),
         master: Option<Surface>,
         method: &str,
         distances: Distances,

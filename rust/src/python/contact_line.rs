@@ -1,7 +1,7 @@
 //! Contact pairs with lines or single nodes for Python.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::contact::{Contact, bad, edges, rows};
+use super::contact::{Contact, bad, depths, edges, rows};
 use crate::contact::discretization;
 use crate::contact::{Contact as Pair, Distances, Edge, Rigid, Slave, Surface};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -63,7 +63,7 @@ fn line_contact(
     let slave = if own.is_empty() {
         Slave::of_nodes(points)
     } else {
-        Slave::new(x, own.clone(), thickness.as_slice()?.to_vec(), true)
+        Slave::new(x, own.clone(), depths(&thickness)?, true)
     };
     let first = match &rigid {
         Some((segments, node, point)) => {

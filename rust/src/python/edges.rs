@@ -15,9 +15,9 @@ type Answer<'py> = (
 
 /// Loaded edges, all with the same kind of load.
 ///
-/// EdgeLoads(points, nodes, thickness, alpha_b): ``points`` (n_nodes, 2) undeformed; ``nodes``
+/// EdgeLoads(points, nodes, thickness, alpha_b, ring=False): ``points`` (n_nodes, 2) undeformed; ``nodes``
 /// (n, 3) uint32, the third repeated from the first where the edge is straight; ``thickness`` (n, 3)
-/// of these nodes.
+/// of these nodes. ``ring``: the edges are turned about the axis.
 #[pyclass(name = "EdgeLoads")]
 pub struct PyEdgeLoads {
     edges: Vec<Edge>,
@@ -26,18 +26,21 @@ pub struct PyEdgeLoads {
 #[pymethods]
 impl PyEdgeLoads {
     #[new]
+    #[pyo3(signature = (points, nodes, thickness, alpha_b, ring = false))]
     fn new(
         points: PyReadonlyArray2<'_, f64>,
         nodes: PyReadonlyArray2<'_, u32>,
         thickness: PyReadonlyArray2<'_, f64>,
         alpha_b: PyReadonlyArray1<'_, f64>,
+        ring: bool,
     ) -> PyResult<Self> {
         let (t, b) = (thickness.as_slice()?.as_chunks::<3>().0, alpha_b.as_slice()?);
         let points = points.as_slice()?.as_chunks::<2>().0;
         let rows = nodes.as_slice()?.as_chunks::<3>().0;
         let edges = rows.iter().zip(t).zip(b).map(|((&nodes, &thickness), &alpha_b)| {
             let n_nodes = if nodes[2] == nodes[0] { 2 } else { 3 };
-            Edge { nodes, n_nodes, thickness, alpha_b, x: nodes.map(|n| points[n as usize]) }
+            let x = nodes.map(|n| points[n as usize]);
+            Edge { nodes, n_nodes, thickness, alpha_b, x, ring }
         });
         Ok(Self { edges: edges.collect() })
     }
@@ -101,7 +104,9 @@ impl PyEdgeLoads {
                 for b in 0..e.n_nodes {
                     for i in 0..3 {
                         for j in 0..3 {
-                            if e.alpha_b > 0.0 || (chord && i < 2 && j < 2 && i != j) {
+                            if e.alpha_b > 0.0
+                                || (chord && i < 2 && j < 2 && (i != j || (e.ring && j == 0)))
+                            {
                                 rows.push(3 * e.nodes[a] + i as u32);
                                 columns.push(3 * e.nodes[b] + j as u32);
                                 values.push(k[a][b][i][j]);

@@ -536,6 +536,7 @@ fn elements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         d.set_item("free_volume", f.free_volume)?;
         d.set_item("bending_cells", f.bending_cells)?;
         d.set_item("weighted", f.weighted)?;
+        d.set_item("revolved", f.revolved)?;
         d.set_item("about_mean", f.about_mean)?;
         d.set_item("stabilized", f.stabilized)?;
         d.set_item("line", f.line)?;

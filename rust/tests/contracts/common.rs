@@ -147,6 +147,7 @@ where
     Section {
         points: E::points(&E::rule()),
         plane,
+        ring: false,
         strain,
         thickness: 1.3,
         profile: [0.0; 3],

@@ -15,6 +15,7 @@ fn edges(random: &mut Random) -> [Edge; 4] {
         thickness: [THICKNESS; 3],
         alpha_b,
         x: positions(n_nodes, random),
+        ring: false,
     })
 }
 

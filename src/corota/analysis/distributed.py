@@ -22,7 +22,7 @@ from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, 
 from corota.arrays import distinct
 from corota.errors import InputError, ModelError
 from corota.mesh.data import EDGES
-from corota.model import elements
+from corota.model import axisymmetry, elements
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 
 if TYPE_CHECKING:
@@ -115,6 +115,8 @@ class DistributedLoads:
 
     def set(self, items: Sequence[Item], amplitude: Callable[[str, Location | None], int]) -> None:
         """Add the loads of a step in place of those on the same edges, nodes or sets."""
+        if self.system.axisymmetric:
+            axisymmetry.check_loads(items)
         fresh = self._bodies([i for i in items if isinstance(i, BodyForce)], amplitude)
         fresh += self._on_edges([i for i in items if isinstance(i, EdgeLoad)], amplitude)
         # Dead forces only replace earlier loads.
@@ -323,11 +325,12 @@ class DistributedLoads:
     def _edges(self, faces: Ints) -> tuple[Ints, Floats, Floats]:
         """Nodes (the third is the first on straight edges), their thickness, bulge of edges."""
         nodes, thickness, alpha = [], [], []
+        points = self.system.model.mesh.points
         for cell, side in faces.tolist():
             ends, b = self._ends(cell, side)
             section = self.system.blocks[b].section
             nodes.append([ends[0], ends[1], ends[2] if len(ends) == 3 else ends[0]])
-            thickness.append(section.thickness_at(np.array(nodes[-1])))
+            thickness.append(section.thickness_at(np.array(nodes[-1]), points))
             alpha.append(self.system.blocks[b].share(self._cells[cell][1], side))
         table = np.asarray(nodes, np.int64).reshape(-1, 3)
         return table, np.array(thickness).reshape(-1, 3), np.asarray(alpha, np.float64)
@@ -336,7 +339,8 @@ class DistributedLoads:
         """The core's edges, and whether some of them bulge with rotations."""
         nodes, thickness, alpha = self._edges(faces)
         points = self.system.model.mesh.points
-        edges = _core.EdgeLoads(points, nodes.astype(np.uint32), thickness, alpha)
+        ring = self.system.axisymmetric
+        edges = _core.EdgeLoads(points, nodes.astype(np.uint32), thickness, alpha, ring)
         return edges, bool((alpha > 0.0).any())
 
     def _area(self, faces: Ints) -> float:
@@ -344,8 +348,9 @@ class DistributedLoads:
         area = 0.0
         for cell, side in faces.tolist():
             ends, b = self._ends(cell, side)
-            x = self.system.model.mesh.points[ends]
-            thickness = self.system.blocks[b].section.thickness_at(np.array(ends))
+            points = self.system.model.mesh.points
+            x = points[ends]
+            thickness = self.system.blocks[b].section.thickness_at(np.array(ends), points)
             if len(ends) == 2:
                 area += float(np.hypot(*(x[1] - x[0]))) * float(thickness.mean())
                 continue

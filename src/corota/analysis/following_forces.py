@@ -31,7 +31,8 @@ class FollowingTraction:
 
     It acts on the current length. With t and n the current tangent and the normal to its left,
     the force is the integral of s_t t + s_n n, and t times the length is linear in the positions
-    of the nodes: so is the force, and its derivative is constant. On drilling elements the
+    of the nodes: so is the force, and its derivative is constant. Of a ring the current
+    circumference is another factor, linear in the radii. On drilling elements the
     component across acts on the bulge of their sides, as a pressure does; the component along
     acts on the chord.
 
@@ -75,28 +76,46 @@ class FollowingTraction:
             if size != 0.0:
                 self.bulged.append((size, Pressure(system, edges)))
             across[mask] = 0.0
-        weight = np.einsum("ega,ea->eg", shape, thickness) * _WEIGHTS
-        #: Force at node a per position of node b, shape (n, 3, 3, 2, 2).
-        self.matrix = np.einsum(
-            "eg,ega,egb,egij->eabij",
-            weight,
+        ring = system.axisymmetric
+        depth = np.full((len(nodes), 3), 2.0 * np.pi) if ring else thickness
+        if not ring:
+            shape = shape * np.einsum("ega,ea->eg", shape, depth)[..., None]
+        #: Force at node a per position of node b at the points g, shape (n, 3, 3, 3, 2, 2).
+        self._parts = np.einsum(
+            "g,ega,egb,egij->egabij",
+            _WEIGHTS * (2.0 * np.pi if ring else 1.0),
             shape,
             slope,
             along[..., None, None] * np.eye(2) + across[..., None, None] * _LEFT,
         )
+        self.shape = shape if ring else None
         self.nodes, self.reference = nodes, x
         start = system.start[nodes]
         straight = nodes[:, 2] == nodes[:, 0]
         real = np.ones(nodes.shape, bool)
         real[straight, 2] = False
         pair = real[:, :, None, None, None] & real[:, None, :, None, None]
+        matrix = self._matrix(x)
         rows = start[:, :, None, None, None] + np.arange(2)[:, None]
         columns = start[:, None, :, None, None] + np.arange(2)
-        filled = np.broadcast_to(pair, self.matrix.shape) & (self.matrix != 0.0)
-        self._rows = np.broadcast_to(rows, self.matrix.shape)[filled]
-        self._columns = np.broadcast_to(columns, self.matrix.shape)[filled]
-        self._values = self.matrix[filled]
+        self._filled = np.broadcast_to(pair, matrix.shape) & (ring | (matrix != 0.0))
+        self._rows = np.broadcast_to(rows, matrix.shape)[self._filled]
+        self._columns = np.broadcast_to(columns, matrix.shape)[self._filled]
         self._unit: Floats | None = None
+
+    def _radii(self, x: Floats) -> Floats:
+        """Radii at the points, one where there is no circumference; shape (n, 3)."""
+        if self.shape is None:
+            return np.ones(self._parts.shape[:2])
+        return np.asarray(np.einsum("ega,ea->eg", self.shape, x[..., 0]))
+
+    def _matrix(self, x: Floats) -> Floats:
+        """Derivative of the force by the positions, shape (n, 3, 3, 2, 2)."""
+        matrix: Floats = np.einsum("eg,egabij->eabij", self._radii(x), self._parts)
+        if self.shape is not None:
+            along = np.einsum("egacij,ecj->egai", self._parts, x)
+            matrix[..., 0] += np.einsum("egai,egb->eabi", along, self.shape)
+        return matrix
 
     def set_mass(self, kind: str) -> None:
         """See :class:`Distribution`."""
@@ -112,15 +131,17 @@ class FollowingTraction:
     def add(self, scale: float, u: Floats, to: LoadSum) -> None:
         """See :class:`Distribution`."""
         moved = self.system.by_node(to.middle(u))[:, :2]
-        to.force += scale * self._at(self.reference + moved[self.nodes])
-        to.entries.append((self._rows, self._columns, scale * self._values))
+        x = self.reference + moved[self.nodes]
+        to.force += scale * self._at(x)
+        to.entries.append((self._rows, self._columns, scale * self._matrix(x)[self._filled]))
         for size, pressure in self.bulged:
             pressure.add(scale * size, u, to)
 
     def _at(self, x: Floats) -> Floats:
         """Force of unit scale at positions of the edges' nodes, along the axes of the nodes."""
         force = np.zeros((len(self.system.model.mesh.points), 3))
-        np.add.at(force[:, :2], self.nodes, np.einsum("eabij,ebj->eai", self.matrix, x))
+        nodal = np.einsum("eg,egabij,ebj->eai", self._radii(x), self._parts, x)
+        np.add.at(force[:, :2], self.nodes, nodal)
         return self.system.from_nodes(force)
 
 

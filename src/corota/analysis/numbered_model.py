@@ -21,7 +21,7 @@ from corota.analysis.parallel.partition import own_blocks
 from corota.analysis.terms.moving_mass import MovingMass
 from corota.analysis.terms.thermal import FreeStrains, start_temperatures
 from corota.errors import ModelError
-from corota.model import elements
+from corota.model import axisymmetry, elements
 from corota.model.blocks import blocks_of, check_shapes, core_input
 
 if TYPE_CHECKING:
@@ -69,10 +69,15 @@ class NumberedModel:
             solver.place_nodes(model.mesh.points)
         mesh = model.mesh
         check_shapes(model, self.blocks)
+        #: Whether the model is a solid of revolution; then nodes and their zero dof.
+        self.axisymmetric = axisymmetry.is_axisymmetric(model)
+        self.guided = axisymmetry.guided(model) if self.axisymmetric else []
+        if self.axisymmetric:
+            axisymmetry.check_constraints(model)
         start = start_temperatures(model)
         #: Blocks of the own elements, and their numbers in `blocks`.
         self.own_blocks, self.own_numbers = own_blocks(self.blocks, mesh.points, self.communicator)
-        inputs = [core_input(b, start) for b in self.own_blocks]
+        inputs = [core_input(b, mesh.points, start) for b in self.own_blocks]
         require_model(self.own_blocks, mesh.n_nodes)
         carried = np.zeros(mesh.n_nodes, np.int64)
         for b in self.blocks:
@@ -117,13 +122,17 @@ class NumberedModel:
         self.cell_size = max(float(_extent(rows[:, b.nodes.T]).max()) for b in self.blocks)
 
     def rigid_motions(self) -> Floats:
-        """Two displacements and a rotation about the middle of all nodes, shape (n_dofs, 3)."""
+        """Two displacements and a rotation about the middle of all nodes, shape (n_dofs, 3).
+
+        Of a ring that along the axis alone, shape (n_dofs, 1).
+        """
         points = self.model.mesh.points
         arm = points - points.mean(axis=0)
         one, zero = np.ones(len(points)), np.zeros(len(points))
         x, y = np.stack([one, zero, zero], axis=1), np.stack([zero, one, zero], axis=1)
         spin = np.stack([-arm[:, 1], arm[:, 0], one], axis=1)
-        return np.stack([self.from_nodes(motion) for motion in (x, y, spin)], axis=1)
+        motions = (y,) if self.axisymmetric else (x, y, spin)
+        return np.stack([self.from_nodes(motion) for motion in motions], axis=1)
 
     # -- numbering ---------------------------------------------------------------------
 

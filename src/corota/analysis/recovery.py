@@ -65,6 +65,8 @@ def _own(
                     "strain exceeds what the material and the plane state allow (for example "
                     "the thickness vanishes); check loads, moduli and units"
                 )
+        if block.section.axisymmetric:
+            own["values"].pop("STH", None)  # a ring has no thickness
         if system.nlgeom and "M1" in own["values"]:
             # Moments of the ends balance the shear force over the current length of a beam.
             values = own["values"]

@@ -61,6 +61,9 @@ def _held(model: Model, rotating: NDArray[np.bool_]) -> list[Floats]:
     found = found or [base]
     for held in found:
         held[:, 2] &= rotating
+        if any(section.axisymmetric for section in model.sections):
+            # The hoop resists radial motion and turns in the plane.
+            held[:, 0] = True
     return found
 
 

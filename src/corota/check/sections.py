@@ -76,12 +76,13 @@ def _locking(mesh: Mesh, section: Section, cells: Ints, steps: list[Step]) -> li
     if isinstance(material, MaterialTable):
         material = max((m for _, m in material.table), key=lambda m: getattr(m, "nu", 0.0))
     element = elements.find(name)
+    state = "axisymmetry" if section.axisymmetric else "plane strain"
     ratio = material.nu if isinstance(material, Elastic) else 0.0
     if material.local_strain:
         compliance = material.compliance()
         ratio = float(-compliance[0, 1] / compliance[0, 0])
     if (
-        section.plane == "strain"
+        section.plane != "stress"
         and ratio > 0.49
         and not element.free_volume
         and not section.mean_dilatation
@@ -89,7 +90,7 @@ def _locking(mesh: Mesh, section: Section, cells: Ints, steps: list[Step]) -> li
         found.append(
             Diagnostic(
                 "warning",
-                f"{name} locks in plane strain at Poisson's ratio {ratio:.6g}",
+                f"{name} locks in {state} at Poisson's ratio {ratio:.6g}",
                 section.where,
                 hint="use Q4S or Q8R, or the mean dilatation (DILATATION=MEAN) of quadrilaterals",
             )

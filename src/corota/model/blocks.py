@@ -50,12 +50,14 @@ class BlockOfCells:
         return float(self.sides[row, edge])
 
 
-def core_input(block: BlockOfCells, temperature: Floats | None = None) -> dict[str, Any]:
+def core_input(
+    block: BlockOfCells, points: Floats, temperature: Floats | None = None
+) -> dict[str, Any]:
     """The block in the format of the core; masses need the initial temperatures of the nodes."""
     section, material = block.section, block.section.material
     own: dict[str, Any] = {}
     if section.nodal_thickness is not None:
-        own["nodal_thickness"] = section.thickness_at(block.nodes).ravel()
+        own["nodal_thickness"] = section.thickness_at(block.nodes, points).ravel()
     if block.sides is not None:
         own["sides"] = np.ascontiguousarray(block.sides).ravel()
     if isinstance(material, MaterialTable):
@@ -238,7 +240,7 @@ def _check_thickness(model: Model, block: BlockOfCells) -> None:
         raise ModelError(
             f"{len(nodal)} thicknesses for {model.mesh.n_nodes} nodes of the mesh", section.where
         )
-    own = section.thickness_at(block.nodes)
+    own = section.thickness_at(block.nodes, model.mesh.points)
     bad = np.argwhere(~(np.isfinite(own) & (own > 0.0)))
     if len(bad):
         node = block.nodes[tuple(bad[0])]

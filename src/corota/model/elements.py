@@ -47,6 +47,8 @@ class Element:
         Line element without mass, section and axial strain.
     turns : bool
         Whether it has a co-rotated frame.
+    revolved : bool
+        Whether it can be a part of a solid of revolution.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Element:
     spring: bool = False
     turns: bool = True
     about_mean: bool = False
+    revolved: bool = False
 
     @property
     def drilling(self) -> bool:

@@ -147,6 +147,8 @@ class Material(Brief):
     local_strain: ClassVar[LocalStrain | Literal[""]] = ""
     #: Whether trusses and beams support it.
     for_lines = False
+    #: Whether it has a stress for a strain in all directions, as solids of revolution need.
+    for_rings = True
     #: Whether its constants follow the temperature.
     follows_temperature = False
     #: How many of its first parameters make the elastic or complementary energy; 0 for a law whose

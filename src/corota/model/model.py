@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from corota.model.loads import Force
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
+    from corota.model.sections import Plane
     from corota.model.steps import Step
 
     Ints = NDArray[np.int64]
@@ -182,7 +183,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         element: str,
         material: Material,
         thickness: float | ArrayLike = 1.0,
-        plane: Literal["stress", "strain"] = "stress",
+        plane: Plane = "stress",
         local_strain: LocalStrain | None = None,
         orientation: float = 0.0,
         mean_dilatation: bool = False,
@@ -201,7 +202,9 @@ class Model(Loading, LineSections, InitialFields, Stages):
         thickness : float or array_like, shape (n_nodes,), optional
             Out-of-plane thickness [length], or that of every node of the mesh; between the nodes
             it follows the shape functions.
-        plane : {"stress", "strain"}, optional
+        plane : {"stress", "strain", "axisymmetric"}, optional
+            Axisymmetric: x is the radius, y the axis; forces, masses and energies are those of the
+            whole circumference.
         local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
             By default that which the material is for: ``logarithmic`` for laws that flow and for
             hyperelastic ones, ``linear`` for elastic ones; see
@@ -209,7 +212,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         orientation : float, optional
             Angle of the material axes [rad].
         mean_dilatation : bool, optional
-            Quadrilaterals in plane strain: no volumetric locking.
+            Quadrilaterals in plane strain and axisymmetry: no volumetric locking.
         beta0 : float, optional
             OPT: weight of the bending stiffness.
 

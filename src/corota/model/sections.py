@@ -29,6 +29,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+#: State of the plane: no stress through the thickness, no strain there, a solid of revolution.
+Plane = Literal["stress", "strain", "axisymmetric"]
+PLANES: tuple[Plane, ...] = ("stress", "strain", "axisymmetric")
+
+
 @dataclass(repr=False)
 class Section(Brief):
     """Element type, material and thickness of a set of cells.
@@ -43,7 +48,8 @@ class Section(Brief):
     thickness : float or array_like, shape (n_nodes,)
         Out-of-plane thickness [length], > 0; or that of every node of the mesh, interpolated
         with the shape functions of the elements. The attribute is then the mean.
-    plane : {"stress", "strain"}
+    plane : {"stress", "strain", "axisymmetric"}
+        Axisymmetric: a solid of revolution, x is the radius and y the axis; without a thickness.
     local_strain : {"linear", "logarithmic", "green_lagrange"}, optional
         Measure of the local displacement gradient. ``linear`` is the classical co-rotational one,
         for local strains of a few percent and the default of elastic bodies; ``logarithmic`` is
@@ -62,7 +68,8 @@ class Section(Brief):
         that of the rectangle with the same area and second moment.
     mean_dilatation : bool
         Replace the volume strain by its mean over each element: no volumetric locking in plastic
-        or nearly incompressible plane strain. Quadrilaterals in plane strain only.
+        or nearly incompressible plane strain and axisymmetry. Quadrilaterals only, not in plane
+        stress.
     beta0 : float, optional
         Weight of the bending stiffness of OPT, > 0; by default the one that makes elastic bending
         exact. In plastic bending it is too stiff; see the page on plasticity.
@@ -72,7 +79,7 @@ class Section(Brief):
     element: str
     material: Material
     thickness: float = 1.0
-    plane: Literal["stress", "strain"] = "stress"
+    plane: Plane = "stress"
     local_strain: LocalStrain | None = None
     orientation: float = 0.0
     where: Location | None = field(default=None, compare=False, repr=False)
@@ -101,8 +108,7 @@ class Section(Brief):
                 f"a section needs a material such as Elastic or Mises, not {self.material!r}",
                 self.where,
             )
-        plane = choose(self.plane, ("stress", "strain"), "plane state", self.where)
-        self.plane = cast("Literal['stress', 'strain']", plane)
+        self.plane = cast("Plane", choose(self.plane, PLANES, "plane state", self.where))
         needed = self.material.local_strain
         measure = local_strain(self.local_strain or self.material.default_strain, self.where)
         self.local_strain = cast("LocalStrain", measure)
@@ -119,10 +125,10 @@ class Section(Brief):
                 "use T6",
                 self.where,
             )
-        if self.plane == "strain" and self.material.incompressible:
+        if self.plane != "stress" and self.material.incompressible:
             shear = float(1.0 / self.material.compliance()[3, 3])
             raise InputError(
-                "constant volume (D = 0) is for plane stress; in plane strain give the "
+                "constant volume (D = 0) is for plane stress; else give the "
                 f"compressibility: D1 = 2 / K, e.g. {0.002 / shear:.6g} for a bulk modulus K of "
                 "1000 times the shear modulus, and an element that does not lock (Q4 with "
                 "mean_dilatation, Q4S, Q8R)",
@@ -150,6 +156,8 @@ class Section(Brief):
                 "with increasing elongation",
                 self.where,
             )
+        if self.axisymmetric:
+            self._check_axisymmetric()
         if np.ndim(self.thickness):
             self._set_nodal_thickness()
         self.thickness = number(self.thickness, "the thickness", self.where)
@@ -160,7 +168,7 @@ class Section(Brief):
             raise InputError(
                 f"the orientation must be a finite angle, not {self.orientation}", self.where
             )
-        if self.mean_dilatation and self.plane != "strain":
+        if self.mean_dilatation and self.plane == "stress":
             raise InputError(
                 "mean dilatation is for plane strain; in plane stress the thickness can change "
                 "and nothing locks: omit it",
@@ -190,6 +198,38 @@ class Section(Brief):
                 self.where,
             )
 
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether the cells are a solid of revolution."""
+        return self.plane == "axisymmetric" and not elements.find(self.element).line
+
+    def _check_axisymmetric(self) -> None:
+        """Refuse what a solid of revolution cannot have."""
+        element = elements.find(self.element)
+        if not element.revolved:
+            why = (
+                "its drilling rotations bend the edges, and its strain is assumed for a plane"
+                if element.drilling
+                else "it has no hoop strain"
+            )
+            names = ", ".join(n for n in elements.names() if elements.find(n).revolved)
+            raise InputError(
+                f"{self.element} is not for axisymmetric bodies: {why}; use one of {names}",
+                self.where,
+            )
+        if np.ndim(self.thickness) or self.thickness != 1.0:
+            raise InputError(
+                "an axisymmetric section has no thickness: forces, masses and energies are those "
+                "of the whole circumference; omit it",
+                self.where,
+            )
+        if not self.material.for_rings:
+            raise InputError(
+                f"a {type(self.material).__name__} gives the stress in the plane and no hoop "
+                "stress: axisymmetric sections take the laws of the core",
+                self.where,
+            )
+
     def _set_nodal_thickness(self) -> None:
         given = np.array(self.thickness, dtype=np.float64)
         fact = elements.find(self.element)
@@ -204,8 +244,13 @@ class Section(Brief):
         # Nodes of other sections need none.
         self.thickness = float(known.mean()) if len(known) else 0.0
 
-    def thickness_at(self, nodes: Ints) -> Floats:
-        """Thickness of nodes [length], of the shape of `nodes`."""
+    def thickness_at(self, nodes: Ints, points: Floats) -> Floats:
+        """Thickness of nodes [length], of the shape of `nodes`; of a ring its circumference.
+
+        `points` are the coordinates of all nodes, shape (n_nodes, 2).
+        """
+        if self.axisymmetric:
+            return np.asarray(2.0 * np.pi * points[nodes, 0])
         if self.nodal_thickness is None:
             return np.full(np.shape(nodes), self.thickness)
         return np.asarray(self.nodal_thickness[nodes])
@@ -216,5 +261,5 @@ def thickness_at(mesh: Mesh, sections: Iterable[Section], cells: Ints, nodes: In
     found = np.ones(nodes.shape)
     for section in sections:
         mine = np.isin(cells, cells_of(mesh, section.cells))
-        found[mine] = section.thickness_at(nodes[mine])
+        found[mine] = section.thickness_at(nodes[mine], mesh.points)
     return found

@@ -68,6 +68,7 @@ class UserMaterial(Material):
     initial: ArrayLike | None = None
 
     law = "given"
+    for_rings = False
 
     def __post_init__(self) -> None:
         if not callable(self.function):

@@ -129,6 +129,12 @@ class Cut:
     ) -> None:
         self.results = results
         mesh = results.mesh
+        if _is_ring(results):
+            raise InputError(
+                "section forces are for planar models: around the axis of an axisymmetric one the "
+                "radial forces and the moments of a cut balance by themselves; sum the reactions "
+                "along the axis, or integrate 2 pi r S"
+            )
         first, last = (np.asarray(p, dtype=np.float64) for p in (start, end))
         if first.shape != (2,) or last.shape != (2,) or not np.isfinite([first, last]).all():
             raise InputError(f"a cut needs two points (x, y), not {start!r} and {end!r}")
@@ -478,6 +484,15 @@ def _mask(mesh: Mesh, cells: str | ArrayLike | None) -> NDArray[np.bool_]:
     mask = np.zeros(mesh.n_cells, dtype=bool)
     mask[mesh.cell_indices(cells)] = True
     return mask
+
+
+def _is_ring(results: ResultSource) -> bool:
+    """Whether results are those of a solid of revolution."""
+    planes = [section.plane for section in results.model.sections]
+    if not planes:
+        told = getattr(results, "description", {}).get("sections", [])
+        planes = [section.get("plane", "") for section in told]
+    return "axisymmetric" in planes
 
 
 def _depth(results: ResultSource, crossing: _Crossing) -> Floats:

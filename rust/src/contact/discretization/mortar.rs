@@ -11,6 +11,7 @@ use super::super::curve::{Curve, GAUSS, dot, lift, outward, times, unit};
 use super::super::master::Master;
 use super::super::search::each;
 use super::super::sides::Sides;
+use super::super::slave::Depth;
 use super::super::slip::{Along, Point, direction, first, firsts};
 use super::super::terms::{Function, Share, Terms, lifted};
 use super::super::travel::{Start, Station, ray};
@@ -136,7 +137,7 @@ struct Facing<'a, const D: usize> {
     members: [usize; 2],
     /// The undeformed slave edge, and its thickness.
     reference: &'a Curve<f64>,
-    thickness: f64,
+    thickness: Depth,
     /// Clearance taken off the gap at the corners of the edge.
     offset: [f64; 2],
 }
@@ -174,7 +175,8 @@ fn integrals<const D: usize>(
             (t, unit(outward(t)))
         });
         let hit = master.ray(slave.at(xi), t, n);
-        let da = half * length(reference, xi).scale(w * thickness);
+        let da =
+            thickness.area(half * length(reference, xi).scale(w), || lift(reference).at(xi)[0]);
         area[0] += da.v;
         area[1] += da.v * xi.v;
         let shift = xi.scale(0.5 * (offset[1] - offset[0]));

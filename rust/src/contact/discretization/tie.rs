@@ -8,7 +8,7 @@ use super::super::curve::{Curve, GAUSS, Vec2, add, dot, outward, sub, times, uni
 use super::super::master::{Master, Surface};
 use super::super::search::each;
 use super::super::sides::Sides;
-use super::super::slave::weights;
+use super::super::slave::{Depth, weights};
 use super::super::terms::{Share, Terms, WIDTH, lifted};
 use super::super::travel::Start;
 use super::mortar::{Overlap, clip_occluded, overlaps};
@@ -38,7 +38,7 @@ pub fn points(
     overlap: &Overlap,
     slave: &Curve<f64>,
     master: &Master<f64>,
-    thickness: f64,
+    thickness: Depth,
 ) -> Vec<Point> {
     let [low, high] = overlap.values;
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -53,7 +53,7 @@ pub fn points(
             Point {
                 slave: xi,
                 master: hit.r,
-                area: half * w * thickness * dot(t, t).sqrt(),
+                area: thickness.area(half * w * dot(t, t).sqrt(), || p[0]),
                 offset: [dot(apart, slave.d) / chord, dot(apart, outward(slave.d)) / chord],
             }
         })

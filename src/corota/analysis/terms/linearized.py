@@ -323,6 +323,12 @@ class LinearMotion(Linearized):
         """
         rate = math.sqrt(spin(self.system))
         system = self.system
+        if system.axisymmetric:
+            raise UnsupportedError(
+                "complex modes, modal and harmonic steps of an axisymmetric model that spins: its "
+                "Coriolis forces turn it about the axis, which is no part of the model; *FREQUENCY "
+                "has the stiffness of the spin without them"
+            )
         n = system.n_dofs
         x = np.flatnonzero(system.component == 0)
         y = x + 1

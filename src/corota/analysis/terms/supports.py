@@ -45,6 +45,7 @@ class Supports:
         self.constrained = np.zeros(system.n_dofs, bool)
         self.history = LoadHistory(system.n_dofs)
         self.notes: list[str] = []
+        self._guide()
 
     # -- steps -------------------------------------------------------------------------
 
@@ -56,6 +57,13 @@ class Supports:
         """Release all dofs."""
         self.constrained[:] = False
         self.history.amplitude[:] = 0
+        self._guide()
+
+    def _guide(self) -> None:
+        """Keep nodes of a ring on its axis."""
+        for nodes, dof in self.system.guided:
+            dofs = self.system.dofs(nodes, dof)
+            self.constrained[dofs[dofs >= 0]] = True
 
     def add(self, items: Iterable[Fixed]) -> None:
         """Add supports.
@@ -79,11 +87,26 @@ class Supports:
                 from corota.model.rotations import without_rotation
 
                 self.notes.append(without_rotation(self.system.model.mesh, item))
+            self._refuse_off_axis(item, dofs)
             dofs = dofs[dofs >= 0]
             self.system.constraints.refuse_constrained(dofs, item.where)
             self.constrained[dofs] = True
             value = self.history.begin[dofs] if item.keep else item.value
             self.history.set(dofs, value, self.factors.index(item.amplitude, item.where))
+
+    def _refuse_off_axis(self, item: Fixed, dofs: NDArray[np.int64]) -> None:
+        """Refuse to move what is guided along the axis of a ring."""
+        if item.value == 0.0:
+            return
+        for nodes, dof in self.system.guided:
+            if dof == item.dof and (hit := np.isin(dofs, self.system.dofs(nodes, dof))).any():
+                at = self.system.node_of_dof[dofs[hit][0]]
+                label = self.system.model.mesh.node_labels[at]
+                raise ModelError(
+                    f"node {label} lies on the axis of an axisymmetric model, or moves a body "
+                    f"without deformation: its {list(DOFS)[dof]} is zero, not {item.value:g}",
+                    item.where,
+                )
 
     def refuse_conflicts(self, items: list[Fixed]) -> None:
         """Refuse a dof that is given two values at once; the same one twice is one.

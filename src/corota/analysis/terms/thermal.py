@@ -381,10 +381,10 @@ def _block(
         ]
     )
     material, constant, table = section.material, None, None
-    if material.local_strain and (block.section.plane == "strain" or stress is not None):
+    if material.local_strain and (block.section.plane != "stress" or stress is not None):
         raise InputError(
             f"{type(material).__name__} has no initial stress, and no thermal strain in plane "
-            "strain: use Elastic there, or plane stress",
+            "strain and axisymmetry: use Elastic there, or plane stress",
             section.where,
         )
     if _follows(material):

@@ -20,6 +20,7 @@ import numpy as np
 
 import corota._core as _core
 from corota.analysis.terms.user_material import UserBlocks
+from corota.errors import ModelError
 from corota.model import elements
 from corota.model.blocks import core_input
 
@@ -73,6 +74,12 @@ class ViscousElements:
         self.blocks: list[_Block] = []
         #: Whether any element of the model is damped.
         self.any = any(per_stiffness + b.section.material.rayleigh[1] for b in system.blocks)
+        if self.any and system.axisymmetric and system.nlgeom:
+            raise ModelError(
+                "damping per stiffness with large rotations (nlgeom) is not for axisymmetric "
+                "models: its matrix would turn with the element, and the hoop does not; use "
+                "damping per mass"
+            )
         for block in system.own_blocks:
             factor = per_stiffness + block.section.material.rayleigh[1]
             if factor:
@@ -84,7 +91,7 @@ class ViscousElements:
         n, nodes = block.nodes.shape
         points = system.model.mesh.points[block.nodes]
         # Separate elements: the assembled matrix contains the element matrices.
-        alone = core_input(block)
+        alone = core_input(block, system.model.mesh.points)
         alone["nodes"] = np.arange(n * nodes, dtype=np.uint32)
         core = _core.Problem(
             np.ascontiguousarray(points.reshape(-1, 2)), [alone], np.zeros(n * nodes, np.uint8)

@@ -100,6 +100,8 @@ class SectionDraft:
     beta0: float | None = None
     #: Whether ``*NODAL THICKNESS`` gives the thickness.
     nodal: bool = False
+    #: Whether any thickness is given.
+    given: bool = True
 
 
 @dataclass(eq=False, repr=False)

@@ -26,8 +26,11 @@ class DeckElement:
 #: Elements under their own names; plane stress unless the section says otherwise.
 OWN = {name: elements.find(name).cell for name in elements.names()}
 
-#: CalculiX and Abaqus names, without the prefix CPS (plane stress) or CPE (plane strain).
+#: CalculiX and Abaqus names, without the prefix.
 ALIASES = {"3": "T3", "4": "Q4", "4I": "Q4I", "4R": "Q4I", "6": "T6", "8": "Q8", "8R": "Q8R"}
+
+#: Prefix of these names, and the state of the plane.
+PREFIXES = (("CPS", "stress"), ("CPE", "strain"), ("CAX", "axisymmetric"))
 
 #: Literal elements of reduced integration; the element above is the default, see the page
 #: of keywords.
@@ -85,14 +88,14 @@ def _displacement(element: str) -> str:
 ELEMENTS: dict[str, DeckElement] = {
     **{
         prefix + suffix: DeckElement(OWN[name], name, plane, LITERAL.get(suffix, ""))
-        for prefix, plane in (("CPS", "stress"), ("CPE", "strain"))
+        for prefix, plane in PREFIXES
         for suffix, name in ALIASES.items()
     },
     **{
         prefix + suffix: DeckElement(OWN[name], name, plane, note=_displacement(name))
-        for prefix, plane in (("CPS", "stress"), ("CPE", "strain"))
+        for prefix, plane in PREFIXES
         for suffix, name in MIXED.items()
-        if plane == "strain" or suffix == "6M"
+        if plane != "stress" or suffix == "6M"
     },
     **{
         shell: DeckElement(
@@ -116,9 +119,8 @@ ELEMENTS: dict[str, DeckElement] = {
 def collapsed(type_: str) -> str:
     """Name of the triangle that a quadrilateral with a side of one node is."""
     quadratic = ELEMENTS[type_].kind != "quad4"
-    return {"stress": "CPS", "strain": "CPE", "": "T"}[ELEMENTS[type_].plane] + (
-        "6" if quadratic else "3"
-    )
+    prefix = {plane: name for name, plane in PREFIXES}.get(ELEMENTS[type_].plane, "T")
+    return prefix + ("6" if quadratic else "3")
 
 
 #: Elements that have rotations at their nodes.
@@ -150,10 +152,9 @@ LINE_ELEMENTS: dict[str, LineElement] = {
     "SPRING1": LineElement("point1", 1, "spring"),
 }
 
-_AXI = "axisymmetric models are not part of this version"
-_SOLID = "only planar models are computed; use CPS* or CPE* elements"
+_SHELL = "axisymmetric shells and membranes are not part of this version; use CAX* through the wall"
+_SOLID = "only planar and axisymmetric models are computed; use CPS*, CPE* or CAX* elements"
 UNSUPPORTED_ELEMENTS: dict[str, str] = {
-    **dict.fromkeys(("CAX3", "CAX4", "CAX4R", "CAX4I", "CAX6", "CAX8", "CAX8R"), _AXI),
     **dict.fromkeys(
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
@@ -165,9 +166,10 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
 
 #: Families of elements by the beginning of their names, and what to do instead.
 UNSUPPORTED_FAMILIES: dict[str, str] = {
-    "CAX": _AXI,
-    "SAX": _AXI,
-    "MAX": _AXI,
+    "CAXA": "loads that vary around the axis are not part of this version; use CAX*",
+    "CGAX": "torsion of axisymmetric models is not part of this version; use CAX*",
+    "SAX": _SHELL,
+    "MAX": _SHELL,
     "C3D": _SOLID,
     "SC": _SOLID,
     "F3D": "fluids are not part of this version",
@@ -178,7 +180,7 @@ UNSUPPORTED_FAMILIES: dict[str, str] = {
     "CPEG": "generalized plane strain is not part of this version; use CPE*",
     "GAP": "gaps are not part of this version; use *CONTACT PAIR",
     "R3D": _SOLID,
-    "RAX": _AXI,
+    "RAX": "give a rigid ring as *SURFACE, TYPE=SEGMENTS, or as *RIGID BODY of CAX* elements",
     "U": "user elements are not part of this version; use CPS* or CPE*",
 }
 #: Ends of names of planar elements with more than displacements at their nodes.
@@ -193,7 +195,7 @@ def why_unsupported(type_: str) -> str:
     """Why a known element type cannot be computed, and what to do; empty if it is unknown."""
     if type_ in UNSUPPORTED_ELEMENTS:
         return UNSUPPORTED_ELEMENTS[type_]
-    if type_[:3] in ("CPS", "CPE") and type_[-1:] in UNSUPPORTED_FIELDS:
+    if type_[:3] in ("CPS", "CPE", "CAX") and type_[-1:] in UNSUPPORTED_FIELDS:
         return UNSUPPORTED_FIELDS[type_[-1]]
     for family, why in UNSUPPORTED_FAMILIES.items():
         rest = type_[len(family) :]

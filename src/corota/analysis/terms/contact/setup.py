@@ -92,7 +92,9 @@ def surface(system: NumberedModel, where: str | Ints, item: ContactPair | Tie) -
             rows = order[at[here]]
             nodes[here, : len(local)] = block.nodes[rows][:, list(local)]
             bulge[here] = element.alpha_b
-            thickness[here] = block.section.thickness_at(nodes[here, :2]).mean(axis=1)
+            if not block.section.axisymmetric:  # 0 stands for the circumference
+                depth = block.section.thickness_at(nodes[here, :2], mesh.points)
+                thickness[here] = depth.mean(axis=1)
             found[here] = True
     if not found.all():
         cell = int(edges[int(np.argmin(found)), 0])
@@ -192,9 +194,10 @@ def contact_core(
             )
         else:
             assert master is not None
-            slave.thickness[:] = joint_thickness(
-                mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
-            )
+            if not system.axisymmetric:
+                slave.thickness[:] = joint_thickness(
+                    mesh.points, slave.nodes, slave.thickness, master.nodes, master.thickness
+                )
             nodes, bulge, shapes = master.nodes, master.bulge, None
             if item.smooth:
                 nodes, bulge, shapes = smoothed(mesh.points, master)

@@ -265,6 +265,11 @@ class LoadBuilder:
         if kind == "gravity":
             along = (value[2], value[3]) if len(value) > 2 else None
             value = value[:2]
+        elif draft.index != (1 if any(s.axisymmetric for s in self.model.sections) else 2):
+            text = (
+                "the axis must be normal to the plane, 0, 0, 1; of axisymmetric parts it is 0, 1, 0"
+            )
+            self.deck.row_error(draft.card, draft.row, 6, text)
         where = draft.row.where
         return BodyForce(cells, kind, value, amplitude, where, direction=along, masses=masses)
 

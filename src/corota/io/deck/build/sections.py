@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
+    from corota.model.sections import Plane
 
 
 #: Elements that are the same at small strain and stay stable at large strain.
@@ -186,8 +187,19 @@ class SectionBuilder:
             plane = draft.plane or info.plane or (mapped[1] if mapped else "") or "stress"
             element = self._element(name, strain != "linear" and self.nonlinear)
             groups.setdefault((element, plane), []).append(cells[types == code])
+        if not draft.given and any(plane != "axisymmetric" for _, plane in groups):
+            deck.note(f"{card.where}: no thickness is given for {draft.elset}; 1 is taken")
+        if draft.thickness != 1.0 and any(plane == "axisymmetric" for _, plane in groups):
+            deck.note(
+                f"{card.where}: the thickness {draft.thickness:g} has no effect: forces of "
+                "axisymmetric elements are those of the whole circumference"
+            )
         full = self.sets.full_name(self.sets.elsets, view, draft.elset)
         thickness = self._thickness(draft, cells)
+        if any(plane == "axisymmetric" for _, plane in groups) and draft.nodal:
+            text = "an axisymmetric section has no thickness"
+            deck.error(card, card.at("NODALTHICKNESS"), text, hint="remove NODAL THICKNESS")
+            return
         for (element, plane), parts in groups.items():
             mine = np.sort(np.concatenate(parts))
             if element in DRILLING:
@@ -201,8 +213,8 @@ class SectionBuilder:
                         where,
                         element,
                         material,
-                        cast("float", thickness),
-                        cast("Literal['stress', 'strain']", plane),
+                        cast("float", 1.0 if plane == "axisymmetric" else thickness),
+                        cast("Plane", plane),
                         cast("LocalStrain", strain),
                         angle,
                         card.where,

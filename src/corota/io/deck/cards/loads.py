@@ -166,13 +166,14 @@ def _centrifugal(deck: Deck, card: Card, row: Row, now: StepDraft) -> None:
     x, y, _, nx, ny, nz = (float(v or 0.0) for v in numbers)
     if square < 0.0:
         deck.row_error(card, row, 2, "the square of the angular velocity must be >= 0")
-    elif nz == 0.0 or nx != 0.0 or ny != 0.0:
-        deck.row_error(card, row, 6, "the axis must be normal to the plane: 0, 0, 1")
+    elif nx != 0.0 or (ny == 0.0) == (nz == 0.0):
+        text = "the axis must be normal to the plane: 0, 0, 1; of axisymmetric parts it is 0, 1, 0"
+        deck.row_error(card, row, 6, text)
     else:
-        value = (square, x, y)
-        now.loads.append(
-            Draft("centrifugal", card, row, row.get(0), value, amplitude=card.value("AMPLITUDE"))
-        )
+        # The index is that of the axis: the load builder knows whether the part is axisymmetric.
+        axis, value = (1 if ny else 2), (square, x, 0.0 if ny else y)
+        amplitude = card.value("AMPLITUDE")
+        now.loads.append(Draft("centrifugal", card, row, row.get(0), value, axis, amplitude))
 
 
 def dsload(deck: Deck, card: Card) -> None:

@@ -172,7 +172,7 @@ def solid_section(deck: Deck, card: Card) -> None:
     """``*SOLID SECTION, ELSET=, MATERIAL=``: thickness (default 1)."""
     elset = deck.required(card, "ELSET")
     name = deck.required(card, "MATERIAL")
-    plane = deck.choice(card, "PLANE", ("STRESS", "STRAIN"), "").lower()
+    plane = deck.choice(card, "PLANE", ("STRESS", "STRAIN", "AXISYMMETRIC"), "").lower()
     known = [name.replace("_", "").upper() for name in (*LOCAL_STRAINS, *ALIASES)]
     local = deck.choice(card, "LOCALSTRAIN", known, "")
     mean = deck.choice(card, "DILATATION", ("POINT", "MEAN"), "POINT") == "MEAN"
@@ -186,8 +186,7 @@ def solid_section(deck: Deck, card: Card) -> None:
             deck.note(f"{rows[0].at(1)}: {card.spelled}: only the thickness is used")
         for row in rows[1:]:
             deck.row_error(card, row, 0, "one data line is expected, the thickness")
-    if (not rows or not rows[0].get(0)) and not card.has("NODALTHICKNESS"):
-        deck.note(f"{card.where}: no thickness is given for {elset}; 1 is taken")
+    given = bool(rows and rows[0].get(0)) or card.has("NODALTHICKNESS")
     if thickness is not None and thickness <= 0.0:
         deck.row_error(card, rows[0], 0, f"the thickness must be > 0, not {thickness:g}")
         thickness = None
@@ -204,6 +203,7 @@ def solid_section(deck: Deck, card: Card) -> None:
                 mean,
                 beta0,
                 card.has("NODALTHICKNESS"),
+                given,
             )
         )
 

@@ -147,7 +147,9 @@ def _body(writer: Writer, load: BodyForce) -> str:
     targets += _mass_sets(writer, load)
     if load.kind == "centrifugal":
         square, x, y = load.value
-        row = f"CENTRIF, {number(square)}, {number(x)}, {number(y)}, 0., 0., 0., 1.\n"
+        ring = any(section.axisymmetric for section in writer.model.sections)
+        axis = "0., 1., 0." if ring else "0., 0., 1."
+        row = f"CENTRIF, {number(square)}, {number(x)}, {number(y)}, 0., {axis}\n"
         return "".join(f"{where}, {row}" for where in targets)
     if load.kind != "gravity":
         label = "P" if load.kind == "line" else "B"

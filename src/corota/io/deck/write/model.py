@@ -165,8 +165,8 @@ class _Writer:
                 continue
             name = self._material(section.material, lines)
             options = f"ELSET={self.cell_set(self._planar(section))}, MATERIAL={name}"
-            if section.plane == "strain":
-                options += ", PLANE=STRAIN"
+            if section.plane != "stress":
+                options += f", PLANE={section.plane.upper()}"
             # Written decks have no parts: they are read as those of CalculiX.
             strain = str(section.local_strain)
             if strain != dialect_strain(section.material.default_strain, "calculix"):
@@ -188,7 +188,8 @@ class _Writer:
             if section.nodal_thickness is not None:
                 options += ", NODAL THICKNESS"
                 self._add_thickness(section, nodal)
-            lines.append(f"*SOLID SECTION, {options}\n{number(section.thickness)}\n")
+            depth = "" if section.axisymmetric else f"{number(section.thickness)}\n"
+            lines.append(f"*SOLID SECTION, {options}\n{depth}")
         if nodal:
             lines.append("*NODAL THICKNESS\n")
             labels = self.mesh.node_labels
@@ -198,7 +199,8 @@ class _Writer:
     def _add_thickness(self, section: Section, nodal: dict[int, float]) -> None:
         """The thickness of the nodes of a section; a deck has one for each node."""
         nodes = nodes_of_cells(self.mesh, cells_of(self.mesh, section.cells))
-        for node, value in zip(nodes.tolist(), section.thickness_at(nodes).tolist(), strict=True):
+        values = section.thickness_at(nodes, self.mesh.points).tolist()
+        for node, value in zip(nodes.tolist(), values, strict=True):
             if nodal.setdefault(node, value) != value:
                 raise UnsupportedError(
                     f"node {self.mesh.node_labels[node]} has two thicknesses in two sections, "
