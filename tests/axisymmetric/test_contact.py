@@ -1,0 +1,74 @@
+"""Contact of solids of revolution: weights of the circumference in both methods."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.verification.contact_models import FORCE, NU, RADIUS, YOUNG, measured, quarter
+
+METHODS = ["mortar", "node_to_segment"]
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q8"])
+@pytest.mark.parametrize("inner", [0.0, 3.0])
+def test_uniform_pressure_passes_an_interface_of_other_nodes(element: str, inner: float) -> None:
+    """Mortar: two discs or rings with three and four cells on one another, free at the sides."""
+    cell = "quad8" if element == "Q8" else "quad4"
+    low = ct.mesh.rectangle(6.0, 2.0, 4, 2, cell=cell)
+    top = ct.mesh.rectangle(6.0, 2.0, 3, 2, cell=cell)
+    for mesh, up in ((low, 0.0), (top, 2.0)):
+        mesh.points[:] += [inner, up]
+    model = ct.Model(ct.mesh.assembly(low=low, top=top))
+    steel = ct.Elastic(E=1000.0, nu=0.3)
+    model.section("all", element=element, material=steel, plane="axisymmetric")
+    model.fix("low.bottom", x=None)
+    model.contact("top.bottom", "low.top", method="mortar")
+    model.pressure("top.top", 10.0)
+    frame = ct.solve(model, ct.Static(nlgeom=False, increments=1), threads=1).frames[-1]
+    for fields in frame.fields:
+        np.testing.assert_allclose(fields.values["S"][..., 1], -10.0, atol=1e-9)
+        np.testing.assert_allclose(fields.values["S"][..., [0, 2, 3]], 0.0, atol=1e-9)
+    area = np.pi * ((inner + 6.0) ** 2 - inner**2)
+    support = frame.RF[model.mesh.node_sets["low.bottom"], 1].sum()
+    assert support == pytest.approx(10.0 * area, rel=1e-10)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_press_fit_of_rings_in_one_increment(method: str) -> None:
+    """Rings 20/40.005 and 40/60 (diameters), E = 196000: 5.74 by Lame's solution."""
+    young, inner, middle, outer, gap = 196000.0, 10.0, 20.0, 30.0, 0.0025
+    pin = ct.mesh.rectangle(middle - inner + gap, 5.0, 8, 4, cell="quad8")
+    hub = ct.mesh.rectangle(outer - middle, 5.0, 8, 3, cell="quad8")
+    pin.points[:, 0] += inner
+    hub.points[:, 0] += middle
+    model = ct.Model(ct.mesh.assembly(pin=pin, hub=hub))
+    steel = ct.Elastic(E=young, nu=0.3)
+    model.section("all", element="Q8", material=steel, plane="axisymmetric")
+    for name in ("pin.bottom", "hub.bottom"):
+        model.fix(name, x=None)
+    model.contact("pin.right", "hub.left", method=method)
+    frame = ct.solve(model, ct.Static(increments=1), threads=1).frames[-1]
+    a, b, c = inner**2, outer**2, middle**2
+    pressure = gap * young / middle / ((b + c) / (b - c) + (c + a) / (c - a))
+    assert pressure == pytest.approx(5.74, abs=0.005)
+    exact = 2.0 * pressure * c * outer / (young * (b - c))
+    moved = frame.U[model.mesh.node_sets["hub.right"], 0]
+    np.testing.assert_allclose(moved, exact, rtol=5e-4)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_sphere_on_a_rigid_plane(method: str) -> None:
+    """Hertz: R = 8, E = 200, nu = .3, force 10: radius of contact .6487154, pressure 11.345743."""
+    model = ct.Model(quarter(RADIUS, 32, "Q4I"))
+    rubber = ct.Elastic(E=YOUNG, nu=NU)
+    model.section("all", element="Q4I", material=rubber, plane="axisymmetric")
+    floor = ct.RigidCurve.line((-0.5 * RADIUS, -RADIUS), (0.5 * RADIUS, -RADIUS))
+    model.contact("bottom", floor, method=method)
+    model.traction("top", y=-FORCE / (np.pi * RADIUS**2))
+    results = ct.solve(model, ct.Static(nlgeom=False, increments=1), threads=1)
+    radius, peak = measured(results)
+    assert radius == pytest.approx(0.6487154, rel=0.02)
+    assert peak == pytest.approx(11.345743, rel=0.02)
