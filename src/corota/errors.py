@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+#: Message where an allocation of Python fails.
+SHORT = "not enough memory for this job; use a coarser mesh or a larger machine"
+
 
 @dataclass(frozen=True)
 class Location:
@@ -173,9 +176,16 @@ class ConvergenceError(CorotaError):
 
 
 class ResourceError(CorotaError):
-    """Not enough memory, disk or another resource."""
+    """Not enough memory, disk or another resource.
+
+    Attributes
+    ----------
+    results : Results or None
+        Of an analysis, everything up to the last converged increment.
+    """
 
     exit_code = 5
+    results: Any = None
 
 
 class FileError(CorotaError):

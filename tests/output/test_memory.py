@@ -11,8 +11,10 @@ import pytest
 
 import corota as ct
 from corota import _core
+from corota.analysis.memory import require_libraries
 from corota.errors import ResourceError
 from corota.io.formats import write
+from corota.results.observer import BaseObserver
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/limits").exists(), reason="asks Linux")
 
@@ -33,6 +35,32 @@ def test_a_job_that_no_machine_can_hold() -> None:
     with pytest.raises(ResourceError, match=r"for a test: it takes about \d+ MB, \d+ MB are free"):
         _core.require_memory(1e15, "a test")
     _core.require_memory(0.0, "nothing")
+
+
+def test_libraries_that_find_no_room_are_not_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """OpenBLAS asks for ever for memory that it does not get while it is loaded."""
+    asked: list[float] = []
+    monkeypatch.setattr(_core, "require_memory", lambda size, _: asked.append(size))
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "3")
+    monkeypatch.delitem(sys.modules, "scipy.linalg", raising=False)
+    require_libraries()
+    assert asked == [pytest.approx(202e6)]
+
+
+def test_a_failed_allocation_of_python_is_a_typed_error_with_the_results() -> None:
+    model = ct.Model(ct.mesh.rectangle(10.0, 1.0, 20, 1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e3, nu=0.3))
+    model.fix("left")
+    model.force("right", y=-0.01)
+
+    class Full(BaseObserver):
+        def increment(self, frame: ct.Frame) -> None:
+            if frame.increment == 2:
+                raise MemoryError
+
+    with pytest.raises(ResourceError, match="All increments before are kept") as caught:
+        ct.solve(model, ct.Static(increments=4), observers=[Full()], threads=1)
+    assert [frame.increment for frame in caught.value.results.frames] == [0, 1, 2]
 
 
 @pytest.mark.parametrize(("left", "threads", "code"), [(8, 1, 5), (8, 2, 5), (3000, 1, 0)])

@@ -6,6 +6,7 @@ SECURITY.md lists what a received file may do; each line there has its test here
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -158,6 +159,30 @@ def test_an_included_file_is_part_of_the_deck_for_sweeps(folder):
     assert tip() == first
     (folder / "cells.inc").write_text(CELLS.replace("CPS4", "CPE4"))
     assert tip() != first
+
+
+@pytest.mark.parametrize("change", ["value", "row", "run", "mixed"])
+def test_a_row_of_a_sweep_that_was_changed_is_refused(folder, change):
+    store = folder / "rows.jsonl"
+    text = DECK.replace("*NODE, NSET", "*PARAMETER\nload = 1.\n*NODE, NSET").replace(
+        "-1.", "<load>"
+    )
+    (folder / "job.inp").write_text(text)
+
+    def sweep():
+        ct.sweep(folder / "job.inp", {"load": [1.0, 2.0]}, "last(U2@NALL)", workers=1, store=store)
+
+    sweep()
+    first, second = (json.loads(line) for line in store.read_text().splitlines())
+    if change == "value":
+        first["outcome"]["values"]["last(U2@NALL)"] *= 2.0
+    elif change == "mixed":
+        first["outcome"] = second["outcome"]
+    else:
+        first[change] = second["row"] if change == "row" else "another"
+    store.write_text(json.dumps(first) + "\n" + json.dumps(second) + "\n")
+    with pytest.raises(FileError, match=r"rows.jsonl:1: this row has changed"):
+        sweep()
 
 
 def test_logs_nested_too_deeply_are_no_crash(folder):

@@ -7,11 +7,16 @@
 use std::fmt;
 use std::fs;
 
+use super::allocator;
+
 /// Left over for everything that is not asked about: buffers, stacks of threads, the writer.
 const RESERVE: u64 = 48 << 20;
 
 /// Addresses that the heaps of two threads (the writer, the first of a pool) set aside unused.
 const HEAPS: u64 = 128 << 20;
+
+/// Addresses of one thread: its stack and heap.
+const THREAD: u64 = 72 << 20;
 
 /// A job that needs more memory than there is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,11 +48,21 @@ impl fmt::Display for Shortage {
     }
 }
 
+/// Refuses to go on where an allocation has failed and memory is still short.
+///
+/// # Errors
+///
+/// If the reserve of the allocator is gone.
+pub fn require_reserve() -> Result<(), Shortage> {
+    if allocator::keep_reserve() { Ok(()) } else { Err(Shortage::met("this job".into())) }
+}
+
 /// Refuses a job of so many bytes if they, and a reserve, are not to be had.
 ///
 /// Where the system does not say what is free (anything but Linux) every job is let through.
 pub fn require(bytes: usize, job: impl FnOnce() -> String) -> Result<(), Shortage> {
     let needed = bytes as u64;
+    require_reserve()?;
     match free() {
         Some(free) if needed.saturating_add(RESERVE) > free => {
             Err(Shortage { job: job(), needed: Some(needed), free: Some(free) })
@@ -59,6 +74,11 @@ pub fn require(bytes: usize, job: impl FnOnce() -> String) -> Result<(), Shortag
 /// Bytes that this process may still take, if the system tells.
 pub fn free() -> Option<u64> {
     [of_process(), of_group(), of_machine()].into_iter().flatten().min()
+}
+
+/// Whether so many threads can set their addresses aside; their memory is taken only where used.
+pub fn has_room_for(threads: usize) -> bool {
+    of_process().is_none_or(|free| free >= RESERVE + THREAD * threads as u64)
 }
 
 /// Up to the limit of the address space (`ulimit -v`).

@@ -1,6 +1,7 @@
 //! Number types and small array algebra: everything the kernels are written in.
 // SPDX-License-Identifier: BSD-3-Clause
 
+pub mod allocator;
 pub mod dual;
 pub mod hyper;
 pub mod jet;

@@ -9,6 +9,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::memory;
+
 static POOLS: Mutex<BTreeMap<(u32, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
 
 /// Runs `work` on a pool of `threads` and passes it their number; for one thread, or if the system
@@ -23,12 +25,16 @@ pub fn run<R: Send>(threads: usize, work: impl FnOnce(usize) -> R + Send) -> R {
     }
 }
 
-/// The pool of `threads` of this process; none if the system gives no threads.
+/// The pool of `threads` of this process; none if the system gives no threads or no room for them.
 pub fn get(threads: usize) -> Option<Arc<ThreadPool>> {
     let key = (std::process::id(), threads);
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(pool) = pools.get(&key) {
         return Some(Arc::clone(pool));
+    }
+    // A thread that finds no addresses when it begins ends the process.
+    if !memory::has_room_for(threads) {
+        return None;
     }
     let pool = Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().ok()?);
     pools.insert(key, Arc::clone(&pool));

@@ -15,6 +15,11 @@ pub fn to_python(py: Python<'_>, shortage: &Shortage) -> PyErr {
     build().unwrap_or_else(|e| e)
 }
 
+/// ``ResourceError`` where an allocation has failed and memory is still short.
+pub fn require_reserve(py: Python<'_>) -> PyResult<()> {
+    memory::require_reserve().map_err(|s| to_python(py, &s))
+}
+
 /// require_memory(bytes, job)
 ///
 /// Raise ``ResourceError`` if so many bytes, and a reserve, are not free for ``job``.
@@ -24,5 +29,6 @@ fn require_memory(py: Python<'_>, bytes: f64, job: String) -> PyResult<()> {
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    memory::require_reserve().map_err(|s| to_python(m.py(), &s))?;
     m.add_function(wrap_pyfunction!(require_memory, m)?)
 }

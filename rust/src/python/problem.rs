@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::blocks::block_inputs;
+use super::memory;
 use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
@@ -129,6 +130,7 @@ impl PyProblem {
         if u.len() != n || f.len() != n || s.len() != n || !(v.is_empty() || v.len() == nnz) {
             return Err(value_error("array lengths do not fit the problem"));
         }
+        memory::require_reserve(py)?;
         let inner = &mut self.inner;
         py.detach(|| inner.assemble(u, kinematics, f, s, v)).map_err(failed)
     }
@@ -188,6 +190,7 @@ impl PyProblem {
             return Err(value_error("array lengths do not fit the problem"));
         }
         let between = Between { u0, v0, dt, kind };
+        memory::require_reserve(py)?;
         let inner = &mut self.inner;
         py.detach(|| inner.conserving(u, &between, nlgeom, [f, i, s, k])).map_err(failed)
     }

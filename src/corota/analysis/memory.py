@@ -7,6 +7,8 @@ first. The solver checks the factor, whose size follows from the ordering.
 
 from __future__ import annotations
 
+import os
+import sys
 from typing import TYPE_CHECKING
 
 import corota._core as _core
@@ -21,6 +23,22 @@ if TYPE_CHECKING:
 ENTRY, NODE = 7.0, 700.0
 #: A model of fewer bytes is not checked: the check takes as long as an iteration of such a model.
 SMALL = 4e6
+#: Addresses of SciPy's libraries and of each thread of its BLAS, which waits for ever without.
+LIBRARIES, BLAS_THREAD = 100e6, 34e6
+
+
+def require_libraries() -> None:
+    """Refuse an analysis where the libraries that it may load find no room.
+
+    Raises
+    ------
+    ResourceError
+        With the memory needed and available.
+    """
+    if "scipy.linalg" not in sys.modules:
+        asked = os.environ.get("OPENBLAS_NUM_THREADS", "")
+        threads = int(asked) if asked.isdecimal() else os.cpu_count() or 1
+        _core.require_memory(LIBRARIES + BLAS_THREAD * threads, "the libraries of an analysis")
 
 
 def require_model(blocks: Sequence[BlockOfCells], n_nodes: int) -> None:

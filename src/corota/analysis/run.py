@@ -17,6 +17,7 @@ from corota.analysis.end_moments import add_end_moments
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
+from corota.analysis.memory import require_libraries
 from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
 from corota.analysis.parallel.communicator import ALONE
@@ -26,7 +27,15 @@ from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.output import output as contact_output
 from corota.analysis.terms.moving_mass import mass_of_step
-from corota.errors import ConvergenceError, CorotaError, InputError, UnsupportedError
+from corota.display import brief
+from corota.errors import (
+    SHORT,
+    ConvergenceError,
+    CorotaError,
+    InputError,
+    ResourceError,
+    UnsupportedError,
+)
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
 from corota.model.steps import in_force
 from corota.results.results import Frame, Results
@@ -96,6 +105,8 @@ def solve(
         If an increment cannot be converged; ``error.results`` has everything before it.
     SingularError
         If the structure is not constrained.
+    ResourceError
+        If the memory does not suffice; ``error.results`` has everything before it.
 
     Examples
     --------
@@ -158,8 +169,11 @@ class Analysis:
         fields: bool,
         start: Checkpoint | None = None,
     ) -> None:
+        from corota.model.model import Model
         from corota.model.steps import Static, listed_steps
 
+        if not isinstance(model, Model):
+            raise InputError(f"solve takes a Model, not {brief(model)}")
         if steps is None:
             steps = model.steps or [Static()]
             start = model.start if start is None else start
@@ -215,6 +229,7 @@ class Analysis:
         stands: State | None = None
         counters: dict[str, int] = {}
         try:
+            require_libraries()
             self.system = System(self.model, self.solver, self.threads)
             results.info["n_dofs"] = self.system.n_dofs
             results.info["threads"] = self.threads
@@ -246,6 +261,11 @@ class Analysis:
                 results.notes.append(remark)
                 if state.energies.made_by_contact:
                     warnings.warn(remark, stacklevel=3)
+        except MemoryError:
+            error = ResourceError(f"{SHORT}. All increments before are kept")
+            error.results = results
+            self.communicator.leave(error, error.exit_code)
+            raise error from None
         except CorotaError as caught:
             error = caught
             self.communicator.leave(caught, caught.exit_code)

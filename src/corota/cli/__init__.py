@@ -89,7 +89,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
     """Run a command; every error becomes a message and an exit code."""
     from importlib import import_module
 
-    from corota.errors import CorotaError
+    from corota.errors import SHORT, CorotaError
 
     try:
         import corota._core as _core
@@ -112,7 +112,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         return 5
     except MemoryError:
         _trace()
-        terminal.error("not enough memory for this job; use a coarser mesh or a larger machine")
+        terminal.error(SHORT)
         return 5
     except OSError as error:
         _trace()

@@ -445,6 +445,10 @@ def _value(text: str) -> tuple[str, float]:
         ) from None
 
 
+#: Values that a parameter of a sweep may have.
+MOST_VALUES = 1_000_000
+
+
 def _values(text: str) -> tuple[str, list[float]]:
     """``t=0.2:0.6:9`` (nine values from .2 to .6) or ``n=1,2,4``."""
     name, sign, values = text.partition("=")
@@ -455,7 +459,7 @@ def _values(text: str) -> tuple[str, list[float]]:
             return name.strip(), [_value(f"x={v}")[1] for v in values.split(",")]
         low, high, *count = values.split(":")
         n = int(count[0]) if count else 2
-        if n < 1 or len(count) > 1:
+        if not 1 <= n <= MOST_VALUES or len(count) > 1:
             raise ValueError
         a, b = float(low), float(high)
         # Without the last digits: 0.45, not 0.44999999999999996.

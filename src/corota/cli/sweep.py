@@ -12,6 +12,17 @@ from corota.errors import FileError, InputError
 
 if TYPE_CHECKING:
     from corota.cli.terminal import Terminal
+    from corota.sweeps.variant import DeckBuild
+
+
+def _refuse_inputs(build: DeckBuild, table: Path, store: Path) -> None:
+    """Refuse tables that would replace what the sweep reads."""
+    if table == store:
+        raise InputError(f"{table}: the table is a file .csv; its rows are kept in {store}")
+    inputs = {file.resolve() for file in build.files()}
+    for path in (table, store):
+        if path.resolve() in inputs:
+            raise InputError(f"{path} is an input of this sweep and would be replaced: use -o")
 
 
 def run(args: Any, terminal: Terminal) -> int:
@@ -44,6 +55,7 @@ def run(args: Any, terminal: Terminal) -> int:
     )
     table = Path(args.output or f"{deck.stem}_sweep.csv")
     store = table.with_suffix(".jsonl")
+    _refuse_inputs(build, table, store)
     if args.again:
         store.unlink(missing_ok=True)
     begin = time.perf_counter()

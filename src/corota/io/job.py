@@ -219,7 +219,7 @@ class JobFiles(BaseObserver):
             If it does not.
         """
         name = self.name or model.name
-        if name in ("", ".", "..") or "/" in name or os.sep in name or "\0" in name:
+        if name in ("", ".", "..") or "/" in name or os.sep in name or not name.isprintable():
             raise InputError(
                 f"the name of a job is the stem of its files, without a folder, not {name!r}; "
                 "the folder is given by -o (JobFiles(folder, name))"

@@ -52,8 +52,12 @@ class TaskQueue:
     def start(self) -> None:
         """Start the thread."""
         self._stop = False
-        self._thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
-        self._thread.start()
+        thread = threading.Thread(target=self._work, name="corota-files", daemon=True)
+        try:
+            thread.start()
+        except RuntimeError:  # no room for its stack: tasks are executed at once
+            return
+        self._thread = thread
 
     def put(self, task: Callable[[], None], size: int = 200) -> None:
         """Add a task with the size of its data in bytes.

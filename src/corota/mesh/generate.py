@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+import corota._core as _core
 from corota.arrays import distinct
 from corota.errors import InputError
 from corota.mesh.change import merge, placed_middles
@@ -232,6 +233,10 @@ def distort(mesh: Mesh, amount: float, seed: int = 0) -> Mesh:
     return placed_middles(mesh, points)
 
 
+#: Bytes of a cell with its nodes, while a mesh is made.
+CELL = 200.0
+
+
 def _check(nx: int, ny: int, cell: str, diagonal: str) -> None:
     if nx < 1 or ny < 1:
         raise InputError(f"a mesh needs at least one cell each way, not {nx} x {ny}")
@@ -239,6 +244,8 @@ def _check(nx: int, ny: int, cell: str, diagonal: str) -> None:
         raise InputError(f"unknown cell {cell!r}; known: tri3, tri6, quad4, quad8, quad9")
     if diagonal not in ("right", "left", "alternate"):
         raise InputError(f"unknown diagonal {diagonal!r}; known: right, left, alternate")
+    if nx * ny * CELL > 1e8:
+        _core.require_memory(nx * ny * CELL, f"a mesh of {nx} x {ny} cells")
 
 
 def _segment(a: Floats, b: Floats) -> Curve:

@@ -98,6 +98,7 @@ def blocks_of(model: Model) -> list[BlockOfCells]:
         + [np.full(len(c), not c.kind.startswith(("line", "point"))) for c in mesh.cells]
     )
     for s, section in enumerate(model.sections):
+        section.check()
         cells = section.cells
         if isinstance(cells, str):
             if cells == "all" and "all" not in mesh.cell_sets:

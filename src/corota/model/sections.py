@@ -102,6 +102,16 @@ class Section(Brief):
         return math.sqrt(12.0 * inertia / area)
 
     def __post_init__(self) -> None:
+        self.check()
+
+    def check(self) -> None:
+        """Refuse what does not go together; also what was set after the section was made.
+
+        Raises
+        ------
+        InputError
+            If an analysis would be without meaning.
+        """
         self.element = elements.find(self.element, self.where).name
         if not isinstance(self.material, Material):
             raise InputError(

@@ -40,6 +40,10 @@ AT_BIFURCATION = ("warn", "stop", "follow")
 MASSES = ("consistent", "constant", "lumped")
 
 
+#: Frequencies of a harmonic response between two eigenfrequencies.
+MOST_POINTS = 1_000_000
+
+
 @dataclass(repr=False)
 class Output(Brief):
     """One print, file or history request.
@@ -536,6 +540,12 @@ class SteadyState(Step):
         if not 0.0 <= self.lowest < self.highest:
             raise InputError(
                 f"the range of frequencies must increase, not {self.lowest} to {self.highest}",
+                self.where,
+            )
+        if not 1 <= self.points <= MOST_POINTS:
+            raise InputError(
+                f"between two eigenfrequencies there are 1 to {MOST_POINTS:,} frequencies, not "
+                f"{self.points:,}",
                 self.where,
             )
         check_damping(self.damping, self.rayleigh, self.where)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from corota.errors import FileError
 from corota.report.content import LIMIT, compared, content_of_job, content_of_results
 from corota.report.page import page
 
@@ -107,6 +108,8 @@ def _write(text: str, path: str | PathLike[str]) -> Path:
     from corota.io.atomic_file import replace_text
 
     target = Path(path)
+    if target.is_file() and target.suffix.lower() not in (".html", ".htm"):
+        raise FileError(f"{target}: this file is no page and would be replaced; use a name .html")
     replace_text(target, text)
     return target
 

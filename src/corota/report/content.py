@@ -123,18 +123,35 @@ def content_of_job(job: JobPaths, *, limit: float = LIMIT, title: str = "") -> C
     if job.results is None:
         return _content(None, records, limit, title or job.name, provenance=provenance)
     with read_vtkhdf(job.results) as results:
+        if _other_run(records.start.get("run"), results):
+            records = Records()
+            records.notes.append(
+                f"{job.name}.jsonl and {job.name}.csv are of another run than the results: left out"
+            )
         if not records.rows:
             _rows_of_frames(records, results)
         more: list[tuple[str, FileResults]] = []
         try:
             for kind, ending in (("mode", "modes"), ("iterate", "last_iterate")):
                 beside = job.path(f"{ending}.vtkhdf")
-                if beside.is_file():
-                    more.append((kind, read_vtkhdf(beside)))
+                if not beside.is_file():
+                    continue
+                other = read_vtkhdf(beside)
+                if _other_run(other.attributes.get("run"), results):
+                    other.close()
+                    records.notes.append(f"{beside.name} is of another run: left out")
+                else:
+                    more.append((kind, other))
             return _content(results, records, limit, title, more, provenance)
         finally:
             for _, other in more:
                 other.close()
+
+
+def _other_run(name: object, results: FileResults) -> bool:
+    """Whether a file that bears the name of its run is not of the run of the results."""
+    run = results.attributes.get("run")
+    return bool(name and run) and name != run
 
 
 def _provenance(job: JobPaths) -> dict[str, Any]:

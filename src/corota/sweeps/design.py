@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -14,6 +15,8 @@ from corota.names import choose
 ENGINES = {"sobol": "Sobol", "halton": "Halton", "latin": "LatinHypercube"}
 
 Row = dict[str, Any]
+#: Rows that a design may have; more would fill the memory before the first one runs.
+MOST_ROWS = 1_000_000
 
 
 def grid(**values: Sequence[Any]) -> list[Row]:
@@ -25,6 +28,9 @@ def grid(**values: Sequence[Any]) -> list[Row]:
     >>> ct.grid(thickness=[0.2, 0.3], angle=[30])
     [{'thickness': 0.2, 'angle': 30}, {'thickness': 0.3, 'angle': 30}]
     """
+    count = math.prod(len(given) for given in values.values())
+    if count > MOST_ROWS:
+        raise InputError(f"a sweep has at most {MOST_ROWS:,} rows, not {count:,}: use a sample")
     return [dict(zip(values, found, strict=True)) for found in itertools.product(*values.values())]
 
 

@@ -75,7 +75,7 @@ def sweep(
     InputError
         If the input is not a sweep, or if every row failed.
     ResourceError
-        If the workers died.
+        If the workers died, or if every row failed and one of them for want of memory.
 
     Examples
     --------
@@ -125,7 +125,9 @@ def sweep(
             _spread(job, rows, left, take, executor, workers or 1)
     ordered = [outcomes[number] for number in range(len(rows))]
     if all(outcome.error for outcome in ordered):
-        raise InputError(f"every row of the sweep failed; the first: {ordered[0].error}")
+        short = any(outcome.short for outcome in ordered)
+        failure = ResourceError if short else InputError
+        raise failure(f"every row of the sweep failed; the first: {ordered[0].error}")
     return Sweep(rows, list(chosen), ordered)
 
 

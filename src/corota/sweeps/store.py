@@ -1,4 +1,4 @@
-"""Rows of a sweep on disk: one line of JSON each, identified by a digest of their input."""
+"""Rows of a sweep on disk: one line of JSON each, with a checksum and a digest of their input."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -25,8 +25,11 @@ if TYPE_CHECKING:
 class Store:
     """Stores outcomes in a file, if there is one.
 
-    A row is identified by its parameters, the measures, and the text of the build function or of
-    the deck. A change elsewhere, as in a function that the build function calls, is not detected.
+    A row is identified by its parameters and by its sweep: the measures, and the text of the build
+    function or of the deck with all it includes. Rows of other sweeps are left alone. A change
+    elsewhere, as in a function that the build function calls, is not detected. Each line has the
+    name of its sweep and a checksum: a line that was edited, or put together from others, is
+    refused.
 
     Parameters
     ----------
@@ -36,7 +39,7 @@ class Store:
     Raises
     ------
     FileError
-        If the file cannot be read or written, or is another one.
+        If the file cannot be read or written, is another one, or has a row that was changed.
     """
 
     def __init__(self, path: Path | None, job: Job) -> None:
@@ -56,11 +59,18 @@ class Store:
             try:
                 found = parse_json(line)
                 outcome = Outcome(**found["outcome"])
-                self._known[found["digest"]] = outcome
+                intact = found.pop("checksum") == checksum(found)
+                if found["run"] == self._job:
+                    self._known[found["digest"]] = outcome
             except (ValueError, KeyError, TypeError):
                 raise FileError(
                     f"{path}:{number}: not a row of a sweep; name another file"
                 ) from None
+            if not intact:
+                raise FileError(
+                    f"{path}:{number}: this row has changed since it was written; remove the line, "
+                    "and the sweep will run it again"
+                )
         self._cut = len(self._whole) < len(text)
 
     def find(self, row: Mapping[str, Any]) -> Outcome | None:
@@ -74,9 +84,13 @@ class Store:
         """Write a row."""
         if self.path is None or self._file is None:
             return
-        line = {"digest": self._digest(row), "row": row, "outcome": asdict(outcome)}
+        line = {"digest": self._digest(row), "run": self._job, "row": row}
+        line |= {"outcome": asdict(outcome)}
+        # As it will be read: numbers of NumPy and other objects are text there.
+        line = json.loads(json.dumps(line, default=repr))
+        line["checksum"] = checksum(line)
         try:
-            self._file.write(json.dumps(line, default=repr) + "\n")
+            self._file.write(json.dumps(line) + "\n")
             self._file.flush()
         except OSError as error:
             raise FileError(f"{self.path}: {error.strerror}") from None
@@ -104,6 +118,11 @@ class Store:
     def _digest(self, row: Mapping[str, Any]) -> str:
         text = json.dumps(row, sort_keys=True, default=repr)
         return hashlib.sha256(f"{self._job}\n{text}".encode()).hexdigest()[:32]
+
+
+def checksum(line: Mapping[str, Any]) -> str:
+    """Checksum of the contents of a row."""
+    return hashlib.sha256(json.dumps(line, sort_keys=True).encode()).hexdigest()[:32]
 
 
 def digest(job: Job) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from corota.errors import InputError
+from corota.errors import InputError, ResourceError
 
 if TYPE_CHECKING:
     from corota.model.model import Model
@@ -60,12 +60,15 @@ class Outcome:
         Wall time of the row [s].
     notes : list of str
         Warnings and notes of the run.
+    short : bool
+        Whether the memory did not suffice.
     """
 
     values: dict[str, float] = field(default_factory=dict)
     error: str = ""
     seconds: float = 0.0
     notes: list[str] = field(default_factory=list)
+    short: bool = False
 
 
 def calculate(job: Job, row: Mapping[str, Any]) -> Outcome:
@@ -82,6 +85,7 @@ def calculate(job: Job, row: Mapping[str, Any]) -> Outcome:
             outcome.notes += [*results.model.notes, *results.notes]
         except Exception as error:
             kind = "" if hasattr(error, "exit_code") else f"{type(error).__name__}: "
+            outcome.short = isinstance(error, (MemoryError, ResourceError))
             first, *more = f"{kind}{error}".splitlines() or [""]
             outcome.error = first + (f" (and {len(more)} more lines)" if more else "")
     outcome.notes += [str(w.message) for w in caught if issubclass(w.category, UserWarning)]
