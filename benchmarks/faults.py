@@ -1,9 +1,11 @@
 """The fault campaign: random and listed faults, and what became of each.
 
-    python -m benchmarks.faults [--inputs N] [--runs N] [--seed N] [--jobs N] [--keep DIR]
+    python -m benchmarks.faults [--inputs N] [--runs N] [--folders N] [--seed N] [--jobs N]
+        [--keep DIR]
 
-Without options 100,000 inputs go through the readers in-process and 5,000 whole runs are made in
-processes of their own, beside the listed faults, full disks, little memory, signals, damaged
+Without options 100,000 inputs go through the readers in-process, 5,000 whole runs and 5,000
+commands in received folders (links, pipes, includes, foreign files, stores, little memory) are made
+in processes of their own, beside the listed faults, full disks, little memory, signals, damaged
 results and thread counts. The end counts crashes, hangs, silent successes, tracebacks, wrong exit
 codes and numbers that are none behind exit 0; it ends with 1 if there is any.
 """
@@ -50,7 +52,7 @@ def classed(outcome: str) -> str:
 
 def task(kind: str, count: int, seed: int, keep: str) -> Counter[str]:
     """Carry out one part of the campaign in a process of the pool."""
-    from benchmarks import fault_readers, fault_runs, fault_world
+    from benchmarks import fault_folders, fault_readers, fault_runs, fault_world
 
     fault_runs.warm_up()
     finds = Path(keep)
@@ -59,6 +61,7 @@ def task(kind: str, count: int, seed: int, keep: str) -> Counter[str]:
         os.chdir(folder)
         todo = {
             "readers": lambda: fault_readers.run(count, seed, folder, finds),
+            "folders": lambda: fault_folders.run(count, seed, folder, finds),
             "runs": lambda: fault_runs.run_decks(count, seed, folder, finds),
             "loads": lambda: fault_runs.random_loads(count, seed, folder / "loads"),
             "loose": lambda: fault_runs.loose_models(count, seed, folder),
@@ -75,13 +78,14 @@ def task(kind: str, count: int, seed: int, keep: str) -> Counter[str]:
             os.chdir(ROOT)
 
 
-def tasks(inputs: int, runs: int, seed: int) -> list[tuple[str, int, int]]:
+def tasks(inputs: int, runs: int, folders: int, seed: int) -> list[tuple[str, int, int]]:
     """Parts of the campaign: kind, count, seed."""
     found = [("threads", 0, 0), ("memory", 0, 0), ("disk", 0, 0), ("places", 0, 0)]
     found += [("signals", 30, seed), ("results", 300, seed)]
     loads, loose = runs // 5, max(runs // 50, 1)
     found += _split("loads", loads, RUNS, seed) + _split("loose", loose, RUNS, seed)
     found += _split("runs", runs - loads - loose, RUNS, seed)
+    found += _split("folders", folders, RUNS, seed)
     return found + _split("readers", inputs, PART, seed)
 
 
@@ -113,6 +117,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--inputs", type=int, default=100_000)
     parser.add_argument("--runs", type=int, default=5_000)
+    parser.add_argument("--folders", type=int, default=5_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--keep", default=str(ROOT / "build" / "finds"), help="inputs that failed")
@@ -120,7 +125,7 @@ def main() -> int:
     for name in ("OMP", "OPENBLAS", "MKL", "RAYON"):
         os.environ.setdefault(f"{name}_NUM_THREADS", "1")
     start, outcomes = time.perf_counter(), listed()
-    parts = tasks(args.inputs, args.runs, args.seed)
+    parts = tasks(args.inputs, args.runs, args.folders, args.seed)
     with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn")) as pool:
         waiting = {pool.submit(task, *part, args.keep): part for part in parts}
         for number, future in enumerate(as_completed(waiting), 1):

@@ -27,6 +27,7 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from importlib import import_module
+from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -36,7 +37,7 @@ import numpy as np
 import corota as ct
 from benchmarks.common import machine, write_between
 from benchmarks.kill_worker import JOB, Case, Strike, run
-from benchmarks.restart_cases import DECKS, EXAMPLES, MODELS
+from benchmarks.restart_cases import DECKS, EXAMPLES, MODELS, SWEEPS
 from benchmarks.same_bits import folder_differences, records
 from corota.analysis.procedures.registry import PROCEDURES
 from corota.errors import FileError
@@ -58,6 +59,13 @@ MOST_STRIKES = 3
 def cases() -> list[Case]:
     """All cases: decks, models and examples in turn."""
     found = [Case(name, "decks", deck=build()) for name, build in DECKS.items()]
+    found += [
+        Case(name, "sweeps", deck=deck, values=values) for name, (deck, values) in SWEEPS.items()
+    ]
+    if find_spec("petsc4py") is not None:
+        solved = ("large rotations", "isotropic hardening", "contact", "motion, HHT")
+        options = ("--solver", "petsc")
+        found += [Case(f"{n}, PETSc", "PETSc", DECKS[n](), options=options) for n in solved]
     found += [Case(name, "models", build=build) for name, build in MODELS.items()]
     found += [Case(name, "examples", build=build) for name, build in EXAMPLES.items()]
     return found
@@ -212,7 +220,7 @@ def _columns(path: Path) -> dict[str, list[str]]:
     rows = [line.split(",") for line in text[: text.rfind("\n") + 1].splitlines()]
     if not rows:
         return {}
-    return {name: [row[k] for row in rows[1:]] for k, name in enumerate(rows[0])}
+    return {n: [row[k] for row in rows[1:]] for k, n in enumerate(rows[0]) if n != "seconds"}
 
 
 # -- the campaign ------------------------------------------------------------------------------
@@ -270,8 +278,8 @@ def checkpoint_promised(folder: Path) -> bool:
     """
     path = folder / f"{JOB}.jsonl"
     events = [json.loads(line) for line in path.read_text().splitlines() if line.endswith("}")]
-    procedures = {e["step"]: e["procedure"] for e in events if e["event"] == "step"}
-    reached = [e["step"] for e in events if e["event"] == "increment" and e["increment"]]
+    procedures = {e["step"]: e["procedure"] for e in events if e.get("event") == "step"}
+    reached = [e["step"] for e in events if e.get("event") == "increment" and e["increment"]]
     return bool(reached) and goes_on(procedures[reached[-1]])
 
 

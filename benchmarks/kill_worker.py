@@ -47,12 +47,18 @@ class Case:
         Text of its deck; empty where there is a model.
     build : callable, optional
         Makes the model with its steps.
+    options : tuple of str
+        More of the command line.
+    values : str
+        Of a sweep, such as ``load=.2,.4``; empty for a single run.
     """
 
     name: str
     kind: str
     deck: str = ""
     build: Callable[[], Model] | None = None
+    options: tuple[str, ...] = ()
+    values: str = ""
 
 
 @dataclass
@@ -126,8 +132,13 @@ def _child(case: Case, folder: Path, every: int, resume: bool, strike: Strike, l
     sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)  # noqa: SIM115
     calls = _arm(strike)
     warnings.simplefilter("ignore")
-    if case.deck:
-        options = ["-q", "--threads", "1"]
+    if case.values:
+        folder.mkdir(exist_ok=True)
+        words = ["sweep", str(folder.parent / f"{JOB}.inp"), "-q", "--workers", "1"]
+        words += ["-p", case.values, "-m", "last(U2@RIGHTA)", "-m", "max(RF2@LEFTA)"]
+        code = corota([*words, "-o", str(folder / f"{JOB}.csv")])
+    elif case.deck:
+        options = ["-q", "--threads", "1", *case.options]
         if resume:
             code = corota(["resume", str(folder / JOB), *options])
         else:

@@ -304,6 +304,19 @@ DECKS: dict[str, Callable[[], str]] = {
     ),
 }
 
+#: Decks with a parameter, and its values.
+SWEEPS: dict[str, tuple[str, str]] = {
+    "sweep of a load": (
+        "*PARAMETER\nload = .8\n" + DECKS["large rotations"]().replace("-.8", "-<load>"),
+        "load=.1:1.:12",
+    ),
+    "sweep of a limit": (
+        "*PARAMETER\nlimit = 8.\n"
+        + DECKS["isotropic hardening"]().replace("8., 0.", "<limit>, 0."),
+        "limit=6.:9.:6",
+    ),
+}
+
 # -- models ----------------------------------------------------------------------------------
 
 
@@ -501,4 +514,4 @@ EXAMPLES: dict[str, Callable[[], ct.Model]] = {
     "switch": _example("switch/switch.py", lambda m: m.follow(8)),
 }
 
-__all__ = ["DECKS", "EXAMPLES", "MODELS"]
+__all__ = ["DECKS", "EXAMPLES", "MODELS", "SWEEPS"]

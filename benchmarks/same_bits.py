@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 
@@ -12,7 +13,7 @@ import numpy as np
 from corota.results.observer import BaseObserver
 
 #: Parts of records and files that tell of a run and not of its numbers.
-OF_THE_RUN = ("elapsed", "profile", "run")
+OF_THE_RUN = ("elapsed", "profile", "run", "checksum")
 
 
 class Takes(BaseObserver):
@@ -68,7 +69,15 @@ def hdf_differences(one, other):
 def records(path):
     """Records of a file of JSON lines, without the times of the run."""
     rows = [json.loads(line) for line in Path(path).read_text().splitlines()]
+    for row in rows:
+        row.get("outcome", {}).pop("seconds", None)
     return [{k: v for k, v in row.items() if k not in OF_THE_RUN} for row in rows]
+
+
+def table(path):
+    """Rows of a CSV file, without the times of the rows of a sweep."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return [{k: v for k, v in row.items() if k != "seconds"} for row in csv.DictReader(file)]
 
 
 def folder_differences(one, other):
@@ -84,6 +93,8 @@ def folder_differences(one, other):
             found += [f"{name}: {part}" for part in hdf_differences(a, b)]
         elif name.endswith(".jsonl"):
             found += [name] if records(a) != records(b) else []
+        elif name.endswith(".csv"):
+            found += [name] if table(a) != table(b) else []
         elif a.read_bytes() != b.read_bytes():
             found.append(name)
     return found

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import corota as ct
-from corota.analysis.terms.moving_mass import MovingMass, mass_of_step
+from corota.analysis.terms.moving_mass import MovingMass, masses_of_steps
 from support.models import cell
 
 #: Every cell shape, with and without rotations.
@@ -69,7 +69,7 @@ def test_the_mass_is_that_of_the_next_motion() -> None:
     lumped = ct.Dynamic(mass="lumped", redistribute=False)
     plain = ct.Dynamic()
     steps = [still, lumped, still, plain, still]
-    kinds = [mass_of_step(steps, n).kind for n in range(1, 6)]
+    kinds = [mass.kind for mass in masses_of_steps(steps)]
     assert kinds == ["lumped", "lumped", "consistent", "consistent", "consistent"]
-    assert mass_of_step(steps, 5).redistribute
-    assert mass_of_step([still], 1) == MovingMass()
+    assert masses_of_steps(steps)[4].redistribute
+    assert masses_of_steps([still]) == [MovingMass()]

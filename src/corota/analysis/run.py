@@ -26,7 +26,7 @@ from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.output import output as contact_output
-from corota.analysis.terms.moving_mass import mass_of_step
+from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (
     SHORT,
@@ -192,6 +192,7 @@ class Analysis:
             listed_steps(steps), any(s.material.local_strain for s in model.sections)
         )
         self.results.steps = self.steps
+        self.masses = masses_of_steps(self.steps)
         for note in notes:
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)
@@ -383,7 +384,7 @@ class Analysis:
 
     def mass(self, number: int) -> MovingMass:
         """Mass that gravity acts on in a step."""
-        return mass_of_step(self.steps, number)
+        return self.masses[number - 1]
 
     def _begin(self, step: Step, number: int, state: State, reaction: Floats | None) -> None:
         """Start a step from the committed state."""

@@ -38,21 +38,27 @@ class MovingMass:
     redistribute: bool = False
 
 
-def mass_of_step(steps: Sequence[Step], number: int) -> MovingMass:
-    """Mass of the dynamic step that is next from step `number`, 1 for the first.
+def masses_of_steps(steps: Sequence[Step]) -> list[MovingMass]:
+    """Mass for each step: that of the dynamic step that is next from there, itself included.
 
     Where none follows it is that of the last one before. Where there is none at all it is that of
     the next frequency step, so that its modes are about a state of equilibrium, or consistent.
     """
-    later = [step for step in steps[number - 1 :] if isinstance(step, Dynamic)]
-    before = [step for step in steps[: number - 1] if isinstance(step, Dynamic)]
-    for step in later[:1] or before[-1:]:
-        explicit = step.scheme == "central_difference"
-        if explicit:
-            return MovingMass("lumped")
-        return MovingMass(step.mass, step.redistribute)
-    modes = [step for step in steps[number - 1 :] if isinstance(step, Frequency)]
-    return MovingMass(modes[0].mass) if modes else MovingMass()
+    motion: Dynamic | None = None
+    modes: Frequency | None = None
+    for step in steps:
+        motion = step if isinstance(step, Dynamic) else motion
+    found: list[MovingMass] = []
+    for step in reversed(steps):
+        motion = step if isinstance(step, Dynamic) else motion
+        modes = step if isinstance(step, Frequency) else modes
+        if motion is not None and motion.scheme == "central_difference":
+            found.append(MovingMass("lumped"))
+        elif motion is not None:
+            found.append(MovingMass(motion.mass, motion.redistribute))
+        else:
+            found.append(MovingMass() if modes is None else MovingMass(modes.mass))
+    return found[::-1]
 
 
 def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
@@ -67,4 +73,4 @@ def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
     return massless if massless.any() else None
 
 
-__all__ = ["MovingMass", "mass_of_step", "massless_nodes"]
+__all__ = ["MovingMass", "masses_of_steps", "massless_nodes"]
