@@ -82,10 +82,11 @@ def included(rng: random.Random, folder: Path) -> list[Words]:
 
 #: First bytes of files of other programs.
 HEADS = (
-    b"\x89PNG\r\n\x1a\n", b"PK\x03\x04", b"\x1f\x8b\x08", b"\x7fELF", b"%PDF-1.7",
-    b"\x89HDF\r\n\x1a\n", b"GIF89a", b"<?xml version='1.0'?>", b"{\"a\": ", b"$MeshFormat\n4.1 0 8\n",
-    b"    -1\n  2411\n",    b"    1C", b"\x93NUMPY", b"  0\nSECTION\n", b"ISO-10303-21;\n", b"\xff\xfe", b"\xef\xbb\xbf",
-)  # fmt: skip
+    *(b"\x89PNG\r\n\x1a\n", b"PK\x03\x04", b"\x1f\x8b\x08", b"\x7fELF", b"%PDF-1.7", b"GIF89a"),
+    *(b"\x89HDF\r\n\x1a\n", b"<?xml version='1.0'?>", b'{"a": ', b"\x93NUMPY", b"    1C"),
+    *(b"$MeshFormat\n4.1 0 8\n", b"    -1\n  2411\n", b"  0\nSECTION\n", b"ISO-10303-21;\n"),
+    *(b"\xff\xfe", b"\xef\xbb\xbf"),
+)
 
 
 def foreign(rng: random.Random, folder: Path) -> list[Words]:
