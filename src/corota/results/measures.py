@@ -53,6 +53,8 @@ class StagePath:
         Force on the stage and its moment about the moved reference point.
     stiffness : ndarray, shape (n_frames, 3, 3)
         Tangent stiffness; NaN where it was not computed.
+    compliance : ndarray, shape (n_frames, 3, 3)
+        Its inverse; NaN where that is singular.
     guided : ndarray, shape (n_frames, 3, 3)
         Compliance in the motions that supports of the stage leave free, and along its axis.
     utilization : ndarray, shape (n_frames, 4)
@@ -65,6 +67,7 @@ class StagePath:
     motion: Floats = field(default_factory=partial(_rows, 3))
     force: Floats = field(default_factory=partial(_rows, 3))
     stiffness: Floats = field(default_factory=partial(_rows, 3, 3))
+    compliance: Floats = field(default_factory=partial(_rows, 3, 3))
     guided: Floats = field(default_factory=partial(_rows, 3, 3))
     utilization: Floats = field(default_factory=partial(_rows, 4))
 
@@ -93,6 +96,7 @@ class StagePath:
         self.motion = np.concatenate([self.motion, motion[None]])
         self.force = np.concatenate([self.force, force[None]])
         self.stiffness = np.concatenate([self.stiffness, stiffness[None]])
+        self.compliance = np.concatenate([self.compliance, _inverse_of(stiffness)[None]])
         guided = free @ _inverse_of(free.T @ stiffness @ free) @ free.T
         self.guided = np.concatenate([self.guided, guided[None]])
         self.utilization = np.concatenate([self.utilization, utilization[None]])
@@ -223,7 +227,7 @@ def stiffness(path: StagePath, i: int, j: int) -> float:
 
 def compliance(path: StagePath, i: int, j: int) -> float:
     """An entry of its inverse."""
-    return float(_inverse_of(path.stiffness[-1])[i, j])
+    return float(path.compliance[-1, i, j])
 
 
 def axis_stiffness(path: StagePath) -> float:
