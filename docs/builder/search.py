@@ -17,7 +17,7 @@ WORDS = {
     "plasticity": "yield, hardening, mises, creep, von mises",
     "dynamics": "frequency, natural frequencies, vibration, modes, damping, newmark, "
     "harmonic response",
-    "thermal": "temperature, thermal expansion, heat",
+    "thermal": "thermal, temperature, thermal expansion, heat",
     "constraints": "equation, rigid body, coupling, hinge joint, periodic",
     "line-elements": "beam, truss, spring, frame",
     "reduced-integration": "cps4r, cpe4r, hourglass",
@@ -51,7 +51,7 @@ def with_words(name: str, text: str) -> str:
     if name not in WORDS or not text.startswith("# "):
         return text
     heading, _, rest = text.partition("\n")
-    entries = "\n".join(f"   single: ! {word.strip()}" for word in WORDS[name].split(","))
+    entries = "\n".join(f"   ! single: {word.strip()}" for word in WORDS[name].split(","))
     return f"{heading}\n\n```{{eval-rst}}\n.. index::\n{entries}\n```\n{rest}"
 
 

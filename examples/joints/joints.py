@@ -280,8 +280,9 @@ JOINTS = {
 }
 
 
-def main(words: list[str]) -> None:
+def main(words: list[str] | None = None) -> None:
     """Print the rows of some joints, or of all."""
+    words = words or []
     plot = "--plot" in words
     for name in [word for word in words if word != "--plot"] or list(JOINTS):
         with warnings.catch_warnings():

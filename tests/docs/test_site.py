@@ -112,7 +112,7 @@ def test_words_of_the_search_belong_to_pages() -> None:
     search = script("search")
     for page in search.WORDS:
         assert (DOCS / f"{page}.md").is_file(), page
-    assert "single: ! elastomer\n" in search.with_words("rubber", "# Rubber\n\ntext\n")
+    assert "! single: elastomer\n" in search.with_words("rubber", "# Rubber\n\ntext\n")
 
 
 def test_every_page_is_in_the_contents() -> None:

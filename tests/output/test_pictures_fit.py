@@ -122,6 +122,10 @@ def test_the_plastic_boundary_goes_with_any_variable(results: ct.Results) -> Non
     plain, with_line = (results.plot("MISES", plastic=p) for p in (False, True))
     more = len(with_line.axes[0].collections) - len(plain.axes[0].collections)
     assert more == 1
+    labels = [
+        "".join(ax.get_xlabel() + ax.get_ylabel() for ax in f.axes) for f in (plain, with_line)
+    ]
+    assert ["boundary of the flow" in " ".join(text.split()) for text in labels] == [False, True]
     elastic = ct.Model(ct.mesh.rectangle(1.0, 1.0, 2, 2))
     elastic.section(element="Q4", material=ct.Elastic(1.0))
     elastic.fix("left")

@@ -204,7 +204,8 @@ def contour(
         width, height, below = extent_size(low, high)
         figure, ax = figure_of(ax, width, height, shown=path is None)
         painted = paint(ax, mpl, drawing, frame, scale, edges, undeformed, limits)
-        if plastic or (plastic is None and name == "PEEQ"):
+        flows = plastic or (plastic is None and name == "PEEQ")
+        if flows:
             draw_boundary(ax, results, frame, scale)
         bar = figure.colorbar(
             painted,
@@ -218,7 +219,8 @@ def contour(
         if not per_cell and len(drawing.parts) and not len(drawing.lines[0]):
             found = results.extremes(name, frame, at="nodes")
             shown = found.smallest.value, found.largest.value
-        label_bar(bar, name, per_cell, shown, results.model.unit_system)
+        more = "; black line: boundary of the flow" if flows else ""
+        label_bar(bar, name, per_cell, shown, results.model.unit_system, more)
         pad = 0.04 * float((high - low).max())
         ax.set_xlim(low[0] - pad, high[0] + pad)
         ax.set_ylim(low[1] - pad, high[1] + pad)
@@ -227,9 +229,9 @@ def contour(
 
 
 def label_bar(
-    bar: Any, name: str, per_cell: bool, limits: tuple[float, float], units: Units
+    bar: Any, name: str, per_cell: bool, limits: tuple[float, float], units: Units, more: str = ""
 ) -> None:
-    """Label a color bar with the smallest and largest value and few ticks."""
+    """Label a color bar with the smallest and largest value, more words, and few ticks."""
     from matplotlib.ticker import MaxNLocator
 
     meaning = vf.described(name, units)
@@ -240,7 +242,7 @@ def label_bar(
     low, high = (0.0 if abs(v) < 1e-6 * size else v for v in limits)
     # Below a lying bar the power of ten of its ticks has a row of its own.
     lying = bar.orientation == "horizontal"
-    bar.set_label(f"{label}; {low:.5g} ... {high:.5g}", labelpad=9.0 if lying else None)
+    bar.set_label(f"{label}; {low:.5g} ... {high:.5g}{more}", labelpad=9.0 if lying else None)
     bar.outline.set_linewidth(0.5)
     bar.locator = MaxNLocator(7)
     bar.formatter.set_powerlimits((-3, 4))
