@@ -5,13 +5,16 @@ use super::real::Real;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// A value and its derivatives with respect to `D` variables.
+///
+/// With `STORED`, derivatives are also loaded and stored: a number then takes `1 + D` places of a
+/// slice, so that histories carry their derivatives through the kernels.
 #[derive(Clone, Copy, Debug)]
-pub struct Dual<const D: usize> {
+pub struct Dual<const D: usize, const STORED: bool = false> {
     pub v: f64,
     pub d: [f64; D],
 }
 
-impl<const D: usize> Dual<D> {
+impl<const D: usize, const STORED: bool> Dual<D, STORED> {
     /// The `i`-th variable with value `v`.
     pub fn variable(v: f64, i: usize) -> Self {
         let mut d = [0.0; D];
@@ -28,7 +31,7 @@ impl<const D: usize> Dual<D> {
     }
 }
 
-impl<const D: usize> Add for Dual<D> {
+impl<const D: usize, const STORED: bool> Add for Dual<D, STORED> {
     type Output = Self;
     fn add(mut self, o: Self) -> Self {
         self.v += o.v;
@@ -38,7 +41,7 @@ impl<const D: usize> Add for Dual<D> {
         self
     }
 }
-impl<const D: usize> Sub for Dual<D> {
+impl<const D: usize, const STORED: bool> Sub for Dual<D, STORED> {
     type Output = Self;
     fn sub(mut self, o: Self) -> Self {
         self.v -= o.v;
@@ -48,7 +51,7 @@ impl<const D: usize> Sub for Dual<D> {
         self
     }
 }
-impl<const D: usize> Mul for Dual<D> {
+impl<const D: usize, const STORED: bool> Mul for Dual<D, STORED> {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
         let mut d = [0.0; D];
@@ -58,7 +61,7 @@ impl<const D: usize> Mul for Dual<D> {
         Self { v: self.v * o.v, d }
     }
 }
-impl<const D: usize> Div for Dual<D> {
+impl<const D: usize, const STORED: bool> Div for Dual<D, STORED> {
     type Output = Self;
     fn div(self, o: Self) -> Self {
         let v = self.v / o.v;
@@ -69,24 +72,24 @@ impl<const D: usize> Div for Dual<D> {
         Self { v, d }
     }
 }
-impl<const D: usize> Neg for Dual<D> {
+impl<const D: usize, const STORED: bool> Neg for Dual<D, STORED> {
     type Output = Self;
     fn neg(self) -> Self {
         self.chain(-self.v, -1.0)
     }
 }
-impl<const D: usize> AddAssign for Dual<D> {
+impl<const D: usize, const STORED: bool> AddAssign for Dual<D, STORED> {
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
-impl<const D: usize> SubAssign for Dual<D> {
+impl<const D: usize, const STORED: bool> SubAssign for Dual<D, STORED> {
     fn sub_assign(&mut self, o: Self) {
         *self = *self - o;
     }
 }
 
-impl<const D: usize> Real for Dual<D> {
+impl<const D: usize, const STORED: bool> Real for Dual<D, STORED> {
     type Mask = bool;
     const LANES: usize = 1;
 
@@ -153,9 +156,16 @@ impl<const D: usize> Real for Dual<D> {
         Self::real(f(0))
     }
     fn load(from: &[f64]) -> Self {
-        Self::real(from[0])
+        let mut number = Self::real(from[0]);
+        if STORED {
+            number.d.copy_from_slice(&from[1..=D]);
+        }
+        number
     }
     fn store(self, to: &mut [f64]) {
         to[0] = self.v;
+        if STORED {
+            to[1..=D].copy_from_slice(&self.d);
+        }
     }
 }

@@ -4,6 +4,7 @@
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::scatter::Sink;
+use super::sensitivity::{Gradients, Weights};
 use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::kinematics::integrate::Section;
@@ -83,6 +84,9 @@ impl<const N: usize> Shared<N> {
 pub trait Chunk: Send + Sync {
     /// Add forces and stiffnesses; returns the indices (in the block) of failed elements.
     fn assemble(&mut self, context: &Context<'_>, sink: &Sink<'_>) -> Vec<usize>;
+    /// Gradients of the weighted forces and new state of the elements, in the order of
+    /// [`Chunk::elements`].
+    fn differentiate(&self, context: &Context<'_>, weights: &Weights<'_>) -> Gradients;
     /// Values at the points, in the order of [`Chunk::elements`].
     fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields);
     /// Add the nodal forces of a body force at the displacements of the context and, if it wants
@@ -141,6 +145,13 @@ pub trait Chunk: Send + Sync {
     fn nodes(&self) -> Vec<u32>;
     /// Committed history, internal modes, carried velocities, initial strains and temperatures.
     fn state(&self) -> [&[f64]; PARTS];
+    /// Members of the history of an element.
+    fn members(&self) -> usize;
+    /// Write the history of each element, committed or of the last evaluation, to the block's
+    /// array `[n, members]`.
+    fn histories(&self, trial: bool, out: &mut [f64]);
+    /// Take the committed history from such an array.
+    fn set_histories(&mut self, values: &[f64]);
     /// Take such a state; `false` if it does not fit.
     fn restore(&mut self, state: [&[f64]; PARTS]) -> bool;
 }

@@ -6,6 +6,7 @@ use super::chunk::{Chunk, Context, PARTS, Shared};
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
 use super::scatter::Sink;
+use super::sensitivity::{Gradients, Weights};
 use crate::base::small::Nodal;
 use crate::base::{Lanes, MAX_LANES, Real, dispatch};
 use crate::elements::Element;
@@ -144,6 +145,11 @@ where
         PerPoint::of(&self.thickness, &self.sides, self.laws.as_ref(), e, self.stride)
     }
 
+    /// Committed internal modes.
+    pub(super) fn alpha_old(&self) -> &[f64] {
+        &self.alpha_old
+    }
+
     /// Laws at the temperatures that are stored.
     fn temper(&mut self) -> Result<(), String> {
         let shared = self.shared.clone();
@@ -206,6 +212,9 @@ where
         // Elements with laws of their own are evaluated one by one.
         let lanes = if self.laws.is_some() { Lanes::Scalar } else { context.lanes };
         dispatch(lanes, Assemble { chunk: self, context, sink })
+    }
+    fn differentiate(&self, context: &Context<'_>, weights: &Weights<'_>) -> Gradients {
+        ChunkOf::differentiate(self, context, weights)
     }
     fn recover(&self, context: &Context<'_>, out: &mut super::recover::Fields) {
         super::recover::chunk(self, context, out);
@@ -328,6 +337,28 @@ where
     }
     fn state(&self) -> [&[f64]; PARTS] {
         [&self.old, &self.alpha_old, &self.rates_old, &self.initial, &self.temperatures]
+    }
+    fn members(&self) -> usize {
+        self.n_state()
+    }
+    fn histories(&self, trial: bool, out: &mut [f64]) {
+        let from = if trial { &self.new } else { &self.old };
+        let members = self.n_state();
+        for (e, &element) in self.elements.iter().enumerate() {
+            for m in 0..members {
+                out[element as usize * members + m] = from[m * self.stride + e];
+            }
+        }
+    }
+    fn set_histories(&mut self, values: &[f64]) {
+        let members = self.n_state();
+        for (e, &element) in self.elements.iter().enumerate() {
+            for m in 0..members {
+                self.old[m * self.stride + e] = values[element as usize * members + m];
+            }
+        }
+        self.new.copy_from_slice(&self.old);
+        self.evaluated = false;
     }
     fn restore(&mut self, [old, alpha, rates, initial, heat]: [&[f64]; PARTS]) -> bool {
         let n_points = self.shared.section.points.len();

@@ -13,6 +13,7 @@ pub mod problem;
 pub mod recover;
 pub mod registry;
 pub mod scatter;
+pub mod sensitivity;
 pub mod sizes;
 
 pub use build::BlockInput;

@@ -9,6 +9,7 @@ use super::fixed_dofs::FixedDofs;
 use super::recover::Fields;
 use super::registry;
 use super::scatter::Sink;
+use super::sensitivity::{Gradients, Sums, Weights};
 use crate::base::thread_autotuner::ThreadAutotuner;
 use crate::base::{Lanes, pool};
 use crate::kinematics::inertia::MassKind;
@@ -370,6 +371,46 @@ impl Problem {
         }
         for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
             chunk.give(values);
+        }
+        Ok(())
+    }
+
+    /// Gradients of the weighted forces and new state of the elements at displacements `u` from
+    /// the committed state, which stays.
+    pub fn gradients(&self, u: &[f64], nlgeom: bool, weights: &Weights<'_>) -> Sums {
+        let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let chunks: Vec<&dyn Chunk> = self.colours.iter().flatten().map(AsRef::as_ref).collect();
+        let evaluate = |chunk: &&dyn Chunk| chunk.differentiate(&context, weights);
+        let parts: Vec<Gradients> = match self.pool() {
+            Some(pool) => pool.install(|| chunks.par_iter().map(evaluate).collect()),
+            None => chunks.iter().map(evaluate).collect(),
+        };
+        let mut sums = Sums::new(self.x.len(), &self.dofs, &self.blocks);
+        for (chunk, part) in chunks.iter().zip(&parts) {
+            sums.add(*chunk, part, &self.dofs);
+        }
+        sums
+    }
+
+    /// Histories of the elements by block, `[n, members]`, committed or of the last evaluation.
+    pub fn histories(&self, trial: bool) -> Vec<Vec<f64>> {
+        let mut all = vec![Vec::new(); self.blocks.len()];
+        for chunk in self.colours.iter().flatten() {
+            let own: &mut Vec<f64> = &mut all[chunk.block()];
+            own.resize(chunk.members() * self.blocks[chunk.block()].n_elements, 0.0);
+            chunk.histories(trial, own);
+        }
+        all
+    }
+
+    /// Make such histories the committed ones.
+    pub fn set_histories(&mut self, values: &[Vec<f64>]) -> Result<(), String> {
+        for chunk in self.colours.iter_mut().flatten() {
+            let wanted = chunk.members() * self.blocks[chunk.block()].n_elements;
+            match values.get(chunk.block()) {
+                Some(own) if own.len() == wanted => chunk.set_histories(own),
+                _ => return Err("the histories do not fit the problem".into()),
+            }
         }
         Ok(())
     }

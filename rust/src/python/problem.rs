@@ -11,6 +11,7 @@ use crate::model::chunk::Kinematics;
 use crate::model::dynamics::{Between, BodyLoad, Motion};
 use crate::model::problem::{Failed, Problem};
 use crate::model::registry;
+use crate::model::sensitivity::{Wanted, Weights};
 use crate::model::sizes;
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -27,6 +28,11 @@ pub fn value_error(message: impl Into<String>) -> PyErr {
 /// Elements failed: a ``RuntimeError`` whose second argument is the list of (block, element).
 fn failed(f: Failed) -> PyErr {
     PyRuntimeError::new_err(("elements could not be evaluated", f.0))
+}
+
+/// Arrays of the blocks.
+fn of_blocks(values: &[PyReadonlyArray1<'_, f64>]) -> PyResult<Vec<Vec<f64>>> {
+    values.iter().map(|v| Ok(v.as_slice()?.to_vec())).collect()
 }
 
 /// Discrete model: blocks of elements, dofs, sparsity pattern, assembly.
@@ -467,6 +473,69 @@ impl PyProblem {
         }
         py.detach(|| self.inner.body_force(u, &load, &masks, f, k));
         Ok(())
+    }
+
+    /// Gradients of ``force . internal force + state . new state`` at displacements ``u`` from the
+    /// committed state, by forward differentiation in each element.
+    ///
+    /// ``force`` are weights by dof, ``state`` weights of the histories as ``histories`` gives them,
+    /// or empty; ``wanted`` names the inputs among positions, displacements, state, thickness,
+    /// initial. Returns a dict: positions (n_nodes, 2), displacements (n_dofs,), state as
+    /// ``histories``; thickness and initial are lists by block of (n, p) and (n, p, 4).
+    fn differentiate<'py>(
+        &self,
+        py: Python<'py>,
+        u: PyReadonlyArray1<'py, f64>,
+        nlgeom: bool,
+        force: PyReadonlyArray1<'py, f64>,
+        state: Vec<PyReadonlyArray1<'py, f64>>,
+        wanted: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let names: Vec<&str> = wanted.iter().map(String::as_str).collect();
+        let wanted = Wanted::new(&names).map_err(value_error)?;
+        let (u, force) = (u.as_slice()?, force.as_slice()?);
+        let n = self.inner.dofs.n_dofs();
+        if u.len() != n || force.len() != n {
+            return Err(value_error("array lengths do not fit the problem"));
+        }
+        let state = of_blocks(&state)?;
+        let known = self.inner.histories(false);
+        let fits = known.iter().zip(&state).all(|(k, s)| k.len() == s.len());
+        if !state.is_empty() && !(fits && known.len() == state.len()) {
+            return Err(value_error("weights of the histories do not fit the problem"));
+        }
+        let weights = Weights { force, state: &state, wanted };
+        let all = py.detach(|| self.inner.gradients(u, nlgeom, &weights));
+        if !all.failed.is_empty() {
+            return Err(failed(Failed(all.failed)));
+        }
+        let d = PyDict::new(py);
+        let nodes = self.inner.x.len();
+        d.set_item("positions", all.positions.into_pyarray(py).reshape([nodes, 2])?)?;
+        d.set_item("displacements", all.displacements.into_pyarray(py))?;
+        let state: Vec<_> = all.state.into_iter().map(|s| s.into_pyarray(py)).collect();
+        d.set_item("state", state)?;
+        let (mut thickness, mut initial) = (Vec::new(), Vec::new());
+        for (block, (t, i)) in
+            self.inner.blocks.iter().zip(all.thickness.into_iter().zip(all.initial))
+        {
+            let (n, p) = (block.n_elements, block.facts.n_points);
+            thickness.push(t.into_pyarray(py).reshape([n, p])?);
+            initial.push(i.into_pyarray(py).reshape([n, p, 4])?);
+        }
+        d.set_item("thickness", thickness)?;
+        d.set_item("initial", initial)?;
+        Ok(d)
+    }
+
+    /// Histories of the elements of each block, flat (n, members), committed or ``trial``.
+    fn histories<'py>(&self, py: Python<'py>, trial: bool) -> Vec<Bound<'py, PyArray1<f64>>> {
+        self.inner.histories(trial).into_iter().map(|h| h.into_pyarray(py)).collect()
+    }
+
+    /// Make histories as ``histories`` gives them the committed ones.
+    fn set_histories(&mut self, values: Vec<PyReadonlyArray1<'_, f64>>) -> PyResult<()> {
+        self.inner.set_histories(&of_blocks(&values)?).map_err(value_error)
     }
 
     /// Point fields of every block: a list of dicts of arrays by element and point.
