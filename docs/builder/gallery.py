@@ -58,6 +58,7 @@ ENTRIES = {
         "Tip of the linear membrane with `Q9`, 16 x 16: 23.949; converged 23.966, the same mesh in "
         "an independent code 23.949.",
     ),
+    "constant_force/constant_force": Entry("Flexures"),
     "cyclic_strip/cyclic_strip": Entry("Plasticity"),
     "flexure/flexure": Entry("Flexures", model="hinge"),
     "frame_on_plate/frame_on_plate": Entry("Beams"),

@@ -39,6 +39,7 @@ REFERENCE = {
     "StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
     "Sweeps": "sweep sample grid Sweep seek Sought",
+    "Gradients": "gradient value_and_grad optimize",
     "Selections": "near on_line on_circle inside",
     "Results": "Results BodyMotion Frame PointFields History CriticalPoint Modes",
     "Observers": "BaseObserver Observer Iteration",
@@ -66,7 +67,7 @@ LOOK = (
     ".prev-next-footer a,.prev-next-info,.prev-next-title{overflow:visible;white-space:normal}"
 )
 #: Modules of the reference.
-MODULES = ("corota.mesh", "corota.plots", "corota.examples")
+MODULES = ("corota.mesh", "corota.plots", "corota.examples", "corota.gradients")
 #: Pages of the repository that have a place in the site.
 ROOT_PAGES = {
     "changelog": "CHANGELOG.md",
@@ -161,8 +162,12 @@ def _reference(folder: Path) -> None:
         page = f"# {module}\n\n```{{eval-rst}}\n.. automodule:: {module}\n```\n"
         for name in getattr(public, "__all__", []):
             value = getattr(public, name)
+            if name in ct.__all__:
+                continue
             if inspect.isfunction(value):
                 page += f"\n## {name}\n\n```{{eval-rst}}\n.. autofunction:: {module}.{name}\n```\n"
+            elif inspect.isclass(value):
+                page += f"\n## {name}\n\n```{{eval-rst}}\n.. autoclass:: {module}.{name}\n```\n"
         _put(folder / f"{key}.md", page)
         names.append(key)
     toc = "\n".join(names)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         SingularError,
         UnsupportedError,
     )
+    from corota.gradients import gradient, optimize, value_and_grad
     from corota.io.formats import read, write
     from corota.io.job import JobFiles
     from corota.io.result_reader import read_results
@@ -158,12 +159,15 @@ _HOMES = {
     "Yeoh": "model.hyperelastic",
     "__version__": "_core",  # that of Cargo.toml
     "examples": "",
+    "gradient": "gradients",
+    "gradients": "",
     "grid": "sweeps",
     "inside": "mesh.geometric",
     "mesh": "",
     "near": "mesh.geometric",
     "on_circle": "mesh.geometric",
     "on_line": "mesh.geometric",
+    "optimize": "gradients",
     "plots": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
@@ -172,6 +176,7 @@ _HOMES = {
     "seek": "sweeps.seek",
     "solve": "analysis.run",
     "sweep": "sweeps",
+    "value_and_grad": "gradients",
     "write": "io.formats",
 }
 
@@ -251,12 +256,15 @@ __all__ = [
     "Voce",
     "Yeoh",
     "examples",
+    "gradient",
+    "gradients",
     "grid",
     "inside",
     "mesh",
     "near",
     "on_circle",
     "on_line",
+    "optimize",
     "plots",
     "read",
     "read_results",
@@ -265,6 +273,7 @@ __all__ = [
     "seek",
     "solve",
     "sweep",
+    "value_and_grad",
     "write",
 ]
 

@@ -244,7 +244,17 @@ class System(NumberedModel):
         """
         return self._correct(at, np.array(rhs, order="F"), np.asfortranarray(du_prescribed))
 
-    def _correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
+    def correct_adjoint(self, at: Evaluation, rhs: Floats, prescribed: Floats) -> Floats:
+        """:meth:`correct` with the transposed tangent: the adjoint of the linearized equilibrium.
+
+        A symmetric tangent is its own transpose, and its factor the one that exists.
+        """
+        rhs, prescribed = np.array(rhs, order="F"), np.asfortranarray(prescribed)
+        return self._correct(at, rhs, prescribed, transposed=True)[0]
+
+    def _correct(
+        self, at: Evaluation, rhs: Floats, du_prescribed: Floats, transposed: bool = False
+    ) -> tuple[Floats, int]:
         """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
         link, pattern = at.link, self.constraints.pattern
         if (at.load_stiffness is not None or (link.couples and self.nlgeom)) and not (
@@ -262,6 +272,8 @@ class System(NumberedModel):
         moved = link.unknowns(du_prescribed)
         if unsymmetric is not None:
             matrix = link.reduce_full(unsymmetric, at.residual)
+            if transposed:
+                matrix = matrix.T.tocsc()
             return link.expand(self._solve_unsymmetric(matrix, force, moved, constrained)), -1
         with self.timed("constraints"):
             values = link.reduce(at.values, at.residual)

@@ -217,6 +217,14 @@ class FreeStrains:
             if block.responds:
                 self._set(block, self.now)
 
+    def give(self, index: int, rows: Ints, core: Any) -> None:
+        """Give the strains and temperatures of some elements of a block to another core."""
+        for block in self._blocks:
+            if block.index == index:
+                if block.table is not None:
+                    core.set_temperatures(0, block.now[rows].ravel())
+                core.set_initial(0, block.rows[rows].ravel())
+
     def set_kinematics(self, nlgeom: bool) -> None:
         """Let displacements be finite or infinitesimal from now on."""
         if nlgeom != self.finite:

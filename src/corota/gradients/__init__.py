@@ -1,0 +1,53 @@
+"""Exact gradients of measures of an analysis: adjoint method, and optimization with it."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from corota.gradients.critical import BifurcationLoad, Frequency, LimitLoad
+from corota.gradients.measures import (
+    Area,
+    Displacement,
+    LoadFactor,
+    Mass,
+    Measure,
+    Reaction,
+    StrainEnergy,
+    Stress,
+)
+from corota.gradients.optimization import Constraint, Design, Optimum, optimize
+from corota.gradients.parameters import (
+    Attribute,
+    Constant,
+    Orientation,
+    Parameter,
+    Positions,
+    Shape,
+    Thickness,
+)
+from corota.gradients.runs import ValueAndGradient, gradient, value_and_grad
+
+__all__ = [
+    "Area",
+    "Attribute",
+    "BifurcationLoad",
+    "Constant",
+    "Constraint",
+    "Design",
+    "Displacement",
+    "Frequency",
+    "LimitLoad",
+    "LoadFactor",
+    "Mass",
+    "Measure",
+    "Optimum",
+    "Orientation",
+    "Parameter",
+    "Positions",
+    "Reaction",
+    "Shape",
+    "StrainEnergy",
+    "Stress",
+    "Thickness",
+    "ValueAndGradient",
+    "gradient",
+    "optimize",
+    "value_and_grad",
+]

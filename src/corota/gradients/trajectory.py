@@ -1,0 +1,309 @@
+"""The equations of a model along increments that have converged.
+
+The increments come from the frames of a run. Histories of materials are evaluated again from
+one increment to the next, so that a run needs no special preparation.
+"""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from corota.analysis.equations import System
+from corota.analysis.linear.solvers import make_solver
+from corota.analysis.terms.moving_mass import mass_of_step
+from corota.errors import InputError, UnsupportedError
+from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces
+from corota.model.user_material import UserMaterial
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from corota.analysis.evaluation import Evaluation
+    from corota.model.model import Model
+    from corota.model.steps import Step
+    from corota.results.results import Frame, Results
+
+    Floats = NDArray[np.float64]
+
+#: Largest residual of a state at free dofs, over the sum of element forces there.
+EQUILIBRIUM = 1e-5
+
+
+#: Parts of the state of a chunk of elements, and which of them are the internal modes.
+PARTS, MODES = 5, 1
+
+
+@dataclass
+class Increment:
+    """A converged increment.
+
+    Parameters
+    ----------
+    frame : int
+        Its index in the results.
+    step : int
+        Index of its step.
+    time : float
+        Step time of its loads; along a path the load factor times the period.
+    factor : float
+    by_node : ndarray, shape (n_nodes, 3)
+    histories : list of ndarray
+        Of the elements of each block before the increment; empty where no law has any.
+    """
+
+    frame: int
+    step: int
+    time: float
+    factor: float
+    by_node: Floats
+    histories: list[Floats] = field(default_factory=list)
+    #: Whether its load factor was an unknown, and whether it is the last of its step.
+    along: bool = False
+    last: bool = False
+    #: Multipliers of contact and ties, once they are known.
+    surfaces: Surfaces | None = None
+
+
+def increments_of(results: Results) -> list[Increment]:
+    """Increments of all steps of a run, without its start.
+
+    Raises
+    ------
+    UnsupportedError
+        If a step has no static states.
+    InputError
+        If frames were not kept.
+    """
+    if not results.frames:
+        raise InputError("results without frames have no gradient; run the model first")
+    if results.keep != "all":
+        raise InputError("gradients need the frames of all increments: solve with keep='all'")
+    found = []
+    for index, frame in enumerate(results.frames):
+        step = results.steps[frame.step - 1]
+        _require_static(step)
+        if frame.increment == 0:
+            continue
+        found.append(_increment(index, frame, step))
+    for one, two in itertools.pairwise([*found, None]):
+        if one is not None and (two is None or two.step > one.step):
+            one.last = True
+    if not found:
+        raise InputError("results without increments have no gradient")
+    return found
+
+
+def _require_static(step: Step) -> None:
+    if step.procedure not in ("static", "frequency"):
+        raise UnsupportedError(
+            f"gradients follow static and frequency steps; a {step.procedure} step has none",
+            step.where,
+        )
+
+
+def _increment(index: int, frame: Frame, step: Step) -> Increment:
+    along = getattr(step, "path", None) is not None or "arc length" in frame.scalars
+    if step.procedure == "frequency":
+        return Increment(index, frame.step - 1, 0.0, 0.0, np.column_stack([frame.U, frame.UR]))
+    time = frame.factor * step.period if along else frame.step_time
+    by_node = np.column_stack([frame.U, frame.UR])
+    return Increment(index, frame.step - 1, time, frame.factor, by_node, along=along)
+
+
+@dataclass
+class Point:
+    """An equilibrium state in the equations of a model.
+
+    Parameters
+    ----------
+    system : System
+        Its elements have the histories before the increment.
+    increment : Increment
+    u : ndarray, shape (n_dofs,)
+    at : Evaluation
+        Forces there; without a tangent.
+    steps : list of Step
+    gaps : ndarray, shape (n_multipliers,)
+        Residuals of closed surfaces; empty without contact.
+    """
+
+    system: System
+    increment: Increment
+    u: Floats
+    at: Evaluation
+    steps: list[Step]
+    gaps: Floats = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def reaction(self) -> Floats:
+        """Residual with what dependent dofs pass on to their masters, shape (n_dofs,)."""
+        return self.at.reaction
+
+
+class Trajectory:
+    """The equations of a model along given increments.
+
+    Parameters
+    ----------
+    model : Model
+    steps : sequence of Step
+        With large rotations as in the run.
+    threads : int
+
+    Raises
+    ------
+    UnsupportedError
+        If the model has a feature whose derivative is not included.
+    """
+
+    def __init__(self, model: Model, steps: Sequence[Step], threads: int = 1) -> None:
+        self.model, self.steps, self.threads = model, list(steps), threads
+        refuse(model)
+        self.system = System(model, make_solver("multifrontal"), threads)
+        materials = [block.section.material for block in self.system.blocks]
+        #: Whether the stress of any material depends on the strain path.
+        self.remembers = any(m.remembers for m in materials)
+        #: Whether surfaces slip from where they were at the start of an increment.
+        self.slides = any(pair.friction for pair in model.contacts)
+
+    def walk(self, increments: Sequence[Increment], given: bool = False) -> Iterator[Point]:
+        """Equilibrium states, from the first increment on.
+
+        Parameters
+        ----------
+        increments : sequence of Increment
+        given : bool
+            Take the histories that the increments have instead of evaluating all increments.
+
+        Notes
+        -----
+        Unknowns stay those of the increments. Prescribed and dependent dofs are those of this
+        model.
+        """
+        system = self.system
+        step, total, reaction = -1, 0.0, None
+        u = np.zeros(system.n_dofs)
+        for k, increment in enumerate(increments):
+            while step < increment.step:
+                if step >= 0 and self.steps[step].procedure == "static":
+                    total += self.steps[step].period
+                step += 1
+                system.mass = mass_of_step(self.steps, step + 1)
+                system.begin(self.steps[step], total, u, reaction)
+                if np.any(system.conditions.fading):
+                    dof = int(np.flatnonzero(system.conditions.fading)[0])
+                    raise UnsupportedError(
+                        f"{system.describe(dof)} is released in step {step + 1}: gradients through "
+                        "released supports are not included",
+                        self.steps[step].where,
+                    )
+            if self.remembers:
+                if given:
+                    system.core.set_histories(increment.histories)
+                else:
+                    increment.histories = system.core.histories(False)
+            u = system.from_nodes(increment.by_node)
+            u = system.conditions.supports.at(increment.time, u)
+            system.constraints.complete(u)
+            at = system.forces(u, increment.time)
+            at.link = system.constraints.link(u)
+            gaps = np.zeros(0)
+            if system.contact_term.pairs:
+                if increment.surfaces is None:
+                    increment.surfaces = find(system, u, increment.time, at)
+                gaps = add_forces(system, u, increment.time, at, increment.surfaces)
+            yield Point(system, increment, u, at, self.steps, gaps)
+            if self.remembers and not given:
+                # Others may have been evaluated meanwhile.
+                at = system.forces(u, increment.time)
+                at.link = system.constraints.link(u)
+            if self.slides:
+                self.slide(u, increment)
+            last = k + 1 == len(increments) or increments[k + 1].step > increment.step
+            if self.remembers and not given:
+                system.commit()
+            if last and self.steps[step].procedure == "static":
+                system.conditions.end_time = increment.time
+                reaction = at.reaction
+
+    def slide(self, u: Floats, increment: Increment) -> None:
+        """Let slips of the next increment begin at a displacement."""
+        term, surfaces = self.system.contact_term, increment.surfaces
+        assert surfaces is not None
+        term.u = u.copy()
+        for pair, state in zip(term.pairs, surfaces.states, strict=True):
+            pair.core.commit()
+            pair.keep_closed(state)
+
+    def forget_modes(self) -> None:
+        """Let the iterations for internal modes of elements begin at zero.
+
+        From the solution they would end at once. Where the tangent of a law is not quite its
+        derivative, the derivatives of the modes need as many iterations as the modes.
+        """
+        core = self.system.core
+        values, lengths = core.state()
+        ends = np.cumsum(lengths.astype(np.int64))
+        for part in range(MODES, len(ends), PARTS):
+            values[ends[part - 1] : ends[part]] = 0.0
+        core.restore_state(values, lengths)
+
+    def at_step(self, increments: Sequence[Increment], step: int) -> Trajectory:
+        """Equations of the same model with the loads of one of the steps."""
+        other = Trajectory(self.model, self.steps, self.threads)
+        ends = {i.step: i for i in increments if i.step < step}
+        first = next(i for i in increments if i.step == step)
+        for point in other.walk([*ends.values(), first], given=True):
+            if point.increment is first:
+                break
+        return other
+
+    def require_equilibrium(self, point: Point) -> None:
+        """Refuse a state that is no equilibrium of these equations.
+
+        Raises
+        ------
+        UnsupportedError
+        """
+        system = self.system
+        free = ~system.conditions.constrained
+        size = max(float(np.abs(point.at.scale).max(initial=0.0)), 1e-300)
+        left = float(np.abs(point.reaction[free]).max(initial=0.0))
+        worst = left / size
+        if worst > EQUILIBRIUM and not system.scales.stiffest:
+            # Bodies without forces have residuals that are rounding of their positions.
+            system.return_tangent(system.evaluate(point.u, point.increment.time))
+        if worst > EQUILIBRIUM and left > system.scales.nothing:
+            raise UnsupportedError(
+                f"frame {point.increment.frame} is no equilibrium of the model's equations "
+                f"(residual {worst:.2g} of the element forces): forces acted in the run that "
+                "gradients do not include"
+            )
+
+
+def refuse(model: Model) -> None:
+    """Refuse models with a feature whose derivative is not included.
+
+    Raises
+    ------
+    UnsupportedError
+    """
+    refuse_surfaces(model)
+    for section in model.sections:
+        if section.axisymmetric:
+            raise UnsupportedError("gradients do not include axisymmetric bodies", section.where)
+        if isinstance(section.material, UserMaterial):
+            raise UnsupportedError(
+                "gradients do not include materials in Python: their derivatives are not known",
+                section.where,
+            )
+
+
+__all__ = ["Increment", "Point", "Trajectory", "increments_of", "refuse"]
