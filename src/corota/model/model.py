@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
@@ -63,6 +65,7 @@ if TYPE_CHECKING:
     from corota.model.loads import Force
     from corota.model.local_strain import LocalStrain
     from corota.model.materials import Material
+    from corota.model.paths import Modes
     from corota.model.sections import Plane
     from corota.model.steps import Step
 
@@ -365,6 +368,49 @@ class Model(Loading, LineSections, InitialFields, Stages):
             Radial and circumferential axes about this point [length].
         """
         self.axes.append(LocalAxes(self._nodes(nodes), angle, centre))
+
+    def imperfection(self, modes: Modes, scales: Sequence[float] | Mapping[int, float]) -> None:
+        """Move the nodes by shapes, such as buckling modes: a real part is not perfect.
+
+        Beams between moved nodes stay straight. Call it before sets by geometry are used.
+
+        Parameters
+        ----------
+        modes : Modes
+            Of a buckling or frequency step of a model with the same nodes: ``results.modes[0]``.
+            The largest displacement of a buckling mode is 1.
+        scales : sequence of float or mapping of int to float
+            Size of each mode from the first on, or by the number of the mode from 1 [length].
+
+        Raises
+        ------
+        InputError
+            If the modes have other nodes, or there is no such mode.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(20.0, 0.5, nx=20, ny=1))
+        >>> model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3))
+        >>> model.fix("left")
+        >>> model.force("right", x=-1.0)
+        >>> mode = ct.solve(model, ct.Buckle(modes=1), threads=1).modes[0]
+        >>> model.imperfection(mode, [0.05])
+        >>> round(float(abs(model.mesh.points[:, 1] - 0.25).max()), 3) > 0.25
+        True
+        """
+        shapes = np.asarray(modes.shapes)
+        if shapes.shape[1] != self.mesh.n_nodes:
+            raise InputError(
+                f"the modes have {shapes.shape[1]} nodes, the mesh {self.mesh.n_nodes}"
+            )
+        given = dict(scales) if isinstance(scales, Mapping) else dict(enumerate(scales, start=1))
+        moved = self.mesh.points.copy()
+        for mode, scale in given.items():
+            if not 1 <= mode <= len(shapes):
+                raise InputError(f"no mode {mode}; there are {len(shapes)}, counted from 1")
+            moved += number(scale, "the size of an imperfection") * shapes[mode - 1, :, :2]
+        self.mesh = replace(self.mesh, points=moved)
 
     def contact(
         self,
