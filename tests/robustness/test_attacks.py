@@ -79,6 +79,8 @@ def sound_results(name="job"):
         for frame in results.frames:
             for values in (frame.U, frame.RF, frame.F):
                 assert np.isfinite(values).all()
+    with open(f"{name}.csv", encoding="utf-8") as table:
+        assert not {"nan", "inf", "-inf"} & set(table.read().replace("\n", ",").split(","))
 
 
 def with_steps(*lines, before=BEFORE):

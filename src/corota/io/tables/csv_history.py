@@ -215,7 +215,9 @@ def _line(names: Sequence[str]) -> str:
 
 
 def _values(row: dict[str, float], names: Sequence[str]) -> str:
-    return ",".join(f"{row.get(name, where_missing(name)):.12g}" for name in names) + "\n"
+    values = (row.get(name, where_missing(name)) for name in names)
+    # What is undefined in a frame is an empty field.
+    return ",".join("" if v != v else f"{v:.12g}" for v in values) + "\n"
 
 
 class CsvWriter:
