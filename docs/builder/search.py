@@ -41,7 +41,9 @@ WORDS = {
     "howto/thermal_bow": "bimetal",
     "howto/user_material": "umat, user material",
     "howto/sweep": "optimization, parameters, design of experiments",
-    "limits": "axisymmetric, creep, crack, 3d, limitations",
+    "axisymmetry": "axisymmetric, turned parts, solid of revolution",
+    "gradients": "sensitivity, adjoint, optimizer",
+    "limits": "creep, crack, 3d, limitations",
     "other-programs": "alternatives, comparison with other programs",
 }
 

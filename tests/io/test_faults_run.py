@@ -20,7 +20,7 @@ CASES = [
     (2, 1, "*NODE", "*NODE, NSET", "*NODES, NSET"),
     (2, 20, "DIRCT", "*STATIC", "*STATIC, DIRCT"),
     (2, 8, "CPS5", "TYPE=CPS4", "TYPE=CPS5"),
-    (2, 8, "axisymmetric", "TYPE=CPS4", "TYPE=CAX4"),
+    (2, 8, "axisymmetric", "TYPE=CPS4", "TYPE=SAX1"),
     (2, 14, "eall", "ELSET=eall, MATERIAL", "ELSET=eal, MATERIAL"),
     (2, 14, "steel", "MATERIAL=steel", "MATERIAL=steal"),
     (2, 22, "amplitude", "*CLOAD", "*CLOAD, AMPLITUDE=up"),
@@ -147,7 +147,7 @@ def test_odd_files_run_or_are_refused(
     assert found == code, said
     if code:
         assert "error" in said
-        assert "deck" in said or "node 3" in said or "step 1 stopped" in said
+        assert "deck" in said or "can turn about" in said or "step 1 stopped" in said
 
 
 def test_a_pipe_is_not_read_for_ever(deck: Path, capsys: pytest.CaptureFixture[str]) -> None:

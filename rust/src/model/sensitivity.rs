@@ -18,7 +18,7 @@ use crate::kinematics::integrate::{History, Local};
 use crate::kinematics::per_point::PerPoint;
 
 /// Derivatives that one evaluation of an element carries.
-const WIDTH: usize = 4;
+const WIDTH: usize = 2;
 /// Places of a number in a history.
 const STRIDE: usize = 1 + WIDTH;
 

@@ -41,7 +41,7 @@ def read_input(name: str, args: Any) -> Model:
         allow_include=args.allow_include,
         as_written=args.as_written,
         parameters=dict(getattr(args, "parameters", ())),
-        stages=args.stages,
+        stages=getattr(args, "stages", ()),
     )
 
 

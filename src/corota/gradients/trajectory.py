@@ -15,7 +15,7 @@ import numpy as np
 
 from corota.analysis.equations import System
 from corota.analysis.linear.solvers import make_solver
-from corota.analysis.terms.moving_mass import mass_of_step
+from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.errors import InputError, UnsupportedError
 from corota.gradients.surfaces import Surfaces, add_forces, find, refuse_surfaces
 from corota.model.user_material import UserMaterial
@@ -188,6 +188,7 @@ class Trajectory:
         model.
         """
         system = self.system
+        masses = masses_of_steps(self.steps)
         step, total, reaction = -1, 0.0, None
         u = np.zeros(system.n_dofs)
         for k, increment in enumerate(increments):
@@ -195,7 +196,7 @@ class Trajectory:
                 if step >= 0 and self.steps[step].procedure == "static":
                     total += self.steps[step].period
                 step += 1
-                system.mass = mass_of_step(self.steps, step + 1)
+                system.mass = masses[step]
                 system.begin(self.steps[step], total, u, reaction)
                 if np.any(system.conditions.fading):
                     dof = int(np.flatnonzero(system.conditions.fading)[0])

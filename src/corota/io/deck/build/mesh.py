@@ -320,7 +320,10 @@ class MeshBuilder:
         """Node indices of a block, -1 for unknown ones; of instances too, where it names them."""
         nodes = view.nodes(block.nodes)
         for at in zip(*np.nonzero(block.nodes < 0), strict=True):
-            found = view_of(self.views, self.deck.instance_nodes[-1 - block.nodes[at]])
+            name = -1 - int(block.nodes[at])
+            if name >= len(self.deck.instance_nodes):  # a negative label of the deck
+                continue
+            found = view_of(self.views, self.deck.instance_nodes[name])
             if found is not None:
                 nodes[at] = found[0].nodes(np.array([int(found[1])]))[0]
         return nodes
