@@ -1,4 +1,4 @@
-"""The core beside other users of the process: forks, threads."""
+"""The core beside other users of the process: signal handlers, forks, threads."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -34,6 +34,45 @@ def run(code: str, seconds: float = 60.0) -> str:
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGABRT"])
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ordering_leaves_the_signal_handlers_of_the_process(name: str) -> None:
+    """Each signal finds the handler that was set.
+
+    One signal comes from within the run, between the ordering of two models.
+    """
+    code = f"""
+import os, signal
+count = []
+signal.signal(signal.{name}, lambda *a: count.append(1))
+for _ in range(3):
+    tip(1)
+    os.kill(os.getpid(), signal.{name})
+print(len(count))
+"""
+    assert run(code).split() == ["3"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_a_signal_while_another_thread_orders_reaches_its_handler() -> None:
+    code = """
+import os, signal, threading, time
+count = []
+signal.signal(signal.SIGTERM, lambda *a: count.append(1))
+found = []
+worker = threading.Thread(target=lambda: found.append(tip(1, n=120)))
+worker.start()
+sent = 0
+while worker.is_alive():
+    os.kill(os.getpid(), signal.SIGTERM)
+    sent += 1
+    time.sleep(0.02)
+worker.join()
+print(sent > 3, len(count) >= 1, found[0] < 0.0)
+"""
+    assert run(code).split() == ["True", "True", "True"]
 
 
 @pytest.mark.skipif(not hasattr(sys, "getswitchinterval") or sys.platform == "win32", reason="fork")

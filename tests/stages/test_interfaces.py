@@ -60,7 +60,11 @@ def deck(folder: Path, comment: str = "**") -> Path:
 def rows(path: Path) -> dict[str, np.ndarray]:
     with open(path, encoding="utf-8", newline="") as file:
         head, *lines = csv.reader(file)
-    return dict(zip(head, np.array(lines, dtype=float).T, strict=True))
+    return dict(
+        zip(
+            head, np.array([[v or "nan" for v in row] for row in lines], dtype=float).T, strict=True
+        )
+    )
 
 
 @pytest.mark.parametrize("option", [True, False])

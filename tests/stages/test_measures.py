@@ -249,7 +249,9 @@ def files(everything: ct.Results, tmp_path_factory: pytest.TempPathFactory):
     path = everything.write(folder / "both.csv")
     with open(path, encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
-    table = dict(zip(head, np.array(rows, dtype=float).T, strict=True))
+    table = dict(
+        zip(head, np.array([[v or "nan" for v in row] for row in rows], dtype=float).T, strict=True)
+    )
     with ct.read_results(everything.write(folder / "both.vtkhdf")) as read:
         yield read, table
 

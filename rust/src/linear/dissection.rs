@@ -107,7 +107,9 @@ pub fn dissect(graph: Graph<'_>, shared: bool) -> Vec<u32> {
         (hubs, order) = (Vec::new(), (0..n).collect());
     }
     let number: Vec<AtomicU32> = (0..n).map(AtomicU32::new).collect();
-    hubs.iter().for_each(|&v| number[v as usize].store(DONE, Relaxed));
+    for &v in &hubs {
+        number[v as usize].store(DONE, Relaxed);
+    }
     let dissection = Dissection { graph, number: &number, shared };
     dissection.order(&mut order, !graph.points.is_empty(), &mut Scratch::default());
     order.extend(hubs);
@@ -190,7 +192,8 @@ impl Dissection<'_> {
         });
         let good = self.straight(part, scratch, &directions, along) && {
             self.refine(part, scratch);
-            let separator = scratch.sides.iter().filter(|&&side| side == SEPARATOR).count();
+            let separator: usize =
+                scratch.sides.iter().map(|&side| usize::from(side == SEPARATOR)).sum();
             part.len() <= JUDGED || separator <= POOR * part.len().isqrt()
         };
         scratch.points = points;
@@ -494,9 +497,13 @@ mod tests {
             near[a].push(b as u32);
             near[b].push(a as u32);
         }
-        near.iter_mut().for_each(|list| list.sort_unstable());
+        for list in &mut near {
+            list.sort_unstable();
+        }
         let mut xadj = vec![0];
-        near.iter().for_each(|list| xadj.push(xadj[xadj.len() - 1] + list.len() as u32));
+        for list in &near {
+            xadj.push(xadj[xadj.len() - 1] + list.len() as u32);
+        }
         (xadj, near.concat())
     }
 

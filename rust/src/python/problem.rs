@@ -500,8 +500,9 @@ impl PyProblem {
         }
         let state = of_blocks(&state)?;
         let known = self.inner.histories(false);
-        let fits = known.iter().zip(&state).all(|(k, s)| k.len() == s.len());
-        if !state.is_empty() && !(fits && known.len() == state.len()) {
+        let mut pairs = known.iter().zip(&state);
+        let fits = known.len() == state.len() && pairs.all(|(k, s)| k.len() == s.len());
+        if !(fits || state.is_empty()) {
             return Err(value_error("weights of the histories do not fit the problem"));
         }
         let weights = Weights { force, state: &state, wanted };

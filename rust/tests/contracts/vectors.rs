@@ -33,6 +33,7 @@ fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(ca
         parameter: E::parameter(&law.moduli()),
         law,
         mean_dilatation: false,
+        ring: false,
         finite: true,
     };
     let (mut x, mut u) = ([[0.0; 2]; N], [[0.0; M]; N]);

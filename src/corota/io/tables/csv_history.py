@@ -264,7 +264,7 @@ class CsvWriter:
             raise FileError(f"{self.path}: {len(rows)} rows, the checkpoint expects {count}")
         self._names = list(names)
         self._rows = [
-            {name: float(text) for name, text in zip(names, row, strict=False)}
+            {name: float(text or "nan") for name, text in zip(names, row, strict=False)}
             for row in rows[:count]
         ]
         replace_text(self.path, csv_text(self._rows, self._units))

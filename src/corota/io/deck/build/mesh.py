@@ -379,7 +379,7 @@ class MeshBuilder:
         bad = np.flatnonzero((nodes < 0).any(axis=1))
         for at in bad[:MAX_LISTED]:
             missing = block.nodes[at][nodes[at] < 0][0]
-            if missing < 0:
+            if missing < 0 and -1 - missing < len(self.deck.instance_nodes):
                 missing = self.deck.instance_nodes[-1 - missing]
             self._block_fault(block, int(at), f"node {missing} is not defined")
         self._more(len(bad), "elements have undefined nodes")
