@@ -47,17 +47,17 @@ def gap_of(contact: Contact, x: Array, old: Array | None = None) -> dict[str, Ar
 
 
 def test_partly_covered_edges_integrate_only_the_covered_part() -> None:
-    """One edge from 1 to 0 under a master from 0.25 on, gap 0.1 + 0.2 x."""
+    """One edge from 1 to 0 under a master from 0.25 on, gap 0.1 + 0.2 x.
+
+    Each corner has half of the covered part, and the gap at its end of it.
+    """
     slave = flat(np.array([1.0, 0.0]), 0.0)
     master = np.array([[0.25, 0.15], [2.25, 0.55]])
     X, contact = pair(slave, master, reach=2.0)
     d = gap_of(contact, X)
-    x = np.polynomial.Polynomial([0, 1])
-    for k, psi in enumerate((x, 1 - x)):
-        area = psi.integ()(1.0) - psi.integ()(0.25)
-        gap = ((0.1 + 0.2 * x) * psi).integ()
-        np.testing.assert_allclose(d["total_area"][k], area, rtol=1e-14)
-        np.testing.assert_allclose(d["total_gap"][k], gap(1.0) - gap(0.25), rtol=1e-14)
+    area = 0.5 * (1.0 - 0.25)
+    np.testing.assert_allclose(d["total_area"], area, rtol=1e-14)
+    np.testing.assert_allclose(d["total_gap"], [area * 0.3, area * 0.15], rtol=1e-14)
     np.testing.assert_allclose(contact.full_area, 0.5)
 
 

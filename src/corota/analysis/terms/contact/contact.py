@@ -10,7 +10,7 @@ directions come from the core.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 check_side = lazy("corota.analysis.terms.contact.side:check_side")
 corner_note = lazy("corota.analysis.terms.contact.advice:corner_note")
 fillet_note = lazy("corota.analysis.terms.contact.advice:fillet_note")
+tipping_or_sliding = lazy("corota.analysis.terms.contact.messages:tipping_or_sliding")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 
 #: Procedures that support contact and ties between surfaces.
@@ -224,8 +225,10 @@ class ContactTerm(Term):
             self._start(scheme == "central_difference")
         if self._stiff:
             self._damp()
+        constrained = self.system.by_node(cast("Any", self.system).constrained.astype(float))
         for pair in self.pairs:
             pair.fixed = pair.start = None
+            pair.hold(constrained)
         if self.persistent:
             x = self.positions(self.u)
             for pair in self.pairs:
@@ -554,6 +557,11 @@ class ContactTerm(Term):
             "ALLSD": self.damping_work,
             "ALLCL": float(sum(p.law_energy(t) for p, t in zip(self.pairs, terms, strict=False))),
         }
+
+    def gives_way(self) -> str:
+        """Whether the bodies tip or slide beyond the committed state, as a remark or empty."""
+        said: str = tipping_or_sliding(self) if self.pairs else ""
+        return said
 
     def label(self, pair: Pair, constraint: int) -> int:
         """The user's number of the slave node of a constraint, or of the corner."""

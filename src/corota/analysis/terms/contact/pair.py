@@ -94,6 +94,7 @@ class Pair:
         self.overlap = self.base = np.zeros(self.n)  # of the start, and offset of the gap
         self.first_gap = np.zeros(self.n)  # before the first increment
         self.owner = np.arange(self.n)  # constraint that owns a node's part
+        self.held = np.zeros(self.n, bool)  # whether supports hold its node
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
@@ -165,6 +166,11 @@ class Pair:
             terms = self.evaluate(x, x, term.system.nlgeom)
         return terms.bare or terms
 
+    def hold(self, constrained: Floats) -> None:
+        """Take the dofs that supports prescribe in a step, 1 or 0, shape (n_nodes, 3)."""
+        self.held = constrained[self.nodes, :2].all(axis=1)
+        self.held[self.of_nodes :] = False
+
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
         seen = terms.area > COVERED * self.full
@@ -227,7 +233,7 @@ class Pair:
             area = raw["total_area"]
             if self.frozen:
                 # An iterate far from the end of the increment may have seen little.
-                ample = area >= AMPLE * self.full
+                ample = (area >= AMPLE * self.full) & ~self.held
                 self.owner = np.where(ample, np.arange(self.n), self.owner)
             else:
                 self.owner = self._owners(area)
@@ -254,22 +260,24 @@ class Pair:
         )
 
     def _owners(self, area: Floats) -> Ints:
-        """Constraint that each node's part belongs to: its own, or a neighbour's.
+        """Constraint that each node's part belongs to: its own, or a neighbor's.
 
         At the end of the opposite surface a slave edge is partly covered. The node beyond would
-        have
-        a constraint on a negligible area, with any pressure; its neighbor's pressure acts there.
+        have a constraint on a negligible area, with any pressure; its neighbor's pressure acts
+        there. So it does at a node that supports hold: a traction there would not move the slave,
+        and could take any size.
         """
         own = np.arange(self.n)
         assert self.beside is not None
         cover = area / self.full
-        weak = cover < WEAK
+        weak = (cover < WEAK) | self.held
         if not weak.any():
             return own
         left, right = self.beside
+        cover = np.where(weak, 0.0, cover)
         a, b = (np.where(side >= 0, cover[side], 0.0) for side in (left, right))
         best, which = np.maximum(a, b), np.where(a >= b, left, right)
-        return np.where(weak & (best >= WEAK), which, own)
+        return np.where(weak & (best > 0.0), which, own)
 
     def _linear(self, x: Floats, old: Floats) -> Terms:
         """The pair as it is in the reference configuration, linear in displacement."""
