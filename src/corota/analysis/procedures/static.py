@@ -380,10 +380,12 @@ class StaticStepper(NewtonStepper):
                 moves = driven(system, step, state)
                 if not moves:
                     fails = collapse(system, number, factor, rates, said)
+                contact = system.contact_term.gives_way()
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
-                    f"{said}{stalled}{unstable(state)}. All converged increments are kept; to "
+                    f"{contact and f'{contact}; '}{said}{stalled}{unstable(state)}. All converged "
+                    "increments are kept; to "
                     f"continue, {ways(moves)}"
                 ) from None
             return False

@@ -36,9 +36,11 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
     yielding = ", with yielding (plastic collapse, unless its shape snaps)" * (
         not moves and _yields(system)
     )
+    contact = system.contact_term.gives_way()
     return (
         f"limit point at load factor {factor:.6g} of step {number}{yielding}: the structure "
-        "cannot carry more load in this equilibrium. The states up to it are kept; to continue, "
+        f"cannot carry more load in this equilibrium{contact and f' ({contact})'}. The states up "
+        "to it are kept; to continue, "
         f"{ways(moves, follow=step.at_limit == 'stop')}"
     )
 
@@ -131,6 +133,8 @@ def explained(
     )
     if collapses:
         where = f"{collapses}: {end}; last attempt: {outcome.reason}"
+    if contact := system.contact_term.gives_way():
+        where += f"; {contact}"
     if outcome.at is not None:
         norms = system.residual_norms(outcome.at, outcome.u)
         where += f"; largest residual at {system.describe(norms.worst)}"

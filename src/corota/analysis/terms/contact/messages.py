@@ -1,4 +1,4 @@
-"""What a failed increment hung on, in the words of the model."""
+"""What a failed increment hung on, and what gives way at a limit, in the words of the model."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -10,8 +10,12 @@ import numpy as np
 from corota.analysis.terms.contact.corners import sunk_corner
 
 if TYPE_CHECKING:
+    from corota.analysis.terms.contact.contact import ContactTerm
     from corota.analysis.terms.contact.problem import ContactEvaluation, ContactProblem
 
+#: Share of the force of a pair from which a node carries it alone, and of its friction bound from
+#: which friction is used up.
+WHOLE = 0.99
 #: How often a state must have changed to be named.
 OFTEN = 2
 
@@ -58,4 +62,30 @@ def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
     return said + sunk_corner(problem.contact_term)
 
 
-__all__ = ["explained"]
+def tipping_or_sliding(contact_term: ContactTerm) -> str:
+    """What the bodies do beyond the committed state: tip about a node, or slide; else empty."""
+    if contact_term.at is None:
+        return ""
+    each = zip(
+        contact_term.pairs,
+        contact_term.at.terms,
+        contact_term.parts(contact_term.committed),
+        strict=True,
+    )
+    for pair, terms, (p, q) in each:
+        force = p * terms.area
+        total = float(force.sum())
+        if pair.tied or total <= 0.0:
+            continue
+        k = int(np.argmax(force))
+        if pair.n > 1 and force[k] > WHOLE * total:
+            node = contact_term.label(pair, k)
+            return (
+                f"contact pair {pair.name!r} presses at node {node} alone, about which a body tips"
+            )
+        if pair.friction and float(np.abs(q * terms.area).sum()) > WHOLE * pair.friction * total:
+            return f"friction of contact pair {pair.name!r} is used up: a body slides"
+    return ""
+
+
+__all__ = ["explained", "tipping_or_sliding"]
