@@ -63,6 +63,11 @@ impl Element<3, 3, 0> for Opt {
         (beta0 > 0.0).then(|| 1.5 * beta0.sqrt())
     }
 
+    /// A constant stress acts on each edge with the thickness there, as a load on the edge does.
+    fn edge(share: f64, thickness: f64) -> f64 {
+        share * thickness
+    }
+
     #[inline(always)]
     fn prepare<T: Real>(x: &Nodal<T, 3, 2>, parameter: f64, sides: &[T; 3]) -> Prepared<T> {
         let dx = |i: usize, j: usize| x[i][0] - x[j][0];

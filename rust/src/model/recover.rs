@@ -221,7 +221,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             modes[m] = [alpha[2 * m], alpha[2 * m + 1]];
         }
         let parameter = own.parameter::<f64, N>(section);
-        let prepared = E::prepare(&x, parameter, &own.sides(E::ALPHA_B));
+        let prepared = E::prepare(&x, parameter, &own.sides(E::EDGE));
         let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
@@ -349,7 +349,7 @@ pub(super) fn strains<E, const N: usize, const M: usize, const A: usize>(
         }
         let own = chunk.per_point(e);
         let parameter = own.parameter::<f64, N>(section);
-        let prepared = E::prepare(&x, parameter, &own.sides(E::ALPHA_B));
+        let prepared = E::prepare(&x, parameter, &own.sides(E::EDGE));
         let bar = Dilatation::<f64, N, M>::new::<E, A>(&x, &frame.q, &modes, &prepared, section);
         let about =
             AboutMean::<f64, E::Op<f64>, N, M>::new::<E, A>(&x, &frame.q, &prepared, section);
