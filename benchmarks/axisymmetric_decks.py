@@ -28,9 +28,12 @@ from corota.io.deck.elements import ELEMENTS
 ANSWERS = Path(__file__).parents[1] / "tests" / "data" / "axisymmetric_decks.json"
 COUNT = 100
 TYPES = ("CAX8R", "CAX8", "CAX6", "CAX8R", "CAX8", "CAX4", "CAX6")
-#: Largest differences of displacements, relative to the largest: of the sector, with flat sides,
-#: with flow, whose increments differ, and of solids that are collapsed at the axis. CAX3 is not
-#: compared: its solids have two points, around the ring, and another stiffness on coarse meshes.
+#: Largest differences of displacements, relative to the largest, set after they were seen. The
+#: median is 1.4e-4, the sector's. At the axis they fall with the mesh (1.4e-3, 1.8e-4, 7e-5 with 1,
+#: 2, 3 times the cells). With flow they are 1e-4 in one linear step; under NLGEOM (to 2.9e-3) they
+#: grow with the strain, and after an ideally plastic reversal they are 2e-3 to 3e-3: neither falls
+#: with increments or mesh, and the reason is not known. CAX3 is not compared: it differs by up to
+#: 5e-2 on these coarse meshes, for a reason that is not known either.
 SECTOR, FLAT, FLOW, AT_AXIS = 5e-4, 5e-3, 4e-3, 2e-3
 MATERIALS = {
     "elastic": "*ELASTIC\n210000., .3\n",
