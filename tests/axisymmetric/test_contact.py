@@ -72,3 +72,25 @@ def test_sphere_on_a_rigid_plane(method: str) -> None:
     radius, peak = measured(results)
     assert radius == pytest.approx(0.6487154, rel=0.02)
     assert peak == pytest.approx(11.345743, rel=0.02)
+
+
+@pytest.mark.parametrize("method", ["mortar", "node_to_segment"])
+@pytest.mark.parametrize("element", ["Q4I", "Q8R"])
+def test_a_sleeve_is_pushed_along_a_rigid_bore(element: str, method: str) -> None:
+    """Pressed outward by p, with nu = 0: N = 2 pi b L (2 p a^2 / (a^2 + b^2)); drawn with mu N."""
+    cell = "quad8" if element == "Q8R" else "quad4"
+    mesh = ct.mesh.rectangle(10.0, 10.0, nx=6, ny=6, cell=cell)
+    mesh.points[:, 0] += 10.0
+    model = ct.Model(mesh)
+    model.section("all", element=element, material=ct.Elastic(1e6, 0.0), plane="axisymmetric")
+    bore = ct.RigidCurve.line((20.0, -40.0), (20.0, 40.0))
+    model.contact("right", bore, friction=0.2, method=method, name="bore")  # type: ignore[arg-type]
+    model.fix("left", x=None, y=0.0)
+    model.pressure("left", 10.0)
+    drawn = ct.Static()
+    drawn.fix("left", x=None, y=-1.0)
+    results = ct.solve(model, [ct.Static(), drawn], threads=1)
+    normal, along = (results.history(f"bore: force {axis}")[-1] for axis in "xy")
+    exact = 2.0 * np.pi * 20.0 * 10.0 * (2.0 * 10.0 * 100.0 / 500.0)
+    assert abs(normal) == pytest.approx(exact, rel=1e-2)
+    assert abs(along / normal) == pytest.approx(0.2, rel=1e-3)

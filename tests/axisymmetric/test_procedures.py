@@ -89,3 +89,30 @@ def test_a_steep_disc_spring_has_a_limit_point() -> None:
     results = ct.solve(model, ct.Static(path=path, increments=8), threads=1)
     kinds = [point.kind for point in results.critical_points]
     assert "limit" in kinds
+
+
+def test_a_cylinder_buckles_at_the_classical_stress_and_at_half_of_it_from_a_free_edge() -> None:
+    """E t / (R sqrt(3 (1 - nu^2))); a free edge halves it (Nachbar and Hoff 1962)."""
+    mesh = ct.mesh.rectangle(1.0, 60.0, nx=2, ny=120, cell="quad8")
+    mesh.points[:, 0] += 99.5
+    model = ct.Model(mesh)
+    model.section("all", element="Q8R", material=ct.Elastic(E, NU), plane="axisymmetric")
+    model.fix("bottom", x=None)
+    model.traction("top", y=-1.0)
+    factors = ct.solve(model, ct.Buckle(modes=2), threads=1).modes[0].factors
+    classical = E * 1.0 / (100.0 * np.sqrt(3.0 * (1.0 - NU**2)))
+    assert factors[0] == pytest.approx(0.5 * classical, rel=5e-3)
+    assert factors[1] == pytest.approx(classical, rel=0.05)  # the length holds few waves
+
+
+def test_an_initial_stress_relaxes_in_one_increment() -> None:
+    """Radial and hoop stress s in a free ring: u = -s (1 - nu) r / E."""
+    mesh = ct.mesh.rectangle(10.0, 5.0, nx=4, ny=2, cell="quad8")
+    mesh.points[:, 0] += 10.0
+    model = ct.Model(mesh)
+    model.section("all", element="Q8R", material=ct.Elastic(E, NU), plane="axisymmetric")
+    model.fix("bottom", x=None)
+    model.initial_stress("all", xx=100.0, zz=100.0)
+    results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+    found = results.history("U1", at="right")[-1]
+    assert found == pytest.approx(-100.0 * (1.0 - NU) * 20.0 / E, rel=1e-10)

@@ -68,3 +68,9 @@ def test_dollar_signs_in_names_are_drawn(tmp_path):
     results = ct.solve(model, ct.Static())
     model.plot(path=tmp_path / "model.png")
     results.plot("MISES", path=tmp_path / "mises.png")
+
+
+@pytest.mark.parametrize("curve", [240.0, [240.0, 300.0], [("high", 0.0)]])
+def test_a_yield_curve_is_rows_of_two_numbers(curve):
+    with pytest.raises(InputError, match="yield_curve is rows of"):
+        ct.Mises(210e3, 0.3, curve)

@@ -120,7 +120,15 @@ class Mises(LawOfTheCore):
                     "or give yield_stress instead of the curve",
                     self.where,
                 )
-            self._check_curve([(float(s), float(p)) for s, p in self.yield_curve])
+            try:
+                curve = [(float(s), float(p)) for s, p in self.yield_curve]
+            except (TypeError, ValueError):
+                raise InputError(
+                    "yield_curve is rows of (stress, plastic strain); for one stress give "
+                    "yield_stress",
+                    self.where,
+                ) from None
+            self._check_curve(curve)
         else:
             assert self.yield_stress is not None
             _positive(self.yield_stress, "the yield stress", self.where)
