@@ -25,7 +25,7 @@ DECKS = Path(__file__).parent / "decks"
 REFUSED = {
     "free_bodies": (3, "the part with element 7 can turn about"),
     "free_in_x": (3, "part with element 1 can move in x"),
-    "free_with_contact": (3, "the part with element 1 can"),
+    "free_with_contact": (3, "the part with element 1 can move in x"),
     "loose_tie": (3, "parts with element 1, 2 can move in x"),
     "stabilise_gap_flies": (4, "stopped at"),
     "stabilised_pulled_away": (4, "part with element 2 can move in y"),
