@@ -12,9 +12,6 @@ with flat sides (CAX4); it has no CAX4I.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import argparse
-import json
-from collections import Counter
 from pathlib import Path
 from random import Random
 
@@ -22,7 +19,7 @@ import numpy as np
 
 import corota as ct
 from benchmarks.structure_decks import Deck as _Deck
-from benchmarks.structure_decks import by_ccx, by_corota, difference
+from benchmarks.structure_decks import run
 from corota.io.deck.elements import ELEMENTS
 
 ANSWERS = Path(__file__).parents[1] / "tests" / "data" / "axisymmetric_decks.json"
@@ -152,38 +149,5 @@ def _step(
     return "\n".join(out) + "\n"
 
 
-def main() -> None:
-    """Run the decks."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--stored", action="store_true", help="compare with the stored answers")
-    parser.add_argument("--show", type=int, help="print one deck and both answers")
-    parser.add_argument("--count", type=int, default=COUNT)
-    given = parser.parse_args()
-    if given.show is not None:
-        deck = generate(given.show)
-        print(deck.given)
-        print("CalculiX", by_ccx(deck))
-        print("Corota  ", by_corota(deck))
-        return
-    stored = json.loads(ANSWERS.read_text()) if given.stored else {}
-    kept: dict[str, list[float]] = {}
-    counts: Counter[str] = Counter()
-    for number in range(given.count):
-        deck = generate(number)
-        theirs = stored.get(str(number)) if given.stored else by_ccx(deck)
-        if theirs is None:
-            counts["not finished by CalculiX"] += 1
-            continue
-        kept[str(number)] = theirs
-        error = difference(by_corota(deck), theirs)
-        found = "agreeing" if error <= deck.tolerance else "differing"
-        counts[found] += 1
-        if found == "differing":
-            print(f"deck {number} ({deck.theme}): {error:.2e}", flush=True)
-    if not given.stored:
-        ANSWERS.write_text(json.dumps(kept, separators=(",", ":")) + "\n")
-    print(f"generated {given.count}: " + ", ".join(f"{n} {what}" for what, n in counts.items()))
-
-
 if __name__ == "__main__":
-    main()
+    run(__doc__, generate, COUNT, ANSWERS)

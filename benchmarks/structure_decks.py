@@ -21,10 +21,14 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import corota as ct
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ANSWERS = Path(__file__).parents[1] / "tests" / "data" / "structure_decks.json"
 COUNT = 120
@@ -263,12 +267,26 @@ def difference(ours: list[float], theirs: list[float]) -> float:
     return float(np.abs(a - b).max() / np.abs(b).max()) if len(a) == len(b) else float("inf")
 
 
-def main() -> None:
-    """Run the decks."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def run(
+    description: str | None, generate: Callable[[int], Deck], count: int, answers: Path
+) -> None:
+    """Command line of generated decks: run, compare with CalculiX or its stored answers, count.
+
+    Parameters
+    ----------
+    description : str or None
+        Of the command.
+    generate : callable
+        Makes the deck of a number.
+    count : int
+        Number of decks by default.
+    answers : Path
+        Where the answers of CalculiX are stored.
+    """
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--stored", action="store_true", help="compare with the stored answers")
     parser.add_argument("--show", type=int, help="print one deck and both answers")
-    parser.add_argument("--count", type=int, default=COUNT)
+    parser.add_argument("--count", type=int, default=count)
     given = parser.parse_args()
     if given.show is not None:
         deck = generate(given.show)
@@ -276,7 +294,7 @@ def main() -> None:
         print("CalculiX", by_ccx(deck))
         print("Corota  ", by_corota(deck))
         return
-    stored = json.loads(ANSWERS.read_text()) if given.stored else {}
+    stored = json.loads(answers.read_text()) if given.stored else {}
     kept: dict[str, list[float]] = {}
     counts: Counter[str] = Counter()
     for number in range(given.count):
@@ -292,9 +310,9 @@ def main() -> None:
         if found == "differing":
             print(f"deck {number} ({deck.theme}): {error:.2e}")
     if not given.stored:
-        ANSWERS.write_text(json.dumps(kept, separators=(",", ":")) + "\n")
+        answers.write_text(json.dumps(kept, separators=(",", ":")) + "\n")
     print(f"generated {given.count}: " + ", ".join(f"{n} {what}" for what, n in counts.items()))
 
 
 if __name__ == "__main__":
-    main()
+    run(__doc__, generate, COUNT, ANSWERS)

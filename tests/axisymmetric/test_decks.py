@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import corota as ct
-from benchmarks.axisymmetric_decks import ANSWERS, by_corota, difference, generate
+from benchmarks.axisymmetric_decks import ANSWERS, generate
+from benchmarks.structure_decks import by_corota, difference
 from corota.io.deck.write.model import write_deck
 
 STORED = json.loads(ANSWERS.read_text(encoding="utf-8"))
