@@ -8,7 +8,7 @@ import pytest
 
 from corota.errors import InputError
 from corota.io.job import JobFiles
-from corota.io.requests import due, due_now, in_force, last_of_steps, left_over
+from corota.io.requests import Requests, due, in_force, last_of_steps
 from corota.io.result_reader import read_results
 from corota.io.tables.dat import check_requests, dat_blocks
 from corota.io.tables.dat_numbers import fortran
@@ -204,16 +204,15 @@ def test_iteration_that_overflowed_is_a_large_number(bad):
 def test_requests_carry_over_by_kind():
     a, b, c = (Output(k, ("U",)) for k in ("node print", "el print", "node print"))
     steps = [Static(outputs=[a, b]), Static(outputs=[c]), Static()]
-    assert in_force(steps, 1) == [a, b]
-    assert in_force(steps, 2) == [b, c]
-    assert in_force(steps, 3) == [b, c]
+    assert in_force(steps) == [[a, b], [b, c], [b, c]]
 
 
 def test_frequency_asks_for_every_so_many_and_the_last(model, fake):
     model.steps[0].outputs = [Output("node print", ("U",), frequency=3)]
     frames = [fake.state(model, 1, i, i / 4, i / 4) for i in range(5)]
-    now = [len(due_now(model, model.steps, f)) for f in frames]
-    rest = [len(left_over(model, model.steps, f)) for f in frames]
+    requests = Requests(model, model.steps)
+    now = [len(requests.due_now(f)) for f in frames]
+    rest = [len(requests.left_over(f)) for f in frames]
     assert now == [0, 0, 0, 1, 0]
     assert rest == [0, 1, 1, 0, 1]
 

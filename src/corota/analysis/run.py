@@ -193,6 +193,7 @@ class Analysis:
         )
         self.results.steps = self.steps
         self.masses = masses_of_steps(self.steps)
+        self.requests = in_force(self.steps)
         for note in notes:
             self.results.notes.append(note)
             warnings.warn(note, stacklevel=3)
@@ -311,7 +312,7 @@ class Analysis:
         def save(state: State, increment: int, factor: float, scalars: dict[str, float]) -> None:
             self._save(number, state, increment, factor, scalars)
 
-        self.observers.requests = in_force(self.steps, number)
+        self.observers.requests = self.requests[number - 1]
         stops = self._stops()
         if state.resumption is not None and state.resumption.checkpoint.leave_step:
             self._leave(state)

@@ -82,7 +82,7 @@ class FileOptions:
         if self.fields == "all":
             return None
         if self.fields == "requested":
-            outputs = [o for s in steps for o in s.outputs if o.kind.endswith(" file")]
+            outputs = [o for s in steps for o in s.outputs if o.of_file]
             if not outputs:
                 return None
             names: list[str] = [name for o in outputs for name in o.variables]

@@ -19,7 +19,7 @@ from corota.io.file_options import CHECKPOINTS, LEVEL, FileOptions
 from corota.io.finite import check_frame
 from corota.io.folder_lock import FolderLock
 from corota.io.provenance import source_of
-from corota.io.requests import due_now, left_over, wants_file
+from corota.io.requests import Requests
 from corota.io.stop_request import StopRequest, stop_file
 from corota.io.tables.csv_history import CsvWriter, Histories
 from corota.io.tables.sta import CVG_HEAD, STA_HEAD, cvg_line, sta_failed, sta_line
@@ -188,6 +188,7 @@ class JobFiles(BaseObserver):
         if self._printed:
             check_requests(steps)
         self.model, self.steps = model, steps
+        self._requests = Requests(model, steps)
         name = self._checked_name(model)
         self._place = self._source
         if not self._place and model.sources:
@@ -385,7 +386,7 @@ class JobFiles(BaseObserver):
         writer = Writer({})
         if self._newest is not None:
             frame, filed = self._newest
-            if not filed or left_over(self.model, self.steps, frame):
+            if not filed or self._requests.left_over(frame):
                 newest = [writer.write(frame), len(checkpoint.arrays)]
             known["filed"] = filed
         files = known | {
@@ -556,8 +557,8 @@ class JobFiles(BaseObserver):
         self._csv.add(row)
         if "dat" in self._text:
             self._text["dat"].append(buckling_table(frame) + eigenvalue_tables(frame))
-        self._answer(due_now(self.model, self.steps, frame), frame)
-        filed = wants_file(self.model, self.steps, frame)
+        self._answer(self._requests.due_now(frame), frame)
+        filed = self._requests.wants_file(frame)
         if filed:
             self._file(frame)
         self._newest = (frame, filed)
@@ -568,7 +569,7 @@ class JobFiles(BaseObserver):
             return
         frame, filed = self._newest
         self._newest = None
-        self._answer(left_over(self.model, self.steps, frame), frame)
+        self._answer(self._requests.left_over(frame), frame)
         if not filed:
             self._file(frame)
 

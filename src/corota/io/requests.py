@@ -37,34 +37,43 @@ def due(output: Output, frame: Frame, step: Step, model: Model) -> bool:
     return output.frequency > 0 and frame.increment % output.frequency == 0
 
 
-def due_now(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
-    """Requests that are due at a frame immediately."""
-    if not 1 <= frame.step <= len(steps):
-        return []
-    step = steps[frame.step - 1]
-    return [o for o in in_force(steps, frame.step) if due(o, frame, step, model)]
+class Requests:
+    """Output requests of a run.
 
-
-def left_over(model: Model, steps: Sequence[Step], frame: Frame) -> list[Output]:
-    """Requests that are due at a frame only because it is the last of its step."""
-    if frame.increment == 0:
-        return []
-    done = due_now(model, steps, frame)
-    return [o for o in in_force(steps, frame.step) if o not in done]
-
-
-def wants_file(model: Model, steps: Sequence[Step], frame: Frame) -> bool:
-    """Whether a frame goes into the result file at once.
-
-    Every frame does, unless ``*NODE FILE`` or ``*EL FILE`` requests thin them out.
+    Parameters
+    ----------
+    model : Model
+    steps : sequence of Step
     """
-    if frame.increment == 0 or not any(map(_of_file, in_force(steps, frame.step))):
-        return True
-    return any(map(_of_file, due_now(model, steps, frame)))
 
+    def __init__(self, model: Model, steps: Sequence[Step]) -> None:
+        self._model, self._steps, self._in_force = model, steps, in_force(steps)
 
-def _of_file(output: Output) -> bool:
-    return output.kind.endswith(" file")
+    def active(self, frame: Frame) -> list[Output]:
+        """Requests of the step of a frame; none for a frame of no listed step."""
+        return self._in_force[frame.step - 1] if 1 <= frame.step <= len(self._steps) else []
+
+    def due_now(self, frame: Frame) -> list[Output]:
+        """Requests that are due at a frame immediately."""
+        return [
+            o for o in self.active(frame) if due(o, frame, self._steps[frame.step - 1], self._model)
+        ]
+
+    def left_over(self, frame: Frame) -> list[Output]:
+        """Requests that are due at a frame only because it is the last of its step."""
+        if frame.increment == 0:
+            return []
+        done = self.due_now(frame)
+        return [o for o in self.active(frame) if o not in done]
+
+    def wants_file(self, frame: Frame) -> bool:
+        """Whether a frame goes into the result file at once.
+
+        Every frame does, unless ``*NODE FILE`` or ``*EL FILE`` requests thin them out.
+        """
+        if frame.increment == 0 or not any(o.of_file for o in self.active(frame)):
+            return True
+        return any(o.of_file for o in self.due_now(frame))
 
 
 def last_of_steps(frames: Sequence[Frame]) -> list[bool]:

@@ -75,15 +75,15 @@ def _csv(results: Results, path: Path) -> None:
 
 def _dat(results: Results, path: Path) -> None:
     from corota.io.atomic_file import replace_text
-    from corota.io.requests import due_now, last_of_steps, left_over
+    from corota.io.requests import Requests, last_of_steps
     from corota.io.tables.dat import check_requests, dat_blocks
 
     model = results.model
     check_requests(model.steps)
-    text = []
+    requests, text = Requests(model, model.steps), []
     for frame, last in zip(results.frames, last_of_steps(results.frames), strict=True):
-        requested = due_now(model, model.steps, frame)
-        requested += left_over(model, model.steps, frame) if last else []
+        requested = requests.due_now(frame)
+        requested += requests.left_over(frame) if last else []
         text.append(dat_blocks(model, requested, frame))
     replace_text(path, "".join(text))
 

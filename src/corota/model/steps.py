@@ -86,18 +86,25 @@ class Output(Brief):
     in_global: bool = False
     every: bool = False
 
+    @property
+    def of_file(self) -> bool:
+        """Whether it chooses what goes into result files."""
+        return self.kind.endswith(" file")
 
-def in_force(steps: Sequence[Step], number: int) -> list[Output]:
-    """Active requests of a step (from 1), earlier ones first.
+
+def in_force(steps: Sequence[Step]) -> list[list[Output]]:
+    """Active requests of each step, earlier ones first.
 
     As in CalculiX: a card kind that the step does not use keeps the requests of the step before;
     one that it uses replaces them.
     """
+    found: list[list[Output]] = []
     kept: list[Output] = []
-    for step in steps[:number]:
+    for step in steps:
         new = {o.kind for o in step.outputs}
         kept = [o for o in kept if o.kind not in new] + list(step.outputs)
-    return kept
+        found.append(kept)
+    return found
 
 
 @dataclass(kw_only=True, repr=False)

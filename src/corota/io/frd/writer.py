@@ -24,10 +24,10 @@ from corota.io.frd.layout import (
     VELO,
     blocks,
 )
+from corota.io.requests import Requests
 from corota.io.tables.dat import internal_force
 from corota.io.vtk.frame_arrays import point_data
 from corota.model.contact import edges_or_nodes
-from corota.model.steps import in_force
 from corota.results.averaging import Averaging, section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
@@ -101,7 +101,8 @@ class FrdWriter:
         resume: dict[str, Any] | None = None,
         sections: Ints | None = None,
     ) -> None:
-        self.path, self._model, self._steps, self._binary = path, model, steps, binary
+        self.path, self._model, self._binary = path, model, binary
+        self._requests = Requests(model, steps)
         fields = (options or FileOptions()).fields
         self._fields = None if isinstance(fields, str) else {name.upper() for name in fields}
         groups = section_of_cells(model) if sections is None else sections
@@ -334,8 +335,7 @@ class FrdWriter:
     def _wanted(self, block: Block, frame: Frame) -> bool:
         if self._fields is not None:
             return block is DISP or block.request in self._fields or block.name in self._fields
-        held = in_force(self._steps, frame.step) if frame.step <= len(self._steps) else []
-        requested = [o for o in held if o.kind.endswith(" file")]
+        requested = [o for o in self._requests.active(frame) if o.of_file]
         if not requested:
             return True
         names = {name for o in requested for name in o.variables}
