@@ -1,13 +1,14 @@
 """The fault campaign: random and listed faults, and what became of each.
 
     python -m benchmarks.faults [--inputs N] [--runs N] [--folders N] [--seed N] [--jobs N]
-        [--keep DIR]
+        [--keep DIR] [--fresh]
 
 Without options 100,000 inputs go through the readers in-process, 5,000 whole runs and 5,000
 commands in received folders (links, pipes, includes, foreign files, stores, little memory) are made
 in processes of their own, beside the listed faults, full disks, little memory, signals, damaged
 results and thread counts. The end counts crashes, hangs, silent successes, tracebacks, wrong exit
-codes and numbers that are none behind exit 0; it ends with 1 if there is any.
+codes and numbers that are none behind exit 0; it ends with 1 if there is any. The counts of each
+part are kept in ``build/faults.jsonl``: a campaign that was ended goes on where it was.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -25,6 +26,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from pathlib import Path
 
+from benchmarks.campaign_store import CampaignStore
 from benchmarks.common import machine, table
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -120,24 +122,30 @@ def main() -> int:
     parser.add_argument("--folders", type=int, default=5_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--fresh", action="store_true", help="forget the store")
     parser.add_argument("--keep", default=str(ROOT / "build" / "finds"), help="inputs that failed")
     args = parser.parse_args()
     for name in ("OMP", "OPENBLAS", "MKL", "RAYON"):
         os.environ.setdefault(f"{name}_NUM_THREADS", "1")
     start, outcomes = time.perf_counter(), listed()
+    store = CampaignStore("faults", args.fresh)
     parts = tasks(args.inputs, args.runs, args.folders, args.seed)
+    for part in filter(store.__contains__, parts):
+        outcomes += Counter(store[part])
     with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(task, *part, args.keep): part for part in parts}
+        todo = [part for part in parts if part not in store]
+        waiting = {pool.submit(task, *part, args.keep): part for part in todo}
         for number, future in enumerate(as_completed(waiting), 1):
             part = waiting[future]
             try:
-                outcomes += future.result()
+                store[part] = future.result()
+                outcomes += store[part]
             except BrokenProcessPool:
                 outcomes[f"{part[0]}: crash of the process of seed {part[2]}"] += 1
             except Exception as error:
                 outcomes[f"{part[0]}: failure of the campaign: {error!r:.80}"] += 1
             if number % 10 == 0:
-                sys.stderr.write(f"{number} of {len(parts)} parts\n")
+                sys.stderr.write(f"{number} of {len(todo)} parts\n")
     rows = [[name, count] for name, count in sorted(outcomes.items())]
     bad = Counter({name: 0 for name in CLASSES})
     for name, count in outcomes.items():

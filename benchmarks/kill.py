@@ -8,6 +8,7 @@ the clock. After each strike every result file is opened by h5py and, where it i
 VTK's reader; the frames and rows found must be the first ones of the run that was never stopped.
 In the end all files must be the same. Then checkpoints are damaged (``--damaged 500``): what a run
 makes of them must be the same too, or an error. ``--write`` puts the table into docs/restart.md.
+The runs are kept in ``build/kill.jsonl``: a campaign that was ended goes on where it was.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause
@@ -35,6 +36,7 @@ import h5py
 import numpy as np
 
 import corota as ct
+from benchmarks.campaign_store import CampaignStore
 from benchmarks.common import machine, write_between
 from benchmarks.kill_worker import JOB, Case, Strike, run
 from benchmarks.restart_cases import DECKS, EXAMPLES, MODELS, SWEEPS
@@ -386,6 +388,7 @@ class Plan:
     seed: int
     jobs: int
     base: Path
+    store: CampaignStore
 
 
 def campaign(plan: Plan, part: int) -> tuple[dict[str, Tally], Tally]:
@@ -397,13 +400,16 @@ def campaign(plan: Plan, part: int) -> tuple[dict[str, Tally], Tally]:
     for number in range(plan.runs):
         if number % len(wanted) % plan.jobs != part or time.monotonic() > late:
             continue
-        own = _known(wanted[number % len(wanted)], plan.base, known)
-        folder = own.folder.with_name(f"run{number}")
-        tally = tallies[own.case.kind]
-        faults = len(tally.faults)
-        rng = random.Random(f"{plan.seed} {number}")
-        struck_run(own, folder, plan.by_term, rng, tally)
-        _tell(tally.faults[faults:], folder)
+        case = wanted[number % len(wanted)]
+        key = [case.name, number, plan.seed, plan.by_term]
+        if key not in plan.store:
+            own = _known(case, plan.base, known)
+            folder, tally = own.folder.with_name(f"run{number}"), Tally()
+            rng = random.Random(f"{plan.seed} {number}")
+            struck_run(own, folder, plan.by_term, rng, tally)
+            _tell(tally.faults, folder)
+            plan.store[key] = vars(tally)
+        tallies[case.kind].add(Tally(**plan.store[key]))
     rng, other = random.Random(f"{plan.seed} damaged {part}"), b""
     share = math.ceil(plan.damaged / plan.jobs)
     for case in wanted[part :: plan.jobs]:
@@ -424,6 +430,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="cases whose name holds this")
     parser.add_argument("--seed", type=int, default=17)
     parser.add_argument("--jobs", type=int, default=1, help="parts that run side by side")
+    parser.add_argument("--fresh", action="store_true", help="forget the store")
     parser.add_argument("--write", action="store_true", help="put the table into docs/restart.md")
     args = parser.parse_args()
     base = Path(tempfile.mkdtemp(prefix="corota-kill-"))
@@ -436,6 +443,7 @@ def main() -> int:
         args.seed,
         args.jobs,
         base,
+        CampaignStore("kill", args.fresh),
     )
     _load()
     begin = time.monotonic()

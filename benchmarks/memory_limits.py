@@ -14,7 +14,9 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -25,13 +27,12 @@ from pathlib import Path
 import numpy as np
 
 import corota as ct
+from benchmarks.campaign_store import CampaignStore
 from benchmarks.common import machine, table
 from benchmarks.restart_cases import DECKS
 
-ROOT = Path(__file__).resolve().parents[1]
-STORE = ROOT / "build" / "memory_limits.jsonl"
-#: Seconds that a run may take.
-LATE = 120
+#: Seconds that a run may take: of the processor, and by the clock of a busy machine.
+LIMIT, CLOCK = 60, 900
 JOBS = {
     "plastic": DECKS["isotropic hardening"],
     "contact": DECKS["contact, friction"],
@@ -99,15 +100,23 @@ def run(way: str, job: str, limit: int, threads: int, folder: Path, whole: Path)
     folder.mkdir(parents=True)
     (folder / "job.inp").write_text(JOBS[job]())
     surroundings = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
+
+    def bounded() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 5))
+
     try:
         done = subprocess.run(
             command(way, job, limit, threads),
-            cwd=folder, env=surroundings, capture_output=True, text=True, timeout=LATE, check=False,
+            cwd=folder, env=surroundings, capture_output=True, text=True, timeout=CLOCK,
+            check=False, preexec_fn=bounded,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
-        return "hang"
+        return "hang, waiting"
     said = done.stderr.strip()
     code = done.returncode if done.returncode < 128 else 128 - done.returncode
+    # The signal at the limit of processor time ends a run with 7; what does not heed it is killed.
+    if code in (7, -signal.SIGXCPU, -signal.SIGKILL):
+        return "hang, working"
     if code < 0:
         return f"signal {-code}: {said[:100]}"
     if code not in (0, 5):
@@ -187,16 +196,9 @@ def main() -> int:
     parser.add_argument("--both", action="store_true", help="from shell and Python, not in turn")
     parser.add_argument("--fresh", action="store_true", help="forget the store")
     args = parser.parse_args()
-    STORE.parent.mkdir(exist_ok=True)
-    if args.fresh:
-        STORE.unlink(missing_ok=True)
-    done = {}
-    if STORE.exists():
-        for line in STORE.read_text().splitlines():
-            row = json.loads(line)
-            done[tuple(row["case"])] = row["outcome"]
+    done = CampaignStore("memory_limits", args.fresh)
     begin, wanted = time.perf_counter(), cases(args.limits, args.threads, args.only, args.both)
-    with tempfile.TemporaryDirectory(prefix="corota-memory-") as name, open(STORE, "a") as store:
+    with tempfile.TemporaryDirectory(prefix="corota-memory-") as name:
         base = Path(name)
         for job in {case[1] for case in wanted if case not in done}:
             outcome = run("shell", job, 1 << 20, 1, base / job, base / job)
@@ -207,8 +209,6 @@ def main() -> int:
                 continue
             way, job, limit, count = case
             done[case] = run(way, job, limit, count, base / "run", base / job)
-            store.write(json.dumps({"case": case, "outcome": done[case]}) + "\n")
-            store.flush()
             if not done[case].startswith("exit "):
                 sys.stderr.write(f"{case}: {done[case]}\n")
     counts = Counter(
