@@ -11,6 +11,8 @@ import pytest
 import corota as ct
 from corota.errors import InputError
 from corota.model.units import Units
+from corota.results.table import TABLE
+from corota.results.variables import dimension
 
 
 def strip(**material: float) -> ct.Model:
@@ -61,6 +63,13 @@ def test_units_that_do_not_fit_are_refused(names: tuple[str], text: str) -> None
 )
 def test_consistent_systems_are_taken(names: tuple[str]) -> None:
     strip().units(*names)
+
+
+def test_a_variable_has_the_dimension_of_its_components() -> None:
+    """Whole tensors and vectors too: xarray had stresses without a unit."""
+    assert dimension("S") == "force/length^2"
+    for name, row in TABLE.items():
+        assert {dimension(part) for part, _ in row.parts} == {dimension(name)}, name
 
 
 def test_a_comment_of_a_deck_names_the_units(tmp_path: Path) -> None:

@@ -9,13 +9,14 @@ import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
-from unittest.mock import MagicMock
+from unittest.mock import MagicMock, call
 
 import pytest
 
 import corota as ct
 from corota.cli import main
 from corota.io.paraview import write_paraview
+from corota.results.table import POSITIVE
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +42,8 @@ def run(script: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     names += ("ResetCamera", "Render", "SaveScreenshot")
     for name in names:
         setattr(simple, name, MagicMock(name=name))
+    colors = simple.GetColorTransferFunction.return_value
+    colors.RGBPoints = [-3.0, 0.0, 0.0, 1.0, 2.0, 1.0, 0.0, 0.0]
     monkeypatch.setitem(sys.modules, "paraview", ModuleType("paraview"))
     monkeypatch.setitem(sys.modules, "paraview.simple", simple)
     monkeypatch.setattr(sys, "argv", [str(script), "picture.png"])
@@ -79,7 +82,10 @@ def test_what_is_named_is_in_the_file(
     from vtkmodules.vtkIOHDF import vtkHDFReader
 
     script = write_paraview(folder / "part.vtkhdf", field, scale=2.0)
-    colored = run(script, monkeypatch)["ColorBy"].call_args.args[1]
+    calls = run(script, monkeypatch)
+    colored = calls["ColorBy"].call_args.args[1]
+    rescaled = calls["GetColorTransferFunction"].return_value.RescaleTransferFunction
+    assert rescaled.call_args_list == ([] if field in POSITIVE else [call(-3.0, 3.0)])
     reader = vtkHDFReader()
     reader.SetFileName(str(folder / "part.vtkhdf"))
     reader.UpdateInformation()

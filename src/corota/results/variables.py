@@ -92,6 +92,8 @@ def dimension(name: str) -> str:
     variable = re.sub("^(largest|smallest) ", "", name).split(" ")[0].rstrip(":")
     if variable in DERIVED:
         return variables()[variable].dimension
+    if variable in TABLE:
+        return TABLE[variable].dimension
     return DIMENSIONS.get(variable, DIMENSIONS.get(f"{variable}1", ""))
 
 
