@@ -7,7 +7,7 @@
 //! stretches coincide, so that this limit needs no case of its own.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::Real;
+use crate::base::{Job, Real};
 use crate::base::small::Mat;
 
 /// Largest `w` for which the series is summed.
@@ -15,9 +15,25 @@ const SERIES: f64 = 0.1;
 /// Terms that reach round-off there.
 const TERMS: usize = 18;
 
-/// `phi` with its first and second derivatives.
+struct Phi<T>(T);
+
+impl<T: Real> Job for Phi<T> {
+    type Output = [T; 3];
+    #[inline(always)]
+    fn run(self) -> [T; 3] {
+        phi_inline(self.0)
+    }
+}
+
+/// `phi` with its first and second derivatives. Out of line for single numbers; the parts of a
+/// batch's strain, stress and tangent share it where it is inlined.
 #[inline(always)]
 fn phi<T: Real>(w: T) -> [T; 3] {
+    if T::LANES == 1 { T::apart(Phi(w)) } else { phi_inline(w) }
+}
+
+#[inline(always)]
+fn phi_inline<T: Real>(w: T) -> [T; 3] {
     let mut p = [T::zero(); 3];
     let bounded = w.min(T::real(SERIES));
     for k in (0..TERMS).rev() {

@@ -287,6 +287,44 @@ pub(super) fn pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
     alpha: &Nodal<T, A, 2>,
     section: &Section<N>,
     history: &mut History<'_>,
+    out: Option<&mut Local<T, N, M>>,
+    tangent: bool,
+) -> Internal<T, N, M>
+where
+    E: Element<N, M, A>,
+{
+    if T::LANES == 1 && A > 0 {
+        single_pass::<E, T, N, M, A>(x, q, alpha, section, history, out, tangent)
+    } else {
+        points::<E, T, N, M, A>(x, q, alpha, section, history, out, tangent)
+    }
+}
+
+/// [`points`] out of line: one instance for the internal modes and for what follows.
+#[inline(never)]
+fn single_pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    alpha: &Nodal<T, A, 2>,
+    section: &Section<N>,
+    history: &mut History<'_>,
+    out: Option<&mut Local<T, N, M>>,
+    tangent: bool,
+) -> Internal<T, N, M>
+where
+    E: Element<N, M, A>,
+{
+    points::<E, T, N, M, A>(x, q, alpha, section, history, out, tangent)
+}
+
+/// The loop of [`pass`].
+#[inline(always)]
+fn points<E, T: Real, const N: usize, const M: usize, const A: usize>(
+    x: &Nodal<T, N, 2>,
+    q: &Nodal<T, N, M>,
+    alpha: &Nodal<T, A, 2>,
+    section: &Section<N>,
+    history: &mut History<'_>,
     mut out: Option<&mut Local<T, N, M>>,
     tangent: bool,
 ) -> Internal<T, N, M>

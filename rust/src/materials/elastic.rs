@@ -16,6 +16,7 @@ pub struct Elastic {
 impl Material for Elastic {
     const NAME: &'static str = "elastic";
     const EXAMPLES: &'static [&'static [f64]] = &[&[1000.0, 0.3], &[7.0, 0.3]];
+    const SHORT: bool = true;
 
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
         let &[e, nu] = parameters else {

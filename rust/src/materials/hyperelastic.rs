@@ -10,7 +10,7 @@
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
 use crate::base::jet::{Jet, PAIRS};
 use crate::base::small::Mat;
-use crate::base::{Job, Real};
+use crate::base::Real;
 use std::fmt::Debug;
 
 /// Iterations for the thickness strain in plane stress.
@@ -285,33 +285,6 @@ impl<W: Energy> Hyperelastic<W> {
     }
 }
 
-/// Answers that are compiled once for each law and number type.
-struct Update<'a, W, T> {
-    law: &'a Hyperelastic<W>,
-    strain: [T; 3],
-}
-
-impl<W: Energy, T: Real> Job for Update<'_, W, T> {
-    type Output = Response<T>;
-    #[inline(always)]
-    fn run(self) -> Response<T> {
-        self.law.answer(&self.strain)
-    }
-}
-
-struct UpdateSolid<'a, W, T> {
-    law: &'a Hyperelastic<W>,
-    strain: [T; 4],
-}
-
-impl<W: Energy, T: Real> Job for UpdateSolid<'_, W, T> {
-    type Output = SolidResponse<T>;
-    #[inline(always)]
-    fn run(self) -> SolidResponse<T> {
-        self.law.solid(&self.strain)
-    }
-}
-
 impl<W: Energy> Material for Hyperelastic<W> {
     const NAME: &'static str = W::NAME;
     const EXAMPLES: &'static [&'static [f64]] = W::EXAMPLES;
@@ -349,11 +322,11 @@ impl<W: Energy> Material for Hyperelastic<W> {
     }
     #[inline(always)]
     fn update<T: Real>(&self, strain: [T; 3], _: &mut PointState<'_>) -> Response<T> {
-        T::apart(Update { law: self, strain })
+        self.answer(&strain)
     }
     #[inline(always)]
     fn update_solid<T: Real>(&self, strain: [T; 4], _: &mut PointState<'_>) -> SolidResponse<T> {
-        T::apart(UpdateSolid { law: self, strain })
+        self.solid(&strain)
     }
     fn out_of_plane(&self, e: [f64; 3], _: [f64; 3], _: &[f64]) -> (f64, f64) {
         let z = self.normal(e);

@@ -3,8 +3,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
-use crate::base::Real;
+use crate::base::{Job, Real};
 use crate::base::small::Mat;
+
+/// [`Law::update`] as a job.
+struct Update<'a, 'b, T> {
+    law: &'a Law,
+    e: [T; 3],
+    state: &'a mut PointState<'b>,
+}
+
+/// [`Law::update_solid`] as a job.
+struct UpdateSolid<'a, 'b, T> {
+    law: &'a Law,
+    e: [T; 4],
+    state: &'a mut PointState<'b>,
+}
 
 macro_rules! law {
     ($($file:ident::$name:ident),+ $(,)?) => {
@@ -13,6 +27,22 @@ macro_rules! law {
         /// Any registered material.
         #[derive(Clone, Debug)]
         pub enum Law { $($name($name)),+ }
+
+        impl<T: Real> Job for Update<'_, '_, T> {
+            type Output = Response<T>;
+            #[inline(always)]
+            fn run(self) -> Response<T> {
+                match self.law { $(Law::$name(m) => m.update(self.e, self.state)),+ }
+            }
+        }
+
+        impl<T: Real> Job for UpdateSolid<'_, '_, T> {
+            type Output = SolidResponse<T>;
+            #[inline(always)]
+            fn run(self) -> SolidResponse<T> {
+                match self.law { $(Law::$name(m) => m.update_solid(self.e, self.state)),+ }
+            }
+        }
 
         impl Law {
             /// Names of all materials.
@@ -42,17 +72,26 @@ macro_rules! law {
             pub fn moduli(&self) -> Mat<f64, 3> {
                 match self { $(Law::$name(m) => m.moduli()),+ }
             }
+            /// [`Material::update`]. Long laws have one instance for each number type, whatever
+            /// the elements that call it.
             #[inline(always)]
             pub fn update<T: Real>(&self, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
-                match self { $(Law::$name(m) => m.update(e, state)),+ }
+                $(if $name::SHORT && T::LANES > 1 && let Law::$name(m) = self {
+                    return m.update(e, state);
+                })+
+                T::apart(Update { law: self, e, state })
             }
+            /// [`Material::update_solid`], likewise.
             #[inline(always)]
             pub fn update_solid<T: Real>(
                 &self,
                 e: [T; 4],
                 state: &mut PointState<'_>,
             ) -> SolidResponse<T> {
-                match self { $(Law::$name(m) => m.update_solid(e, state)),+ }
+                $(if $name::SHORT && T::LANES > 1 && let Law::$name(m) = self {
+                    return m.update_solid(e, state);
+                })+
+                T::apart(UpdateSolid { law: self, e, state })
             }
             pub fn out_of_plane(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
                 match self { $(Law::$name(m) => m.out_of_plane(e, s, state)),+ }

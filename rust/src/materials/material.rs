@@ -64,6 +64,8 @@ pub trait Material: Sized {
     /// Parameters that tests try the law with: first all that it can have, for strains of some
     /// tenths; then cases with a symmetric tangent, for strains of some hundredths.
     const EXAMPLES: &'static [&'static [f64]];
+    /// Whether the update is a few products, which elements have inlined into their own loops.
+    const SHORT: bool = false;
 
     /// Build from numbers in the order that the law's file documents.
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String>;

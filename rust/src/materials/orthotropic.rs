@@ -24,6 +24,7 @@ impl Material for Orthotropic {
         &[1000.0, 300.0, 200.0, 0.25, 0.2, 0.3, 150.0, 0.4],
         &[9.0, 4.0, 3.0, 0.25, 0.2, 0.3, 1.7, 0.6],
     ];
+    const SHORT: bool = true;
 
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
         let &[e1, e2, e3, nu12, nu13, nu23, g12, angle] = parameters else {
