@@ -92,6 +92,7 @@ impl<const D: usize, const STORED: bool> SubAssign for Dual<D, STORED> {
 impl<const D: usize, const STORED: bool> Real for Dual<D, STORED> {
     type Mask = bool;
     const LANES: usize = 1;
+    const STIFFNESS: bool = false;
 
     fn real(v: f64) -> Self {
         Self { v, d: [0.0; D] }

@@ -11,6 +11,12 @@ pub trait Job {
     fn run(self) -> Self::Output;
 }
 
+/// Call a function out of line: one instance for all who share its arguments' types.
+#[inline(never)]
+pub fn out_of_line<R>(f: impl FnOnce() -> R) -> R {
+    f()
+}
+
 /// A real number, or several at once (lanes), or one with its derivatives.
 ///
 /// Kernels branch only through [`Real::select`], so that all lanes take the same way.
@@ -29,6 +35,9 @@ pub trait Real:
     type Mask: Copy;
     /// How many numbers travel together.
     const LANES: usize;
+    /// Whether kernels that give a force and its stiffness give the stiffness too: numbers that
+    /// carry their derivatives need none.
+    const STIFFNESS: bool = true;
 
     fn real(v: f64) -> Self;
     /// `self * a + b`, fused where the hardware does it.

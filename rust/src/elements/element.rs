@@ -172,7 +172,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         out: &mut Local<T, N, M>,
     ) {
         let mut frame = Frame::new(x, u, wanted.nlgeom && Self::TURNS);
-        let (q, tangent) = (&frame.q, wanted.tangent);
+        let (q, tangent) = (&frame.q, wanted.tangent && T::STIFFNESS);
         if T::LANES == 1 {
             integrate::single_into::<Self, T, N, M, A>(x, q, section, history, tangent, out);
         } else {
@@ -184,7 +184,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
             // Forces turn with the element, from the reference on.
             frame = Frame::new(x, &[[T::zero(); M]; N], true);
         }
-        if wanted.tangent && Self::TURNS {
+        if tangent && Self::TURNS {
             frame.stiffness(&local, &mut out.stiffness);
         }
     }

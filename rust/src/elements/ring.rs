@@ -316,7 +316,7 @@ where
         let mut frame = Frame::new(x, u, wanted.nlgeom);
         let q = local_dofs(&frame, u);
         let mut local = Local::<T, N, 3>::zero();
-        let (out_local, tangent) = (&mut local, wanted.tangent);
+        let (out_local, tangent) = (&mut local, wanted.tangent && T::STIFFNESS);
         if T::LANES == 1 {
             integrate::single_into::<LocalRing<E>, T, N, 3, A>(
                 x, &q, section, history, tangent, out_local,
@@ -336,7 +336,7 @@ where
         if wanted.stressed {
             frame = Frame::new(x, &[[T::zero(); 2]; N], true);
         }
-        if !wanted.tangent {
+        if !tangent {
             return;
         }
         // Coupling of the local dofs (rows) with the radial displacements (columns).

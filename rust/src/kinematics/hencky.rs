@@ -5,9 +5,12 @@
 //! `E = 1/2 (a I + b dev C)` where `a = ln det F` and `b = phi(w) / c`,
 //! `phi(w) = atanh(sqrt w) / sqrt w = 1 + w/3 + w^2/5 + ...`: analytic where the principal
 //! stretches coincide, so that this limit needs no case of its own.
+//!
+//! Batches of elements have these functions inlined, so that strain, stress and tangent share
+//! their parts; single elements call one instance.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::{Job, Real};
+use crate::base::{Real, out_of_line};
 use crate::base::small::Mat;
 
 /// Largest `w` for which the series is summed.
@@ -15,25 +18,9 @@ const SERIES: f64 = 0.1;
 /// Terms that reach round-off there.
 const TERMS: usize = 18;
 
-struct Phi<T>(T);
-
-impl<T: Real> Job for Phi<T> {
-    type Output = [T; 3];
-    #[inline(always)]
-    fn run(self) -> [T; 3] {
-        phi_inline(self.0)
-    }
-}
-
-/// `phi` with its first and second derivatives. Out of line for single numbers; the parts of a
-/// batch's strain, stress and tangent share it where it is inlined.
+/// `phi` with its first and second derivatives.
 #[inline(always)]
 fn phi<T: Real>(w: T) -> [T; 3] {
-    if T::LANES == 1 { T::apart(Phi(w)) } else { phi_inline(w) }
-}
-
-#[inline(always)]
-fn phi_inline<T: Real>(w: T) -> [T; 3] {
     let mut p = [T::zero(); 3];
     let bounded = w.min(T::real(SERIES));
     for k in (0..TERMS).rev() {
@@ -106,6 +93,15 @@ fn parts<T: Real>(h: &[T; 4]) -> Parts<T> {
 /// Strain xx, yy, xy (engineering shear).
 #[inline(always)]
 pub fn strain<T: Real>(h: &[T; 4]) -> [T; 3] {
+    if T::LANES == 1 {
+        out_of_line(|| strain_inline(h))
+    } else {
+        strain_inline(h)
+    }
+}
+
+#[inline(always)]
+fn strain_inline<T: Real>(h: &[T; 4]) -> [T; 3] {
     let p = parts(h);
     let a = log1p(h[0].fma(h[3], h[0] + h[3]) - h[1] * h[2]).scale(0.5);
     let difference = (p.b * p.d).scale(0.5);
@@ -142,6 +138,15 @@ pub fn second_piola<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 3] {
 /// Stress conjugate to the gradient.
 #[inline(always)]
 pub fn pull<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
+    if T::LANES == 1 {
+        out_of_line(|| pull_inline(h, t))
+    } else {
+        pull_inline(h, t)
+    }
+}
+
+#[inline(always)]
+fn pull_inline<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
     let g = gradient(&parts(h), t);
     let y = slopes(h);
     let mut p = [T::zero(); 4];
@@ -156,6 +161,15 @@ pub fn pull<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
 /// Derivative of [`pull`] where the stress follows the strain with the tangent `tangent`.
 #[inline(always)]
 pub fn tangent<T: Real>(h: &[T; 4], t: &[T; 3], tangent: &Mat<T, 3>) -> Mat<T, 4> {
+    if T::LANES == 1 {
+        out_of_line(|| tangent_inline(h, t, tangent))
+    } else {
+        tangent_inline(h, t, tangent)
+    }
+}
+
+#[inline(always)]
+fn tangent_inline<T: Real>(h: &[T; 4], t: &[T; 3], tangent: &Mat<T, 3>) -> Mat<T, 4> {
     let p = parts(h);
     let sum = (t[0] + t[1]).scale(0.5);
     let difference = (t[0] - t[1]).scale(0.5);

@@ -314,6 +314,7 @@ fn single_pass<E, T: Real, const N: usize, const M: usize, const A: usize>(
 where
     E: Element<N, M, A>,
 {
+    let tangent = tangent && T::STIFFNESS;
     points::<E, T, N, M, A>(x, q, alpha, section, history, out, tangent)
 }
 
@@ -640,7 +641,7 @@ pub fn single_into<E, T: Real, const N: usize, const M: usize, const A: usize>(
 ) where
     E: Element<N, M, A>,
 {
-    E::law_into(x, q, section, history, tangent, out);
+    E::law_into(x, q, section, history, tangent && T::STIFFNESS, out);
 }
 
 /// [`local`] into a zero `out`: a matrix of packs is too large to be moved about.
