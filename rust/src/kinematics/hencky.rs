@@ -10,8 +10,8 @@
 //! their parts; single elements call one instance.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use crate::base::{Real, out_of_line};
 use crate::base::small::Mat;
+use crate::base::{Real, out_of_line};
 
 /// Largest `w` for which the series is summed.
 const SERIES: f64 = 0.1;
@@ -93,11 +93,7 @@ fn parts<T: Real>(h: &[T; 4]) -> Parts<T> {
 /// Strain xx, yy, xy (engineering shear).
 #[inline(always)]
 pub fn strain<T: Real>(h: &[T; 4]) -> [T; 3] {
-    if T::LANES == 1 {
-        out_of_line(|| strain_inline(h))
-    } else {
-        strain_inline(h)
-    }
+    if T::LANES == 1 { out_of_line(|| strain_inline(h)) } else { strain_inline(h) }
 }
 
 #[inline(always)]
@@ -138,11 +134,7 @@ pub fn second_piola<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 3] {
 /// Stress conjugate to the gradient.
 #[inline(always)]
 pub fn pull<T: Real>(h: &[T; 4], t: &[T; 3]) -> [T; 4] {
-    if T::LANES == 1 {
-        out_of_line(|| pull_inline(h, t))
-    } else {
-        pull_inline(h, t)
-    }
+    if T::LANES == 1 { out_of_line(|| pull_inline(h, t)) } else { pull_inline(h, t) }
 }
 
 #[inline(always)]

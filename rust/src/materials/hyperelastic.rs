@@ -8,9 +8,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
+use crate::base::Real;
 use crate::base::jet::{Jet, PAIRS};
 use crate::base::small::Mat;
-use crate::base::Real;
 use std::fmt::Debug;
 
 /// Iterations for the thickness strain in plane stress.

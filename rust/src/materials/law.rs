@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
-use crate::base::{Job, Real};
 use crate::base::small::Mat;
+use crate::base::{Job, Real};
 
 /// [`Law::update`] as a job.
 struct Update<'a, 'b, T> {
