@@ -88,7 +88,9 @@ def tasks(inputs: int, runs: int, folders: int, seed: int) -> list[tuple[str, in
     found += _split("loads", loads, RUNS, seed) + _split("loose", loose, RUNS, seed)
     found += _split("runs", runs - loads - loose, RUNS, seed)
     found += _split("folders", folders, RUNS, seed)
-    return found + _split("readers", inputs, PART, seed)
+    found += _split("readers", inputs, PART, seed)
+    # The first part of each kind first: a campaign that is ended has seen all kinds.
+    return sorted(found, key=lambda part: part[2])
 
 
 def _split(kind: str, total: int, part: int, seed: int) -> list[tuple[str, int, int]]:
