@@ -30,10 +30,11 @@ REFERENCE = {
     "Model": "Model Section Findings Amplitude Output Mesh Cells",
     "Supports and loads": "Fixed Force NodalForce EdgeLoad BodyForce Temperature InitialVelocity "
     "InitialTemperature InitialStress PointMass Dashpot",
-    "Steps": "Static Dynamic Frequency Buckle ModalDynamic SteadyState ArcLength "
+    "Steps": "Static Visco Dynamic Frequency Buckle ModalDynamic SteadyState ArcLength "
     "DisplacementControl",
     "Materials": " ".join(
-        ["Expansion", "Voce", *(n for n in ct.__all__ if is_material(getattr(ct, n)))]
+        ["Expansion", "Voce", "CowperSymonds", "YieldRatio", "RateCurves", "Norton", "WLF"]
+        + [n for n in ct.__all__ if is_material(getattr(ct, n))]
     ),
     "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
     "StraightLine LocalAxes",

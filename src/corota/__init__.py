@@ -43,6 +43,7 @@ if TYPE_CHECKING:
         Polynomial,
         Yeoh,
     )
+    from corota.model.johnson_cook import JohnsonCook
     from corota.model.loads import (
         Amplitude,
         BodyForce,
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
     from corota.model.paths import ArcLength, CriticalPoint, DisplacementControl, Modes
     from corota.model.plasticity import Mises, Voce
     from corota.model.ramberg_osgood import RambergOsgood
+    from corota.model.rates import CowperSymonds, Norton, RateCurves, YieldRatio
     from corota.model.sections import Section
     from corota.model.steps import (
         Buckle,
@@ -71,8 +73,10 @@ if TYPE_CHECKING:
         Output,
         Static,
         SteadyState,
+        Visco,
     )
     from corota.model.user_material import UserMaterial
+    from corota.model.viscoelastic import WLF, Viscoelastic
     from corota.results.body_motion import BodyMotion
     from corota.results.history import History
     from corota.results.observer import BaseObserver, Iteration, Observer
@@ -178,10 +182,19 @@ _HOMES = {
     "sweep": "sweeps",
     "value_and_grad": "gradients",
     "write": "io.formats",
+    "JohnsonCook": "model.johnson_cook",
+    "CowperSymonds": "model.rates",
+    "Norton": "model.rates",
+    "RateCurves": "model.rates",
+    "YieldRatio": "model.rates",
+    "Visco": "model.steps",
+    "Viscoelastic": "model.viscoelastic",
+    "WLF": "model.viscoelastic",
 }
 
 __all__ = [
     "LOCAL_STRAINS",
+    "WLF",
     "Amplitude",
     "ArcLength",
     "ArrudaBoyce",
@@ -194,6 +207,7 @@ __all__ = [
     "ConvergenceError",
     "CorotaError",
     "Coupling",
+    "CowperSymonds",
     "CriticalPoint",
     "Dashpot",
     "DeckError",
@@ -219,6 +233,7 @@ __all__ = [
     "Interrupted",
     "Iteration",
     "JobFiles",
+    "JohnsonCook",
     "LocalAxes",
     "MaterialTable",
     "Mesh",
@@ -230,6 +245,7 @@ __all__ = [
     "MooneyRivlin",
     "NeoHooke",
     "NodalForce",
+    "Norton",
     "Observer",
     "Ogden",
     "Orthotropic",
@@ -239,6 +255,7 @@ __all__ = [
     "Polynomial",
     "PressureLaw",
     "RambergOsgood",
+    "RateCurves",
     "ResourceError",
     "Results",
     "RigidCurve",
@@ -253,8 +270,11 @@ __all__ = [
     "Tie",
     "UnsupportedError",
     "UserMaterial",
+    "Visco",
+    "Viscoelastic",
     "Voce",
     "Yeoh",
+    "YieldRatio",
     "examples",
     "gradient",
     "gradients",

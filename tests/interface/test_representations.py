@@ -105,9 +105,10 @@ def test_no_representation_is_long(results: ct.Results) -> None:
     missing = {c.__name__ for c in public} - {type(item).__name__ for item in seen}
     # Those have a few numbers each and no arrays.
     small = {
-        "Amplitude", "ArcLength", "BodyForce", "CriticalPoint", "DisplacementControl", "Expansion",
-        "InitialStress", "InitialTemperature", "Iteration", "Modes", "PressureLaw", "SteadyState",
-        "Temperature", "Voce",
+        "Amplitude", "ArcLength", "BodyForce", "CowperSymonds", "CriticalPoint",
+        "DisplacementControl", "Expansion", "InitialStress", "InitialTemperature", "Iteration",
+        "Modes", "Norton", "PressureLaw", "RateCurves", "SteadyState", "Temperature", "Visco",
+        "Voce", "WLF", "YieldRatio",
     }  # fmt: skip
     materials = {c.__name__ for c in public if issubclass(c, Material)}
     assert missing <= small | materials

@@ -10,7 +10,7 @@ use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
 use crate::elements::{Element, Operator, Point, Sample};
-use crate::materials::{Law, Plane, PointState, Response, SolidResponse};
+use crate::materials::{Clock, Law, Plane, PointState, Response, SolidResponse};
 
 /// Least stiffness of an internal mode, relative to the elastic one in shear. Where all points
 /// of an element flow alike without hardening, a mode may have none at all; then its coupling
@@ -65,6 +65,7 @@ pub struct History<'a> {
     /// [`crate::materials::Material::spherical`]); empty where there is none.
     pub initial: &'a [f64],
     pub stride: usize,
+    pub clock: Clock,
     pub per_point: PerPoint<'a>,
 }
 
@@ -124,7 +125,12 @@ impl History<'_> {
     fn point(&mut self, p: usize, members: usize) -> PointState<'_> {
         // An empty history may not be sliced past its end.
         let start = if members == 0 { 0 } else { p * members * self.stride };
-        PointState { old: &self.old[start..], new: &mut self.new[start..], stride: self.stride }
+        PointState {
+            old: &self.old[start..],
+            new: &mut self.new[start..],
+            stride: self.stride,
+            clock: self.clock,
+        }
     }
 }
 

@@ -126,6 +126,9 @@ macro_rules! law {
             pub fn plastic_member(&self) -> Option<usize> {
                 match self { $(Law::$name(m) => m.plastic_member()),+ }
             }
+            pub fn creep_error_member(&self) -> Option<usize> {
+                match self { $(Law::$name(m) => m.creep_error_member()),+ }
+            }
             pub fn work_member(&self) -> Option<usize> {
                 match self { $(Law::$name(m) => m.work_member()),+ }
             }

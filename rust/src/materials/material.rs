@@ -1,6 +1,7 @@
 //! What a material is: a pure function of the strain and the committed state.
 // SPDX-License-Identifier: BSD-3-Clause
 
+use super::clock::Clock;
 use crate::base::Real;
 use crate::base::small::Mat;
 
@@ -17,6 +18,7 @@ pub struct PointState<'a> {
     pub old: &'a [f64],
     pub new: &'a mut [f64],
     pub stride: usize,
+    pub clock: Clock,
 }
 
 impl PointState<'_> {
@@ -167,6 +169,10 @@ pub trait Material: Sized {
     }
     /// Member of the state that is the equivalent plastic strain.
     fn plastic_member(&self) -> Option<usize> {
+        None
+    }
+    /// Member of the state that is the error of the creep strain of an increment.
+    fn creep_error_member(&self) -> Option<usize> {
         None
     }
     /// Member of the state that is the plastic work: with [`Material::energy`], the work of the

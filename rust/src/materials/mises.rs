@@ -2,8 +2,8 @@
 //! plane stress (projected, Simo & Taylor 1986; de Souza Neto, Peric & Owen 2008, chapter 9)
 //! and plane strain, as one scalar equation.
 //!
-//! Parameters: E, nu, number of back-stresses n, n pairs (C, gamma), then the isotropic
-//! hardening of [`Isotropic::new`].
+//! Parameters: E, nu, number of back-stresses n, n pairs (C, gamma), then the numbers of the
+//! [`Flow`], here of [`Isotropic::new`].
 //!
 //! Tensors are held by sum `11 + 22`, difference `11 - 22` and shear, in which elasticity and
 //! the yield norm are diagonal; in plane strain the sum is that of the deviator. With the step
@@ -19,6 +19,7 @@ use super::hardening::{BackStress, Isotropic};
 use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast, in_plane};
 use crate::base::Real;
 use crate::base::small::Mat;
+use std::fmt::Debug;
 
 /// Most back-stresses of a material.
 pub const MAX_BACK: usize = 6;
@@ -31,18 +32,115 @@ const TOLERANCE: f64 = 1e-12;
 /// rounding. A committed plastic state lies on the yield surface up to that; rounding must not
 /// choose between the tangents there, and the elastic one is taken.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// Step of the equivalent plastic strain that is nothing: a stress that makes less is elastic.
+pub const LEAST_STEP: f64 = 1e-30;
+/// Longest change of the logarithm of a step.
+const LONGEST: f64 = 100.0;
 /// Members of the state: plastic strain (3), equivalent plastic strain, plastic work.
 const EQUIVALENT: usize = 3;
 const WORK: usize = 4;
 const BACK: usize = 5;
 
+/// The flow stress of a J2 law.
+pub trait Flow: Clone + Debug + Sized {
+    const NAME: &'static str;
+    /// See [`Material::EXAMPLES`].
+    const EXAMPLES: &'static [&'static [f64]];
+    /// Members of the state beside those of every J2 law.
+    const MEMBERS: usize = 0;
+    /// Whether the slope of the flow stress may be infinite at the start of a step. The step is
+    /// then sought on the scale of its logarithm.
+    const STEEP: bool = false;
+    const OUTPUTS: &'static [&'static str] = &["PEEQ", "YRATIO", "PWORK", "PDISS"];
+    /// What an increment starts from.
+    type Start<T: Real>: Copy;
+
+    fn new(numbers: &[f64]) -> Result<Self, String>;
+    /// `p` is the equivalent plastic strain, `first` the first of the law's members.
+    fn start<T: Real>(&self, state: &PointState<'_>, p: T, first: usize) -> Self::Start<T>;
+    /// Flow stress where a step begins to flow.
+    fn limit<T: Real>(&self, start: &Self::Start<T>) -> T;
+    /// Flow stress after a step `dp` and its derivative.
+    fn after<T: Real>(&self, start: &Self::Start<T>, dp: T) -> (T, T);
+    /// Work of the flow stress over a step that ends with the stress `end`.
+    fn work<T: Real>(&self, start: &Self::Start<T>, dp: T, end: T) -> T;
+    /// Write the members; `q` is the equivalent relative stress at the end.
+    fn keep<T: Real>(
+        &self,
+        _start: &Self::Start<T>,
+        _dp: T,
+        _q: T,
+        _state: &mut PointState<'_>,
+        _first: usize,
+    ) {
+    }
+    /// Yield stress without rate; 0 where every stress flows.
+    fn yield_stress(&self, p: f64) -> f64;
+    /// Energy density that the hardening stores.
+    fn stored(&self, p: f64) -> f64;
+    /// Part of the plastic work that is creep, by the law's members.
+    fn creep_work(&self, _members: &[f64]) -> f64 {
+        0.0
+    }
+    /// Value of an output that only this law has.
+    fn output(&self, _i: usize, _members: &[f64]) -> f64 {
+        0.0
+    }
+    /// See [`Material::creep_error_member`], from the law's members on.
+    fn creep_error(&self) -> Option<usize> {
+        None
+    }
+}
+
+impl Flow for Isotropic {
+    const NAME: &'static str = "mises";
+    const EXAMPLES: &'static [&'static [f64]] = &[
+        // a back-stress with recall, hardening of Voce
+        &[1000.0, 0.3, 1.0, 50.0, 2.0, 2.0, 80.0, 20.0, 5.0, 100.0],
+        // perfectly plastic; linear isotropic and kinematic; Voce; table
+        &[7.0, 0.3, 0.0, 0.0, 0.05, 0.0],
+        &[7.0, 0.3, 1.0, 0.8, 0.0, 0.0, 0.05, 0.4],
+        &[7.0, 0.3, 0.0, 2.0, 0.05, 0.03, 40.0, 0.1],
+        &[7.0, 0.3, 0.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
+    ];
+    type Start<T: Real> = T;
+
+    fn new(numbers: &[f64]) -> Result<Self, String> {
+        Isotropic::new(numbers)
+    }
+    #[inline(always)]
+    fn start<T: Real>(&self, _: &PointState<'_>, p: T, _: usize) -> T {
+        p
+    }
+    #[inline(always)]
+    fn limit<T: Real>(&self, p: &T) -> T {
+        self.at(*p).0
+    }
+    #[inline(always)]
+    fn after<T: Real>(&self, p: &T, dp: T) -> (T, T) {
+        self.at(*p + dp)
+    }
+    #[inline(always)]
+    fn work<T: Real>(&self, p: &T, dp: T, _: T) -> T {
+        Isotropic::work(self, *p, dp)
+    }
+    fn yield_stress(&self, p: f64) -> f64 {
+        self.at(p).0
+    }
+    fn stored(&self, p: f64) -> f64 {
+        Isotropic::stored(self, p)
+    }
+}
+
+pub type Mises = J2<Isotropic>;
+
 #[derive(Clone, Debug)]
-pub struct Mises {
+pub struct J2<F> {
     young: f64,
     nu: f64,
     plane: Plane,
     moduli: Mat<f64, 3>,
-    isotropic: Isotropic,
+    flow_stress: F,
     back: Vec<BackStress>,
     /// Stress of a unit elastic strain, without the mean stress in plane strain.
     elastic: [f64; 3],
@@ -61,6 +159,8 @@ pub struct Mises {
 /// The state at a trial step `dp`.
 struct Trial<T: Real> {
     dp: T,
+    /// Flow stress.
+    sy: T,
     /// Multiplier and its derivative.
     g: T,
     dg: T,
@@ -77,7 +177,7 @@ struct Trial<T: Real> {
     derivative: T,
 }
 
-impl Mises {
+impl<F: Flow> J2<F> {
     #[inline(always)]
     fn equivalent<T: Real>(&self, s: &[T; 3]) -> T {
         let mut sum = T::zero();
@@ -88,8 +188,14 @@ impl Mises {
     }
 
     #[inline(always)]
-    fn trial<T: Real>(&self, y: &[T; 3], p: T, old: &[[T; 3]; MAX_BACK], dp: T) -> Trial<T> {
-        let (sy, h) = self.isotropic.at(p + dp);
+    fn trial<T: Real>(
+        &self,
+        y: &[T; 3],
+        start: &F::Start<T>,
+        old: &[[T; 3]; MAX_BACK],
+        dp: T,
+    ) -> Trial<T> {
+        let (sy, h) = self.flow_stress.after(start, dp);
         let r = sy.recip();
         let g = dp.scale(1.5) * r;
         let dg = (T::real(1.5) - g * h) * r;
@@ -123,16 +229,19 @@ impl Mises {
         dq = dq * inverse;
         let value = (sy - q) * inverse;
         let derivative = (h - sy * dq * inverse) * inverse;
-        Trial { dp, g, dg, eta, d_eta, divisor, q, slope: h - dq, value, derivative }
+        Trial { dp, sy, g, dg, eta, d_eta, divisor, q, slope: h - dq, value, derivative }
     }
 
     /// Step of the equivalent plastic strain in the lanes that yield, by Newton's method from
     /// zero inside a shrinking bracket; also the lanes in which it did not settle.
+    ///
+    /// A steep flow stress starts from the other end, with the logarithms of step and stress: those
+    /// of sums of powers are convex in each other, so that Newton's method comes from above.
     #[inline(always)]
     fn solve<T: Real>(
         &self,
         y: &[T; 3],
-        p: T,
+        start: &F::Start<T>,
         old: &[[T; 3]; MAX_BACK],
         excess: T,
         yields: T::Mask,
@@ -145,6 +254,10 @@ impl Mises {
         }
         // Recall can only bring back what the old back-stresses hold.
         let mut most = excess;
+        if F::STEEP {
+            // What softens may end below the stress where it began.
+            most += self.flow_stress.limit(start);
+        }
         for (b, beta) in self.back.iter().zip(old) {
             if b.recall > 0.0 {
                 most += self.equivalent(beta);
@@ -152,24 +265,40 @@ impl Mises {
         }
         let (mut low, mut high) = (T::zero(), most.scale((1.0 + 1e-9) / (1.5 * softest)));
         let mut dp = T::zero();
+        if F::STEEP {
+            // Lanes that do not flow need a number with a logarithm.
+            high = T::select(yields, high, T::one());
+            dp = high;
+            low = T::real(LEAST_STEP).min(high);
+        }
         let mut open = T::zero();
         for _ in 0..MAX_ITERATIONS {
-            let at = self.trial(y, p, old, dp);
+            let at = self.trial(y, start, old, dp);
             let settled = at.value.abs().lt(T::real(TOLERANCE));
             let short = at.value.lt(T::zero());
             low = T::select(short, dp, low);
             high = T::select(short, high, dp);
-            let next = dp - at.value / at.derivative;
-            let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
-            let next = T::select(inside, next, (low + high).scale(0.5));
-            dp = T::select(yields, next, T::zero());
+            if F::STEEP {
+                let ratio = at.value + T::one();
+                let step = ratio.ln() * ratio / (at.derivative * dp);
+                let step = step.max(T::real(-LONGEST)).min(T::real(LONGEST));
+                let next = dp * (-step).exp();
+                let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+                let middle = (low.sqrt() * high.sqrt()).max(low);
+                dp = T::select(yields, T::select(inside, next, middle), T::one());
+            } else {
+                let next = dp - at.value / at.derivative;
+                let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+                let next = T::select(inside, next, (low + high).scale(0.5));
+                dp = T::select(yields, next, T::zero());
+            }
             let rest = T::select(settled, T::zero(), T::one());
             open = T::select(yields, rest, T::zero());
             if !T::any(T::real(0.5).lt(open)) {
                 break;
             }
         }
-        (dp, T::real(0.5).lt(open))
+        (T::select(yields, dp, T::zero()), T::real(0.5).lt(open))
     }
 
     /// Elastic tangent less the plastic part, symmetric.
@@ -226,8 +355,90 @@ impl Mises {
         }
     }
 
+    /// First member of the flow stress.
+    fn first(&self) -> usize {
+        BACK + 3 * self.back.len()
+    }
+
+    #[inline(always)]
+    fn answer<T: Real>(&self, strain: &[T; 3], state: &mut PointState<'_>) -> Response<T> {
+        let e = [strain[0] + strain[1], strain[0] - strain[1], strain[2]];
+        let mut y = [T::zero(); 3];
+        let mut plastic = [T::zero(); 3];
+        for k in 0..3 {
+            plastic[k] = state.get(k);
+            y[k] = e[k].fma(T::real(self.elastic[k]), plastic[k].scale(-self.relief[k]));
+        }
+        let p: T = state.get(EQUIVALENT);
+        let mut old = [[T::zero(); 3]; MAX_BACK];
+        let mut eta = y;
+        for i in 0..self.back.len() {
+            for k in 0..3 {
+                old[i][k] = state.get(BACK + 3 * i + k);
+                eta[k] -= old[i][k];
+            }
+        }
+        let start = self.flow_stress.start(state, p, self.first());
+        let limit = self.flow_stress.limit(&start);
+        let excess = self.equivalent(&eta) - limit;
+        let yields = T::zero().lt(excess);
+        let (sum, tangent, failed);
+        if T::any(yields) {
+            let (dp, open) = self.solve(&y, &start, &old, excess, yields);
+            failed = open;
+            let at = self.trial(&y, &start, &old, dp);
+            let mut done: T = state.get(WORK);
+            let mut step = [T::zero(); 3];
+            for k in 0..3 {
+                step[k] = (at.g * at.eta[k]).scale(self.flow[k]);
+                y[k] = step[k].fma(T::real(-self.relief[k]), y[k]);
+                state.set(k, plastic[k] + step[k]);
+            }
+            state.set(EQUIVALENT, p + at.dp);
+            // Work of the return path, from the yield surface on: that of the yield stress is
+            // exact, that of the back-stress is the mean of both ends.
+            done += self.flow_stress.work(&start, at.dp, at.sy);
+            for (i, b) in self.back.iter().enumerate() {
+                let (kept, _) = b.kept(at.dp);
+                for k in 0..3 {
+                    let gain = (at.g * at.eta[k]).scale(b.modulus * 2.0 / 3.0);
+                    let new = kept * (old[i][k] + gain);
+                    state.set(BACK + 3 * i + k, new);
+                    done = ((old[i][k] + new) * step[k]).fma(T::real(0.5 * self.work[k]), done);
+                }
+            }
+            state.set(WORK, done);
+            sum = e[0].fma(T::real(self.volume), y[0]);
+            let mut size = limit;
+            for k in 0..3 {
+                size = e[k].abs().fma(T::real(self.elastic[k]), size);
+            }
+            tangent = self.tangent(&at, size.scale(ROUNDING).lt(excess));
+            self.flow_stress.keep(&start, at.dp, at.q, state, self.first());
+        } else {
+            failed = T::none();
+            for k in 0..3 {
+                state.set(k, plastic[k]);
+            }
+            state.set(EQUIVALENT, p);
+            let done: T = state.get(WORK);
+            state.set(WORK, done);
+            for i in 0..self.back.len() {
+                for k in 0..3 {
+                    state.set(BACK + 3 * i + k, old[i][k]);
+                }
+            }
+            sum = e[0].fma(T::real(self.volume), y[0]);
+            tangent = broadcast(&self.moduli);
+            let q = self.equivalent(&eta);
+            self.flow_stress.keep(&start, T::zero(), q, state, self.first());
+        }
+        let stress = [(sum + y[1]).scale(0.5), (sum - y[1]).scale(0.5), y[2]];
+        Response { stress, tangent, failed }
+    }
+
     fn hardening_energy(&self, state: &[f64]) -> f64 {
-        let mut sum = self.isotropic.stored(state[EQUIVALENT]);
+        let mut sum = self.flow_stress.stored(state[EQUIVALENT]);
         for (i, b) in self.back.iter().enumerate() {
             for k in 0..3 {
                 let v = state[BACK + 3 * i + k];
@@ -238,28 +449,20 @@ impl Mises {
     }
 }
 
-impl Material for Mises {
-    const NAME: &'static str = "mises";
-    const EXAMPLES: &'static [&'static [f64]] = &[
-        // a back-stress with recall, hardening of Voce
-        &[1000.0, 0.3, 1.0, 50.0, 2.0, 2.0, 80.0, 20.0, 5.0, 100.0],
-        // perfectly plastic; linear isotropic and kinematic; Voce; table
-        &[7.0, 0.3, 0.0, 0.0, 0.05, 0.0],
-        &[7.0, 0.3, 1.0, 0.8, 0.0, 0.0, 0.05, 0.4],
-        &[7.0, 0.3, 0.0, 2.0, 0.05, 0.03, 40.0, 0.1],
-        &[7.0, 0.3, 0.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
-    ];
+impl<F: Flow> Material for J2<F> {
+    const NAME: &'static str = F::NAME;
+    const EXAMPLES: &'static [&'static [f64]] = F::EXAMPLES;
 
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
         let &[young, nu, count, ref rest @ ..] = parameters else {
-            return Err("mises takes E, nu, back-stresses and a hardening".into());
+            return Err(format!("{} takes E, nu, back-stresses and a hardening", F::NAME));
         };
         if !(young > 0.0 && young.is_finite() && nu > -1.0 && nu < 0.5) {
-            return Err(format!("mises needs E > 0 and -1 < nu < 0.5, not {young} and {nu}"));
+            return Err(format!("{} needs E > 0, -1 < nu < 0.5, not {young}, {nu}", F::NAME));
         }
         let count = count as usize;
         if count > MAX_BACK || rest.len() < 2 * count {
-            return Err(format!("mises takes at most {MAX_BACK} back-stresses, not {count}"));
+            return Err(format!("{} takes at most {MAX_BACK} back-stresses", F::NAME));
         }
         let (pairs, numbers) = rest.split_at(2 * count);
         let back: Result<Vec<_>, _> =
@@ -280,7 +483,7 @@ impl Material for Mises {
             nu,
             plane,
             moduli: [[c11, c12, 0.0], [c12, c11, 0.0], [0.0, 0.0, g]],
-            isotropic: Isotropic::new(numbers)?,
+            flow_stress: F::new(numbers)?,
             back: back?,
             elastic: [elastic, 2.0 * g, g],
             relief: [relief, 2.0 * g, g],
@@ -291,82 +494,14 @@ impl Material for Mises {
         })
     }
     fn n_state(&self) -> usize {
-        BACK + 3 * self.back.len()
+        self.first() + F::MEMBERS
     }
     fn moduli(&self) -> Mat<f64, 3> {
         self.moduli
     }
     #[inline(always)]
     fn update<T: Real>(&self, strain: [T; 3], state: &mut PointState<'_>) -> Response<T> {
-        let e = [strain[0] + strain[1], strain[0] - strain[1], strain[2]];
-        let mut y = [T::zero(); 3];
-        let mut plastic = [T::zero(); 3];
-        for k in 0..3 {
-            plastic[k] = state.get(k);
-            y[k] = e[k].fma(T::real(self.elastic[k]), plastic[k].scale(-self.relief[k]));
-        }
-        let p: T = state.get(EQUIVALENT);
-        let mut old = [[T::zero(); 3]; MAX_BACK];
-        let mut eta = y;
-        for i in 0..self.back.len() {
-            for k in 0..3 {
-                old[i][k] = state.get(BACK + 3 * i + k);
-                eta[k] -= old[i][k];
-            }
-        }
-        let limit = self.isotropic.at(p).0;
-        let excess = self.equivalent(&eta) - limit;
-        let yields = T::zero().lt(excess);
-        let (sum, tangent, failed);
-        if T::any(yields) {
-            let (dp, open) = self.solve(&y, p, &old, excess, yields);
-            failed = open;
-            let at = self.trial(&y, p, &old, dp);
-            let mut done: T = state.get(WORK);
-            let mut step = [T::zero(); 3];
-            for k in 0..3 {
-                step[k] = (at.g * at.eta[k]).scale(self.flow[k]);
-                y[k] = step[k].fma(T::real(-self.relief[k]), y[k]);
-                state.set(k, plastic[k] + step[k]);
-            }
-            state.set(EQUIVALENT, p + at.dp);
-            // Work of the return path, from the yield surface on: that of the yield stress is
-            // exact, that of the back-stress is the mean of both ends.
-            done += self.isotropic.work(p, at.dp);
-            for (i, b) in self.back.iter().enumerate() {
-                let (kept, _) = b.kept(at.dp);
-                for k in 0..3 {
-                    let gain = (at.g * at.eta[k]).scale(b.modulus * 2.0 / 3.0);
-                    let new = kept * (old[i][k] + gain);
-                    state.set(BACK + 3 * i + k, new);
-                    done = ((old[i][k] + new) * step[k]).fma(T::real(0.5 * self.work[k]), done);
-                }
-            }
-            state.set(WORK, done);
-            sum = e[0].fma(T::real(self.volume), y[0]);
-            let mut size = limit;
-            for k in 0..3 {
-                size = e[k].abs().fma(T::real(self.elastic[k]), size);
-            }
-            tangent = self.tangent(&at, size.scale(ROUNDING).lt(excess));
-        } else {
-            failed = T::none();
-            for k in 0..3 {
-                state.set(k, plastic[k]);
-            }
-            state.set(EQUIVALENT, p);
-            let done: T = state.get(WORK);
-            state.set(WORK, done);
-            for i in 0..self.back.len() {
-                for k in 0..3 {
-                    state.set(BACK + 3 * i + k, old[i][k]);
-                }
-            }
-            sum = e[0].fma(T::real(self.volume), y[0]);
-            tangent = broadcast(&self.moduli);
-        }
-        let stress = [(sum + y[1]).scale(0.5), (sum - y[1]).scale(0.5), y[2]];
-        Response { stress, tangent, failed }
+        self.answer(&strain, state)
     }
     fn bulk(&self) -> Option<f64> {
         Some(self.young / (3.0 * (1.0 - 2.0 * self.nu)))
@@ -390,7 +525,7 @@ impl Material for Mises {
         initial * thrice * ((s[0] + s[1] + normal) / 3.0 + 0.5 * initial)
     }
     fn outputs(&self) -> &'static [&'static str] {
-        &["PEEQ", "YRATIO", "PWORK", "PDISS"]
+        F::OUTPUTS
     }
     fn output(&self, i: usize, s: [f64; 3], state: &[f64]) -> f64 {
         match i {
@@ -406,10 +541,12 @@ impl Material for Mises {
                         eta[k] -= state[BACK + 3 * n + k];
                     }
                 }
-                self.equivalent(&eta) / self.isotropic.at(state[EQUIVALENT]).0
+                let limit = self.flow_stress.yield_stress(state[EQUIVALENT]);
+                if limit > 0.0 { self.equivalent(&eta) / limit } else { 0.0 }
             }
-            2 => state[WORK],
-            _ => state[WORK] - self.hardening_energy(state),
+            2 => state[WORK] - self.flow_stress.creep_work(&state[self.first()..]),
+            3 => state[WORK] - self.hardening_energy(state),
+            _ => self.flow_stress.output(i, &state[self.first()..]),
         }
     }
     fn tensors(&self) -> &'static [TensorOutput] {
@@ -432,6 +569,9 @@ impl Material for Mises {
     }
     fn plastic_member(&self) -> Option<usize> {
         Some(EQUIVALENT)
+    }
+    fn creep_error_member(&self) -> Option<usize> {
+        self.flow_stress.creep_error().map(|m| self.first() + m)
     }
     fn work_member(&self) -> Option<usize> {
         Some(WORK)

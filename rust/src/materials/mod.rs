@@ -3,6 +3,7 @@
 
 pub mod arruda_boyce;
 pub mod by_temperature;
+pub mod clock;
 pub mod elastic;
 pub mod hardening;
 pub mod hyperelastic;
@@ -15,7 +16,10 @@ pub mod orthotropic;
 pub mod polynomial;
 pub mod ramberg_osgood;
 pub mod tabulated;
+pub mod viscoelastic;
+pub mod viscoplastic;
 
+pub use clock::Clock;
 pub use law::Law;
 pub use material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
 
@@ -26,6 +30,8 @@ macro_rules! laws {
             elastic::Elastic,
             orthotropic::Orthotropic,
             mises::Mises,
+            viscoplastic::Viscoplastic,
+            viscoelastic::Viscoelastic,
             ramberg_osgood::RambergOsgood,
             polynomial::Polynomial,
             ogden::Ogden,

@@ -8,6 +8,7 @@ use super::sensitivity::{Gradients, Weights};
 use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::kinematics::integrate::Section;
+use crate::materials::Clock;
 use crate::materials::by_temperature::LawTable;
 
 /// Elements a chunk; large enough to hide a virtual call, small enough to colour well.
@@ -43,12 +44,22 @@ pub struct Context<'a> {
     pub tangent: bool,
     /// Instructions to use.
     pub lanes: Lanes,
+    pub clock: Clock,
 }
 
 impl<'a> Context<'a> {
-    /// By finite displacements and without a tangent.
+    /// By finite displacements, without a tangent, about the committed state.
     pub fn new(x: &'a [[f64; 2]], dofs: &'a Dofs, lanes: Lanes, u: &'a [f64]) -> Self {
-        Self { x, u, dofs, nlgeom: true, stressed: false, tangent: false, lanes }
+        Self {
+            x,
+            u,
+            dofs,
+            nlgeom: true,
+            stressed: false,
+            tangent: false,
+            lanes,
+            clock: Clock::default(),
+        }
     }
 }
 
@@ -138,6 +149,8 @@ pub trait Chunk: Send + Sync {
     fn give(&mut self, values: &[f64]);
     /// Largest growth of the equivalent plastic strain from the committed to the trial state.
     fn plastic_increment(&self) -> f64;
+    /// Largest error of the creep strain of the last evaluation.
+    fn creep_error(&self) -> f64;
     fn block(&self) -> usize;
     /// Index of each element in the block.
     fn elements(&self) -> &[u32];

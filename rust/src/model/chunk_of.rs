@@ -326,6 +326,21 @@ where
         }
         largest
     }
+    fn creep_error(&self) -> f64 {
+        let law = &self.shared.section.law;
+        let Some(member) = law.creep_error_member() else { return 0.0 };
+        if !self.evaluated {
+            return 0.0;
+        }
+        let mut largest = 0.0f64;
+        for p in 0..self.shared.section.points.len() {
+            let start = (p * law.n_state() + member) * self.stride;
+            for v in &self.new[start..start + self.nodes.len()] {
+                largest = largest.max(*v);
+            }
+        }
+        largest
+    }
     fn block(&self) -> usize {
         self.shared.block
     }

@@ -211,6 +211,7 @@ where
                 alpha: &mut self.alpha[e.min(2 * A * stride)..],
                 initial: if self.initial.is_empty() { &[] } else { &self.initial[e..] },
                 stride,
+                clock: context.clock,
                 per_point: PerPoint::of(
                     &self.thickness,
                     &self.sides,

@@ -13,6 +13,7 @@ use super::sensitivity::{Gradients, Sums, Weights};
 use crate::base::thread_autotuner::ThreadAutotuner;
 use crate::base::{Lanes, pool};
 use crate::kinematics::inertia::MassKind;
+use crate::materials::Clock;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -34,6 +35,7 @@ pub struct Problem {
     colours: Vec<Vec<Box<dyn Chunk>>>,
     threads: usize,
     lanes: Lanes,
+    clock: Clock,
     fixed: FixedDofs,
     assemble_tuner: ThreadAutotuner,
     recover_tuner: ThreadAutotuner,
@@ -77,6 +79,7 @@ impl Problem {
             colours,
             threads: 1,
             lanes: Lanes::Best,
+            clock: Clock::default(),
             fixed: FixedDofs::default(),
             assemble_tuner: ThreadAutotuner::default(),
             recover_tuner: ThreadAutotuner::default(),
@@ -109,6 +112,11 @@ impl Problem {
         self.lanes = lanes;
     }
 
+    /// The time that assemblies span from now on.
+    pub fn set_clock(&mut self, clock: Clock) {
+        self.clock = clock;
+    }
+
     /// Let only these blocks take part in assembly and inertia; empty for all.
     pub fn set_active(&mut self, active: Vec<bool>) {
         self.active = active;
@@ -128,6 +136,7 @@ impl Problem {
             nlgeom: kinematics == Kinematics::Finite,
             stressed: kinematics == Kinematics::Stressed,
             tangent: !values.is_empty(),
+            clock: self.clock,
             ..Context::new(&self.x, &self.dofs, self.lanes, u)
         };
         let pool = self.pool_if_apart();
@@ -326,6 +335,12 @@ impl Problem {
     pub fn plastic_increment(&self) -> f64 {
         let chunks = self.colours.iter().flatten();
         chunks.map(|c| c.plastic_increment()).fold(0.0, f64::max)
+    }
+
+    /// Largest error of the creep strain of the last evaluation.
+    pub fn creep_error(&self) -> f64 {
+        let chunks = self.colours.iter().flatten();
+        chunks.map(|c| c.creep_error()).fold(0.0, f64::max)
     }
 
     /// Add the nodal force of a body force at displacements `u`, or its mean over the conserving

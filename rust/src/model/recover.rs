@@ -176,6 +176,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             alpha: &mut alpha,
             initial: &initial,
             stride: 1,
+            clock: context.clock,
             per_point: own,
         };
         let wanted = Wanted { nlgeom: context.nlgeom, stressed: false, tangent: false };
@@ -232,8 +233,12 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
             // What the law sees; output is the total strain.
             let strain = [total[0] - offset(0), total[1] - offset(1), total[2] - offset(2)];
             let range = p * members..(p + 1) * members;
-            let mut state =
-                PointState { old: &old[range.clone()], new: &mut new[range.clone()], stride: 1 };
+            let mut state = PointState {
+                old: &old[range.clone()],
+                new: &mut new[range.clone()],
+                stride: 1,
+                clock: context.clock,
+            };
             let (mut stress, mut strain_zz, mut stress_zz, mut energy);
             if E::RING {
                 strain_zz = at.strain[2];

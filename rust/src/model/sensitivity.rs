@@ -243,6 +243,7 @@ where
                     alpha: &mut alpha.0,
                     initial: &initial.0,
                     stride: STRIDE,
+                    clock: context.clock,
                     per_point: PerPoint {
                         thickness: &thickness.0,
                         sides: &sides.0,

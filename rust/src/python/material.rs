@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::Dual;
-use crate::materials::{Law, Plane, PointState};
+use crate::materials::{Clock, Law, Plane, PointState};
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -20,10 +20,13 @@ pub fn plane(name: &str) -> PyResult<Plane> {
 /// Answer of a law to a sequence of strains, each committed before the next.
 ///
 /// ``strain`` (n, 3) rows xx, yy, xy (engineering shear); ``state`` the history at the start,
-/// empty for a virgin point. Returns a dict of flat arrays: stress (n, 3), tangent (n, 3, 3),
+/// empty for a virgin point; ``times`` (n,) the total times of the strains, after ``start``, empty
+/// for none; ``lasting`` whether slow processes take part. Returns a dict of flat arrays: stress (n, 3), tangent (n, 3, 3),
 /// derivative (n, 3, 3; exact, by forward differentiation), zz (n, 2; strain and stress
 /// through the thickness), energy (n), state (n, members) and the outputs by name.
 #[pyfunction]
+#[pyo3(signature = (law, parameters, plane_name, strain, state, times=Vec::new(), start=0.0, lasting=true))]
+#[allow(clippy::too_many_arguments)]
 fn material_path<'py>(
     py: Python<'py>,
     law: &str,
@@ -31,6 +34,9 @@ fn material_path<'py>(
     plane_name: &str,
     strain: PyReadonlyArray2<'py, f64>,
     state: PyReadonlyArray1<'py, f64>,
+    times: Vec<f64>,
+    start: f64,
+    lasting: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let law = Law::new(law, &parameters, plane(plane_name)?).map_err(PyValueError::new_err)?;
     let members = law.n_state();
@@ -40,11 +46,15 @@ fn material_path<'py>(
     let [mut stress, mut tangent, mut derivative, mut zz, mut energy, mut states] =
         [const { Vec::<f64>::new() }; 6];
     let mut outputs = vec![Vec::<f64>::new(); law.outputs().len()];
-    for e in strain.as_slice()?.as_chunks::<3>().0 {
+    let mut before = start;
+    for (row, e) in strain.as_slice()?.as_chunks::<3>().0.iter().enumerate() {
+        let end = times.get(row).copied().unwrap_or(before);
+        let clock = Clock { increment: end - before, end, lasting };
+        before = end;
         let dual: [Dual<3>; 3] = std::array::from_fn(|i| Dual::variable(e[i], i));
-        let mut point = PointState { old: &old, new: &mut new, stride: 1 };
+        let mut point = PointState { old: &old, new: &mut new, stride: 1, clock };
         let exact = law.update(dual, &mut point);
-        let mut point = PointState { old: &old, new: &mut new, stride: 1 };
+        let mut point = PointState { old: &old, new: &mut new, stride: 1, clock };
         let answer = law.update(*e, &mut point);
         if answer.failed {
             return Err(PyRuntimeError::new_err(format!("no convergence at strain {e:?}")));

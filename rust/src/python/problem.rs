@@ -6,7 +6,7 @@ use super::memory;
 use crate::base::Lanes;
 use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
-use crate::materials::Law;
+use crate::materials::{Clock, Law};
 use crate::model::chunk::Kinematics;
 use crate::model::dynamics::{Between, BodyLoad, Motion};
 use crate::model::problem::{Failed, Problem};
@@ -102,6 +102,12 @@ impl PyProblem {
         let lanes = Lanes::new(lanes).map_err(value_error)?;
         self.inner.set_lanes(lanes);
         Ok(lanes.width())
+    }
+
+    /// The time that assemblies span from now on: its length, the total time at its end, and
+    /// whether slow processes take part.
+    fn set_clock(&mut self, increment: f64, end: f64, lasting: bool) {
+        self.inner.set_clock(Clock { increment, end, lasting });
     }
 
     /// Let only these blocks take part in ``assemble`` and ``inertia``; empty for all.
@@ -328,6 +334,11 @@ impl PyProblem {
     /// Largest growth of the equivalent plastic strain of the last evaluation.
     fn plastic_increment(&self) -> f64 {
         self.inner.plastic_increment()
+    }
+
+    /// Largest error of the creep strain of the last evaluation.
+    fn creep_error(&self) -> f64 {
+        self.inner.creep_error()
     }
 
     /// Largest absolute values, each of displacement dofs and of rotations: forces (``scale`` and

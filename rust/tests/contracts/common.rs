@@ -188,6 +188,7 @@ where
         alpha: &mut alpha,
         initial: &[],
         stride: 1,
+        clock: corota::materials::Clock { increment: 0.5, end: 2.0, lasting: true },
         per_point: PerPoint::default(),
     };
     let answer = local::<E, T, N, M, A>(&x, &frame.q, section, &mut history, true);

@@ -4,9 +4,11 @@
 
 use super::common::Random;
 use corota::base::{Dual, Real};
-use corota::materials::{Law, Plane, PointState};
+use corota::materials::{Clock, Law, Plane, PointState};
 
 const EXACT: f64 = 1e-10;
+/// An increment for laws that depend on time.
+const CLOCK: Clock = Clock { increment: 0.5, end: 2.0, lasting: true };
 
 /// History of a point at rest.
 fn rest(name: &str, law: &Law) -> Vec<f64> {
@@ -19,8 +21,17 @@ fn rest(name: &str, law: &Law) -> Vec<f64> {
 }
 
 fn stress<T: Real>(law: &Law, strain: [T; 3], old: &[f64]) -> ([T; 3], [[T; 3]; 3], Vec<f64>) {
+    stress_over(law, strain, old, CLOCK)
+}
+
+fn stress_over<T: Real>(
+    law: &Law,
+    strain: [T; 3],
+    old: &[f64],
+    clock: Clock,
+) -> ([T; 3], [[T; 3]; 3], Vec<f64>) {
     let mut new = old.to_vec();
-    let mut state = PointState { old, new: &mut new, stride: 1 };
+    let mut state = PointState { old, new: &mut new, stride: 1, clock };
     let answer = law.update(strain, &mut state);
     assert!(!T::any(answer.failed));
     (answer.stress, answer.tangent, new)
@@ -39,7 +50,7 @@ fn tangent_is_the_derivative_of_the_stress() {
 }
 
 /// Random strain paths; the first stays so small that every law is linear to round-off, also one
-/// whose moduli change with the strain.
+/// whose moduli change with the strain, and takes no time.
 fn paths(name: &str, law: &Law, what: &str) {
     let mut random = Random::new(8);
     let moduli = law.moduli();
@@ -56,8 +67,9 @@ fn paths(name: &str, law: &Law, what: &str) {
             for i in 0..3 {
                 variable[i] = Dual::variable(strain[i], i);
             }
-            let (s, t, new) = stress(law, strain, &old);
-            let (dual, _, _) = stress(law, variable, &old);
+            let clock = if path == 0 { Clock::default() } else { CLOCK };
+            let (s, t, new) = stress_over(law, strain, &old, clock);
+            let (dual, _, _) = stress_over(law, variable, &old, clock);
             for i in 0..3 {
                 assert!((dual[i].v - s[i]).abs() <= 1e-13 * top, "{what}: number types");
                 for j in 0..3 {
@@ -95,7 +107,7 @@ fn a_strain_through_the_thickness_has_its_tangent() {
                         },
                     );
                 let mut new = old.clone();
-                let mut state = PointState { old: &old, new: &mut new, stride: 1 };
+                let mut state = PointState { old: &old, new: &mut new, stride: 1, clock: CLOCK };
                 let found = law.update_solid(e, &mut state);
                 assert!(!found.failed, "{name}");
                 let dual = std::array::from_fn(|i| Dual::<4>::variable(e[i], i));

@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 TERMS = {
     "ALLSE": "recoverable strain energy",
     "ALLPD": "plastic work",
+    "ALLCD": "work of creep and of viscoelasticity that is not recoverable",
     "ALLAE": "energy of the drilling penalty",
-    "ALLIE": "internal energy: ALLSE + ALLPD + ALLAE",
+    "ALLIE": "internal energy: ALLSE + ALLPD + ALLCD + ALLAE",
     "ALLKE": "kinetic energy",
     "ALLVD": "viscous dissipation: dashpots, Rayleigh damping",
     "ALLFD": "frictional dissipation",
@@ -142,8 +143,9 @@ class Energies:
             else {
                 "ALLSE": sums["strain energy"] - sums["artificial energy"] + stored,
                 "ALLPD": sums["plastic work"],
+                **({"ALLCD": sums["creep work"]} if self.system.depends_on_time else {}),
                 "ALLAE": sums["artificial energy"],
-                "ALLIE": sums["strain energy"] + sums["plastic work"] + stored,
+                "ALLIE": sums["strain energy"] + sums["plastic work"] + sums["creep work"] + stored,
                 "ALLTH": sums["thermal work"],
             }
         )

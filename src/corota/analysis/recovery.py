@@ -44,7 +44,7 @@ def recover(
         sums = communicator.sum(sums)
         largest = communicator.broadcast(max(communicator.gather(largest), default=0.0))
     system.largest_linear_strain = largest
-    names = ("strain energy", "artificial energy", "plastic work", "thermal work")
+    names = ("strain energy", "artificial energy", "plastic work", "creep work", "thermal work")
     return fields, dict(zip(names, sums.tolist(), strict=True))
 
 
@@ -53,7 +53,7 @@ def _own(
 ) -> tuple[list[PointFields], Floats, float]:
     """Fields, sums and largest linear local strain of the own elements."""
     fields, energy, largest = [], 0.0, 0.0
-    artificial = plastic = 0.0
+    artificial = plastic = creep = 0.0
     raw = system.core.recover(system.in_space(u), system.nlgeom)
     for index, (block, own) in enumerate(zip(system.own_blocks, raw, strict=True)):
         for name, values in own["values"].items():
@@ -75,6 +75,8 @@ def _own(
         artificial += own["artificial_energy"]
         if (work := own["values"].get("PWORK")) is not None:
             plastic += float(np.einsum("ep,ep->", work, own["volume"]))
+        if (work := own["values"].get("CWORK")) is not None:
+            creep += float(np.einsum("ep,ep->", work, own["volume"]))
         if "heat" in own:
             system.free.record(index, own["heat"], own["volume"], own.get("stabilized"))
         plastic += own["dissipated_energy"]
@@ -94,7 +96,7 @@ def _own(
         )
         add_derived(found)
         fields.append(found)
-    return fields, np.array([energy, artificial, plastic, system.free.work]), largest
+    return fields, np.array([energy, artificial, plastic, creep, system.free.work]), largest
 
 
 __all__ = ["recover"]

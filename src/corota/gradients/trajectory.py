@@ -300,6 +300,11 @@ def refuse(model: Model) -> None:
     for section in model.sections:
         if section.axisymmetric:
             raise UnsupportedError("gradients do not include axisymmetric bodies", section.where)
+        if section.material.depends_on_time:
+            raise UnsupportedError(
+                "gradients do not include materials that depend on the time (rates, creep)",
+                section.where,
+            )
         if isinstance(section.material, UserMaterial):
             raise UnsupportedError(
                 "gradients do not include materials in Python: their derivatives are not known",

@@ -134,6 +134,8 @@ def _material(material: Material) -> dict[str, Any]:
     if isinstance(material, MaterialTable):
         return _table(material)
     constants: dict[str, Any] = {}
+    if isinstance(material, Mises) and material.rate is not None:
+        constants["rate"] = str(material.rate)
     for item in fields(material):
         value = getattr(material, item.name)
         if item.name in HIDDEN or not isinstance(value, int | float | tuple | list | Voce):
@@ -150,7 +152,7 @@ def _material(material: Material) -> dict[str, Any]:
         "type": type(material).__name__,
         "constants": constants,
     }
-    if isinstance(material, Mises):
+    if isinstance(material, Mises) and material.has_yield:
         found["curve"] = hardening(material)
     return found
 

@@ -13,6 +13,7 @@ from corota.arrays import distinct
 from corota.errors import InputError, number
 from corota.model.materials import Expansion, Material
 from corota.model.plasticity import Mises, Voce
+from corota.model.rates import CowperSymonds, Norton, RateCurves, YieldRatio
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -94,7 +95,15 @@ class MaterialTable(Material):
                 )
         aligned = _aligned(materials, self)
         self.table = list(zip([t for t, _ in rows], aligned, strict=True))
-        for name in ("law", "flows", "linear", "remembers", "oriented", "for_lines"):
+        for name in (
+            "law",
+            "flows",
+            "linear",
+            "remembers",
+            "oriented",
+            "for_lines",
+            "depends_on_time",
+        ):
             setattr(self, name, getattr(first, name))
         if not self.rho:
             self.rho = first.rho
@@ -199,6 +208,10 @@ def _mix(a: Any, b: Any, share: float) -> Any:
     """A value between two of the same type."""
     if isinstance(a, Voce):
         return Voce(*(_mix(getattr(a, f.name), getattr(b, f.name), share) for f in fields(a)))
+    if isinstance(a, CowperSymonds | Norton):
+        return replace(
+            a, **{f.name: _mix(getattr(a, f.name), getattr(b, f.name), share) for f in fields(a)}
+        )
     if isinstance(a, int | float) and not isinstance(a, bool):
         return a if a == b else a + share * (b - a)
     if isinstance(a, list | tuple):
@@ -219,6 +232,12 @@ def _aligned(materials: list[Material], table: MaterialTable) -> list[Material]:
         )
     if len({len(m.back_stresses) for m in plastic}) > 1:
         raise InputError("give as many back-stresses at every temperature", table.where)
+    if len({type(m.rate) for m in plastic}) > 1 or any(
+        isinstance(m.rate, RateCurves | YieldRatio) for m in plastic
+    ):
+        raise InputError(
+            "give the same kind of rate at every temperature, CowperSymonds or Norton", table.where
+        )
     if len({bool(m.kinematic) for m in plastic}) > 1:
         plastic = [replace(m, kinematic=0.0, chaboche=m.back_stresses) for m in plastic]
     if plastic[0].yield_curve is None:

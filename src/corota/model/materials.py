@@ -151,6 +151,8 @@ class Material(Brief):
     for_rings = True
     #: Whether its constants follow the temperature.
     follows_temperature = False
+    #: Whether its answer depends on the time that passes.
+    depends_on_time = False
     #: How many of its first parameters make the elastic or complementary energy; 0 for a law whose
     #: constants are unknown.
     elastic_constants = 0

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from corota.display import Brief
 from corota.errors import InputError
 from corota.model.materials import _positive, isotropic_compliance
+from corota.model.rates import Norton, RateCurves
 from corota.model.single_point import LawOfTheCore
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.errors import Location
+    from corota.model.rates import Rate
 
     Floats = NDArray[np.float64]
 
@@ -73,6 +75,9 @@ class Mises(LawOfTheCore):
     chaboche : sequence of (C, gamma), optional
         Back-stresses ``db = 2/3 C dep - gamma b dp``; C [force/length^2] > 0, gamma >= 0. With
         `kinematic` at most six.
+    rate : CowperSymonds, YieldRatio, RateCurves or Norton, optional
+        Rise of the yield stress with the rate of the plastic strain, or creep. With
+        :class:`~corota.Norton` a yield stress is optional.
 
     Raises
     ------
@@ -102,16 +107,20 @@ class Mises(LawOfTheCore):
     isotropic: float | Voce = 0.0
     kinematic: float = 0.0
     chaboche: Sequence[tuple[float, float]] = ()
+    rate: Rate | None = None
     #: Location of each row of the yield curve in a deck.
     rows: Sequence[Location] = field(default=(), kw_only=True, compare=False, repr=False)
 
-    law = "mises"
     elastic_constants = 2
+    law = "mises"
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)
         self._check_motion()
-        if (self.yield_curve is None) == (self.yield_stress is None):
+        self.depends_on_time = self.rate is not None
+        self.law = "viscoplastic" if self.depends_on_time else "mises"
+        given = (self.yield_curve is not None) + (self.yield_stress is not None)
+        if given > 1 or (given == 0 and not isinstance(self.rate, Norton)):
             raise InputError("give either yield_curve or yield_stress", self.where)
         if self.yield_curve is not None:
             if self.isotropic != 0.0:
@@ -129,9 +138,14 @@ class Mises(LawOfTheCore):
                     self.where,
                 ) from None
             self._check_curve(curve)
-        else:
-            assert self.yield_stress is not None
+        elif self.yield_stress is not None:
             _positive(self.yield_stress, "the yield stress", self.where)
+        elif self.isotropic != 0.0 or self.back_stresses:
+            raise InputError(
+                "hardening without a yield stress: give yield_stress or yield_curve", self.where
+            )
+        if isinstance(self.rate, RateCurves):
+            self._check_rate_curves(self.rate)
         law = self.isotropic if isinstance(self.isotropic, Voce) else Voce(0.0, 0.0, self.isotropic)
         for name, value in (("Q", law.Q), ("b", law.b), ("the isotropic slope", law.H)):
             self._not_negative(name, value)
@@ -145,6 +159,16 @@ class Mises(LawOfTheCore):
                 f"{len(self.back_stresses)}; fit the curve with fewer",
                 self.where,
             )
+
+    def _check_rate_curves(self, rate: RateCurves) -> None:
+        if self.yield_curve is None:
+            raise InputError("RateCurves need a yield_curve, that at rate 0", self.where)
+        for _, curve in rate.curves:
+            self._check_curve([(float(s), float(p)) for s, p in curve])
+        try:
+            rate.joined(self.yield_curve)
+        except InputError as error:
+            raise InputError(error.message, self.where) from None
 
     def _not_negative(self, name: str, value: float) -> None:
         if not (math.isfinite(value) and value >= 0.0):
@@ -179,6 +203,11 @@ class Mises(LawOfTheCore):
                 )
 
     @property
+    def has_yield(self) -> bool:
+        """Whether it has a yield stress; creep needs none."""
+        return self.yield_curve is not None or self.yield_stress is not None
+
+    @property
     def back_stresses(self) -> list[tuple[float, float]]:
         """Pairs (C, gamma), the linear one first."""
         linear = [(float(self.kinematic), 0.0)] if self.kinematic else []
@@ -188,21 +217,37 @@ class Mises(LawOfTheCore):
     def first_yield(self) -> float:
         if self.yield_curve is not None:
             return float(self.yield_curve[0][0])
-        assert self.yield_stress is not None
-        return self.yield_stress
+        # Creep alone has no yield: a stress for pictures and scales.
+        return 1e-3 * self.E if self.yield_stress is None else self.yield_stress
 
     def compliance(self) -> Floats:
         return isotropic_compliance(self.E, self.nu)
 
     def parameters(self, orientation: float = 0.0) -> list[float]:
-        """``E, nu, n``, n pairs ``C, gamma``, then the kind of hardening and its numbers."""
+        """``E, nu, n``, n pairs ``C, gamma``, then the kind of hardening and its numbers.
+
+        With a rate: the number of these numbers before them, then the same of the rate, and 0.
+        """
         back = self.back_stresses
         numbers = [float(self.E), float(self.nu), float(len(back))]
         numbers += [value for pair in back for value in pair]
+        hardening = self._hardening()
+        if self.rate is None:
+            return numbers + hardening
+        if isinstance(self.rate, RateCurves):
+            assert self.yield_curve is not None
+            rate = self.rate.numbers(self.yield_curve)
+        else:
+            rate = self.rate.numbers()
+        return [*numbers, float(len(hardening)), *hardening, float(len(rate)), *rate, 0.0]
+
+    def _hardening(self) -> list[float]:
+        """Kind of the isotropic hardening and its numbers; empty without a yield stress."""
         if self.yield_curve is not None:
-            return [*numbers, 1.0, *(float(v) for point in self.yield_curve for v in point)]
-        assert self.yield_stress is not None
+            return [1.0, *(float(v) for point in self.yield_curve for v in point)]
+        if self.yield_stress is None:
+            return []
         if isinstance(self.isotropic, Voce):
             law = self.isotropic
-            return [*numbers, 2.0, self.yield_stress, law.Q, law.b, law.H]
-        return [*numbers, 0.0, self.yield_stress, float(self.isotropic)]
+            return [2.0, float(self.yield_stress), law.Q, law.b, law.H]
+        return [0.0, float(self.yield_stress), float(self.isotropic)]

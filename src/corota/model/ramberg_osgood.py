@@ -83,7 +83,9 @@ class RambergOsgood(LawOfTheCore):
     def first_yield(self) -> float:
         return self.yield_stress
 
-    def uniaxial(self, strain: ArrayLike) -> NDArray[np.float64]:
+    def uniaxial(
+        self, strain: ArrayLike, time: ArrayLike | None = None, lasting: bool = True
+    ) -> NDArray[np.float64]:
         """Uniaxial stress at axial strains, from the law itself by bisection."""
         wanted = self.E * np.abs(np.asarray(strain, float))
         # Either term alone would give too large a stress.

@@ -19,7 +19,13 @@ if TYPE_CHECKING:
 class SinglePoint(Material):
     """A law of the core that can be evaluated at a single point."""
 
-    def respond(self, strain: ArrayLike, plane: str = "stress") -> dict[str, Floats]:
+    def respond(
+        self,
+        strain: ArrayLike,
+        plane: str = "stress",
+        time: ArrayLike = (),
+        lasting: bool = True,
+    ) -> dict[str, Floats]:
         """Response of a single point to a strain path, one implicit step per row.
 
         Parameters
@@ -27,6 +33,10 @@ class SinglePoint(Material):
         strain : array_like, shape (n, 3)
             Rows xx, yy, xy (engineering shear).
         plane : {"stress", "strain"}
+        time : array_like, shape (n,), optional
+            Times of the rows after the start, for laws that depend on it; without it, none passes.
+        lasting : bool
+            Whether slow processes take part: creep and relaxation.
 
         Returns
         -------
@@ -39,7 +49,14 @@ class SinglePoint(Material):
         path = np.ascontiguousarray(np.atleast_2d(np.asarray(strain, float)))
         n = len(path)
         raw: dict[str, Any] = _core.material_path(
-            self.law, self.parameters(), plane, path, np.zeros(0)
+            self.law,
+            self.parameters(),
+            plane,
+            path,
+            np.zeros(0),
+            np.asarray(time, float).tolist(),
+            0.0,
+            lasting,
         )
         shapes = {"stress": (n, 3), "tangent": (n, 3, 3), "derivative": (n, 3, 3), "zz": (n, 2)}
         shapes["state"] = (n, -1)
@@ -58,12 +75,16 @@ class LawOfTheCore(SinglePoint, ABC):
     def first_yield(self) -> float:
         """Uniaxial stress where plastic strain begins or becomes noticeable [force/length^2]."""
 
-    def uniaxial(self, strain: ArrayLike) -> Floats:
+    def uniaxial(
+        self, strain: ArrayLike, time: ArrayLike | None = None, lasting: bool = True
+    ) -> Floats:
         """Uniaxial stress along a path of axial strains.
 
         Parameters
         ----------
         strain : array_like, shape (n,)
+        time, lasting
+            As in :meth:`respond`.
 
         Returns
         -------
@@ -73,17 +94,21 @@ class LawOfTheCore(SinglePoint, ABC):
         import corota._core as _core
 
         state = np.zeros(0)
-        side = 0.0
+        side = before = 0.0
         out = []
-        for axial in np.asarray(strain, float):
+        path = np.asarray(strain, float)
+        times = np.zeros(len(path)) if time is None else np.asarray(time, float)
+        for axial, now in zip(path, times, strict=True):
             for _ in range(50):
                 point = np.array([[axial, side, 0.0]])
-                raw = _core.material_path(self.law, self.parameters(), "stress", point, state)
+                raw = _core.material_path(
+                    self.law, self.parameters(), "stress", point, state, [now], before, lasting
+                )
                 step = raw["stress"][1] / raw["tangent"][4]
                 if abs(raw["stress"][1]) <= 1e-12 * (abs(raw["stress"][0]) + 1e-12 * self.E):
                     break
                 side -= step
-            state = raw["state"]
+            state, before = raw["state"], now
             out.append(raw["stress"][0])
         return np.array(out)
 

@@ -311,6 +311,8 @@ class Static(Step):
     plastic_increment: float = 0.0
 
     procedure = "static"
+    #: Whether creep and relaxation take part.
+    lasting: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.plastic_increment) and self.plastic_increment >= 0.0):
@@ -344,6 +346,39 @@ class Static(Step):
         super().__post_init__()
         self.first_increment, self.largest_increment = first, largest
         self.smallest_increment = min(self.smallest_increment, 1e-6 * first)
+
+
+@dataclass(kw_only=True)
+class Visco(Static):
+    """Static equilibrium over a time in which materials creep and relax.
+
+    Loads without amplitude act at once, unless ``ramp=True``.
+
+    Parameters
+    ----------
+    creep_tolerance : float
+        Largest error of the creep strain in an increment at any point: the difference between the
+        creep by the stress at its start and that of the increment. Larger increments are cut back;
+        after smaller errors they grow. 0 for no limit.
+
+    Notes
+    -----
+    As ``*VISCO, CETOL=``. In other static steps the time only counts for rates of plastic flow.
+    """
+
+    ramp: bool = False
+    creep_tolerance: float = 0.0
+
+    lasting: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        if self.path is not None:
+            raise InputError("a step of creep follows its time, not a path", self.where)
+        if not (math.isfinite(self.creep_tolerance) and self.creep_tolerance >= 0.0):
+            raise InputError(
+                f"creep_tolerance must be >= 0, not {self.creep_tolerance}", self.where
+            )
+        super().__post_init__()
 
 
 @dataclass(kw_only=True)
@@ -389,6 +424,7 @@ class Dynamic(Step):
 
     procedure = "dynamic"
     starts_in_motion = True
+    lasting: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         self._control_numbers()

@@ -45,6 +45,8 @@ STALLED = 3
 RESTS = 4
 #: Residual after a first iteration with the elastic tangent up to which an increment unloads.
 ELASTIC = 0.01
+#: Share of the increment that would have the allowed error of creep, and largest growth.
+CREEP_SAFETY, MOST_GROWTH = 0.9, 4.0
 #: Note of the iterations of such an attempt.
 UNLOADING = "line search from the elastic tangent"
 
@@ -98,6 +100,8 @@ class StaticStepper(NewtonStepper):
         self.moved: np.ndarray[tuple[int], np.dtype[np.float64]] | None = None
         #: Growth of the plastic strain in the last attempt.
         self.grown = 0.0
+        #: Error of the creep strain in the last attempt, and the largest that is allowed.
+        self.erred, self.creep_tolerance = 0.0, getattr(step, "creep_tolerance", 0.0)
         self.path_took_over = False
         #: Step times between which the last attempt lost stability.
         self.passed: tuple[float, float] | None = None
@@ -151,7 +155,14 @@ class StaticStepper(NewtonStepper):
             else:
                 again.iterations += outcome.iterations
                 outcome, contact = again, its_contact
-        self.grown = 0.0
+        self.grown = self.erred = 0.0
+        if outcome.converged and not outcome.reason and self.creep_tolerance:
+            self.erred = system.elements.creep_error()
+            if self.erred > self.creep_tolerance:
+                outcome.reason = (
+                    f"the creep strain of the increment has an error of {self.erred:.3g}, "
+                    f"{self.creep_tolerance:g} is allowed"
+                )
         if outcome.converged and not outcome.reason and step.plastic_increment:
             self.grown = system.elements.plastic_increment()
             if self.grown > step.plastic_increment:
@@ -335,6 +346,11 @@ class StaticStepper(NewtonStepper):
         control.accept(attempt.target, outcome.iterations)
         if self.grown > 0.0 and not self.step.fixed_increments:
             control.size = min(control.size, dt * self.step.plastic_increment / self.grown)
+        if self.creep_tolerance and not self.step.fixed_increments:
+            share = self.creep_tolerance / max(self.erred, 1e-300)
+            # The error grows with the square of the increment.
+            factor = min(MOST_GROWTH, CREEP_SAFETY * math.sqrt(share))
+            control.size = min(dt * factor, self.step.largest_increment)
         scalars: dict[str, float] = {
             "dt": dt,
             "iterations": float(outcome.iterations),

@@ -337,6 +337,11 @@ class Conditions(Term):
                 "a step that follows a path needs loads that grow (ramp=True, AMPLITUDE=RAMP)"
             )
         materials = [block.section.material for block in self.system.blocks]
+        if self.system.depends_on_time:
+            raise ModelError(
+                "a step that follows a path has no time, but a material depends on it: use a step "
+                "by load control"
+            )
         linear = all(m.linear and not m.follows_temperature for m in materials)
         if self.heating.any() and not linear:
             raise ModelError(

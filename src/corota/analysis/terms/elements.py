@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from corota.analysis.numbered_model import NumberedModel
     from corota.analysis.terms.conditions import Conditions
     from corota.analysis.terms.term import StatePoint
+    from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
 
@@ -43,6 +44,22 @@ class Elements(Term):
     def __init__(self, system: NumberedModel, conditions: Conditions) -> None:
         self.system, self.conditions = system, conditions
         self.user = UserBlocks(system.core, system.own_blocks)
+        #: Total time at the start of the step, and step times of the last evaluation and the
+        #: committed state.
+        self.begun = self.seen = self.reached = 0.0
+        self.lasting = self.passes = False
+
+    def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
+        """Start a step at a total time."""
+        self.begun, self.seen, self.reached = time, 0.0, 0.0
+        self.passes = hasattr(step, "lasting")
+        self.lasting = getattr(step, "lasting", False)
+
+    def _set_clock(self, time: float) -> None:
+        """Tell the laws the time since the committed state."""
+        self.seen = time
+        passed = max(time - self.reached, 0.0) if self.passes else 0.0
+        self.system.core.set_clock(passed, self.begun + time, self.lasting)
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Fill in forces, their sizes and, unless it is empty, the tangent.
@@ -54,6 +71,7 @@ class Elements(Term):
         """
         system = self.system
         self.heat(point.time)
+        self._set_clock(point.time)
         here, nlgeom = system.in_space(point.u), system.nlgeom
 
         def assemble() -> None:
@@ -151,6 +169,8 @@ class Elements(Term):
 
     def holds(self, time: float) -> bool:
         """Whether the elements have the temperatures of a step time already."""
+        if self.system.depends_on_time and self.passes and time != self.seen:
+            return False
         free = self.system.free
         return not free.responds or free.follows(self.conditions.temperatures.at(time))
 
@@ -160,6 +180,10 @@ class Elements(Term):
         """Largest growth of the equivalent plastic strain since the last commit."""
         own = max(float(self.system.core.plastic_increment()), self.user.plastic_increment())
         return self.system.communicator.greatest(own)
+
+    def creep_error(self) -> float:
+        """Largest error of the creep strain of the last evaluation."""
+        return self.system.communicator.greatest(float(self.system.core.creep_error()))
 
     @contextmanager
     def unloading(self, u: Floats) -> Iterator[None]:
@@ -183,6 +207,7 @@ class Elements(Term):
         here, none, about = system.in_space(u), np.empty(0), system.about_linear
 
         def assemble() -> None:
+            system.core.set_clock(0.0, 0.0, False)
             system.core.assemble(here, system.nlgeom, force, scale, none, about)
 
         self._run(here, assemble)
@@ -196,6 +221,7 @@ class Elements(Term):
         """Accept the last evaluated state."""
         self.system.core.commit()
         self.user.commit()
+        self.reached = self.seen
 
 
 __all__ = ["Elements"]

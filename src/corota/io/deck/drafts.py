@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints
     from corota.model.loads import LoadKind
     from corota.model.materials import Elastic, Expansion
+    from corota.model.rates import Norton
     from corota.model.steps import Output, Step
+    from corota.model.viscoelastic import WLF
 
 
 @dataclass(eq=False, repr=False)
@@ -114,6 +116,8 @@ class PlasticDraft:
     curves: list[CurveDraft] = field(default_factory=list)
     cyclic_card: Card | None = None
     cyclic: list[CurveDraft] | None = None
+    #: Curves by rate of the plastic strain, where ``RATE=`` is given.
+    rated: list[tuple[float, list[tuple[float, float]]]] = field(default_factory=list)
 
 
 @dataclass(eq=False, repr=False)
@@ -147,6 +151,20 @@ class MaterialDraft:
     damping: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDraft | None = None
     expansion: float | Expansion = 0.0
+    #: Rate of plastic flow (of Johnson-Cook C and a rate), with its card; creep by temperature.
+    rate: Any = None
+    rate_card: Card | None = None
+    creep: list[tuple[float, Norton]] = field(default_factory=list)
+    #: Numbers of Johnson-Cook hardening, and of its heat.
+    johnson_cook: list[float] | None = None
+    johnson_cook_card: Card | None = None
+    specific_heat: float = 0.0
+    #: Terms of a Prony series with its card, its shift, and what the constants are.
+    prony: list[tuple[float, float, float]] = field(default_factory=list)
+    prony_card: Card | None = None
+    shift: WLF | None = None
+    moduli: str = "LONGTERM"
+    heat_fraction: float = 0.0
     #: Kind, number of terms and Poisson's ratio of a hyperelastic law that is fitted to `tests`.
     fit: tuple[str, int, float] | None = None
     tests: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
@@ -157,6 +175,11 @@ class MaterialDraft:
         counts = [len(self.constants), len(self.densities)]
         if self.plastic is not None:
             counts += [len(self.plastic.curves), len(self.plastic.cyclic or ())]
+        if self.johnson_cook is not None and self.johnson_cook[4] > self.johnson_cook[5]:
+            return True
+        if self.shift is not None:
+            return True
+        counts.append(len(self.creep))
         return max(counts) > 1
 
 

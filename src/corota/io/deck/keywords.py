@@ -94,7 +94,7 @@ _TABLE: dict[str, Keyword] = {
         place="model",
     ),
     "MATERIAL": Keyword(card("material.material"), "NAME", place="model"),
-    "ELASTIC": Keyword(card("material.elastic"), "TYPE", "MODULI", place="model"),
+    "ELASTIC": Keyword(card("material.elastic"), "TYPE MODULI", place="model"),
     # Laws with a card of their own.
     **{
         law.card: Keyword(partial(card("material.constants"), law=name), place="model")
@@ -104,10 +104,14 @@ _TABLE: dict[str, Keyword] = {
     "HYPERELASTIC": Keyword(
         card("hyperelastic.hyperelastic"),
         "NEOHOOKE MOONEY-RIVLIN YEOH ARRUDA-BOYCE POLYNOMIAL REDUCEDPOLYNOMIAL OGDEN N "
-        "TESTDATAINPUT POISSON",
+        "TESTDATAINPUT POISSON MODULI",
         place="model",
     ),
-    "HYPERFOAM": Keyword(card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON", place="model"),
+    "HYPERFOAM": Keyword(
+        card("hyperelastic.hyperfoam"), "N TESTDATAINPUT POISSON MODULI", place="model"
+    ),
+    "VISCOELASTIC": Keyword(card("viscoelastic.viscoelastic"), "TIME", place="model"),
+    "TRS": Keyword(card("viscoelastic.trs"), "DEFINITION", place="model"),
     **{
         f"{test.upper()} TEST DATA": Keyword(
             partial(card("hyperelastic.test_data"), test=test), place="model"
@@ -117,8 +121,12 @@ _TABLE: dict[str, Keyword] = {
     "DENSITY": Keyword(card("material.density"), place="model"),
     "EXPANSION": Keyword(card("thermal.expansion"), "TYPE ZERO", place="model"),
     "PLASTIC": Keyword(
-        card("plastic.plastic"), "HARDENING DATATYPE NUMBERBACKSTRESSES", place="model"
+        card("plastic.plastic"), "HARDENING DATATYPE NUMBERBACKSTRESSES RATE", place="model"
     ),
+    "RATE DEPENDENT": Keyword(card("rates.rate_dependent"), "TYPE", place="model"),
+    "CREEP": Keyword(card("rates.creep"), "LAW", place="model"),
+    "SPECIFIC HEAT": Keyword(card("rates.specific_heat"), "", place="model"),
+    "INELASTIC HEAT FRACTION": Keyword(card("rates.heat_fraction"), "", place="model"),
     "CYCLIC HARDENING": Keyword(card("plastic.cyclic_hardening"), "PARAMETERS", place="model"),
     "SOLID SECTION": Keyword(
         card("material.solid_section"),
@@ -173,6 +181,7 @@ _TABLE: dict[str, Keyword] = {
         "DIRECT RIKS STABILIZE",
         "SOLVER TIMERESET ALLSDTOL CONTINUE FACTOR ADIABATIC LONGTERM",
     ),
+    "VISCO": Keyword(card("rates.visco"), "DIRECT CETOL", "SOLVER"),
     "BUCKLE": Keyword(card("path.buckle"), "", "SOLVER EIGENSOLVER"),
     "CONTROLS": Keyword(card("path.controls"), "PARAMETERS RESET", "ANALYSIS TYPE"),
     "DYNAMIC": Keyword(

@@ -21,10 +21,8 @@ IGNORED: dict[str, str] = {
     **dict.fromkeys(
         (
             "CONDUCTIVITY",
-            "SPECIFICHEAT",
             "LATENTHEAT",
             "PHYSICALCONSTANTS",
-            "INELASTICHEATFRACTION",
             "JOULEHEATFRACTION",
             "ELECTRICALCONDUCTIVITY",
         ),
@@ -61,7 +59,8 @@ _MPC = "use *EQUATION, *RIGID BODY, or *COUPLING with *KINEMATIC or *DISTRIBUTIN
 HEAT = "heat conduction is not part of this version; give temperatures by *TEMPERATURE"
 _OWN_CARDS = ", ".join(f"*{law.card}" for name, law in LAWS.items() if key(law.card) == name)
 PLASTIC = (
-    f"the material laws are *ELASTIC, *PLASTIC, *HYPERELASTIC, *HYPERFOAM, {_OWN_CARDS}; use these"
+    f"the material laws are *ELASTIC, *PLASTIC, *RATE DEPENDENT, *CREEP, *HYPERELASTIC, "
+    f"*HYPERFOAM, {_OWN_CARDS}; use these"
 )
 PROCEDURE = "this procedure is not part of this version"
 _LINE = "only planar solids, trusses, beams and springs are part of this version"
@@ -109,13 +108,10 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "CREEP",
-            "RATEDEPENDENT",
             "DEPVAR",
             "USERMATERIAL",
             "MOHRCOULOMB",
             "CHANGEPLASTIC",
-            "VISCOELASTIC",
             "DAMAGEINITIATION",
             "DAMAGEEVOLUTION",
             "UMAT",
@@ -134,7 +130,6 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "VISCO",
             "GREEN",
             "SENSITIVITY",
             "CRACKPROPAGATION",

@@ -15,13 +15,20 @@ from corota.io.deck.laws import LAWS
 from corota.io.deck.lexer import key
 from corota.lazy import lazy
 from corota.model.material_table import MaterialTable
+from corota.model.plasticity import Mises
+from corota.model.rates import Norton, RateCurves
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from corota.io.deck.deck import Deck
     from corota.io.deck.drafts import MaterialDraft
     from corota.model.materials import Material
+    from corota.model.rates import Rate
 
 build_mises = lazy("corota.io.deck.cards.plastic:build_mises")
+build_viscoelastic = lazy("corota.io.deck.cards.viscoelastic:build_viscoelastic")
+build_johnson_cook = lazy("corota.io.deck.cards.rates:build_johnson_cook")
 
 
 def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) -> Material | None:
@@ -35,8 +42,16 @@ def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) 
         return None
     if draft.law_card is None:
         return None
+    if (draft.specific_heat or draft.heat_fraction) and draft.johnson_cook is None:
+        deck.note(
+            f"{draft.card.where}: the heat of material {draft.name} has no effect: plastic work "
+            "heats *PLASTIC, HARDENING=JOHNSON COOK alone, and there is no conduction"
+        )
     try:
         found = _by_temperature(draft)
+        if draft.prony_card is not None and found is not None:
+            relaxing: Material = build_viscoelastic(draft, found, temperature)
+            return relaxing
         if found is None or not isinstance(found, MaterialTable) or temperature is None:
             return found
         deck.note(
@@ -48,6 +63,7 @@ def build_material(deck: Deck, draft: MaterialDraft, temperature: float | None) 
         # Constants of a plastic material are checked with its curve, on the card of the curve.
         plastic = draft.plastic
         card = draft.law_card if plastic is None else plastic.card or plastic.cyclic_card
+        card = draft.johnson_cook_card or draft.prony_card or card
         deck.error(card, error.where or draft.law_where, error.message)
         return None
 
@@ -70,22 +86,32 @@ def _by_temperature(draft: MaterialDraft) -> Material | None:
     def constants(at: float) -> list[float]:
         return [float(np.interp(at, given, column)) for column in columns]
 
-    if draft.plastic is None:
+    if draft.johnson_cook is not None:
+        e, nu = constants(given[0])[:2]
+        johnson: Material = build_johnson_cook(draft, (e, nu), True, **common)
+        return johnson
+    rate_of = _rate(draft)
+    if draft.plastic is None and rate_of is not None:
+        rows: list[tuple[float, Material]] = [
+            (t, Mises(constants(t)[0], constants(t)[1], rate=rate_of(t), **common)) for t in given
+        ]
+    elif draft.plastic is None:
         # Interpolated stiffnesses do not give linearly interpolated constants.
         fine = [t for a, b in pairwise(given) for t in np.linspace(a, b, law.pieces + 1)[:-1]]
         temperatures = [float(t) for t in (*fine, *given[-1:])]
-        rows: list[tuple[float, Material]] = [
-            (t, law.make(*constants(t), **common)) for t in temperatures
-        ]
+        rows = [(t, law.make(*constants(t), **common)) for t in temperatures]
     else:
         plastic = build_mises(draft, lambda at: (constants(at)[0], constants(at)[1]), **common)
         if plastic is None:
             return None
         rows = list(plastic)
+        if rate_of is not None:
+            rows = [(t, replace(m, rate=rate_of(t))) for t, m in plastic]
     density = sorted(draft.densities)
     every = set(given if len(given) > 1 else ())
     every |= {t for t, _ in density} if len(density) > 1 else set()
     every |= {t for t, _ in rows} if len(rows) > 1 else set()
+    every |= {t for t, _ in draft.creep} if len(draft.creep) > 1 else set()
     if not every:
         return replace(rows[0][1], rho=draft.rho)
     table = MaterialTable(rows, **common)
@@ -94,10 +120,50 @@ def _by_temperature(draft: MaterialDraft) -> Material | None:
         own: dict[str, Any] = {"rho": draft.rho}
         if len(density) > 1:
             own["rho"] = float(np.interp(t, *np.array(density).T))
-        if draft.plastic is not None:
+        if rate_of is not None:
+            own["rate"] = rate_of(t)
+        if draft.plastic is not None or rate_of is not None:
             own |= dict(zip(("E", "nu"), constants(t), strict=True))
         whole.append((t, replace(table.at(t), **own)))
     return MaterialTable(whole, **common)
+
+
+def _rate(draft: MaterialDraft) -> Callable[[float], Rate] | None:
+    """Rate of the plastic flow or creep at a temperature; ``None`` where there is none.
+
+    Raises
+    ------
+    InputError
+        If it does not go with the other cards of the material.
+    """
+    rated = sorted(draft.plastic.rated) if draft.plastic is not None else []
+    card = draft.rate_card
+    if card is None:
+        if not rated:
+            return None
+        # The lowest curve is that of smaller rates too.
+        curves = RateCurves(rated[1:] if rated[0][0] == 0.0 else rated)
+        return lambda _: curves
+    if rated:
+        raise InputError("the curves of *PLASTIC, RATE= have the rate already", card.where)
+    if draft.law != "ISOTROPIC":
+        raise InputError(f"{card.spelled} needs isotropic constants in *ELASTIC", card.where)
+    if isinstance(draft.rate, tuple):
+        raise InputError("TYPE=JOHNSON COOK goes with *PLASTIC, HARDENING=JOHNSON COOK", card.where)
+    if draft.plastic is None and not draft.creep:
+        raise InputError(f"{card.spelled} needs *PLASTIC in the same material", card.where)
+    if not draft.creep:
+        constant: Rate = draft.rate
+        return lambda _: constant
+    first = draft.creep[0][1]
+    temperatures = [t for t, _ in draft.creep]
+    columns = np.array([(law.A, law.n, law.m) for _, law in draft.creep]).T
+
+    def creep(at: float) -> Norton:
+        a, n, m = (float(np.interp(at, temperatures, column)) for column in columns)
+        return Norton(a, n, m, first.hardening)
+
+    return creep
 
 
 def share_damping(deck: Deck) -> None:

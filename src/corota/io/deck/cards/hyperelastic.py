@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from corota.io.deck.cards.material import constants, open_material
+from corota.io.deck.cards.material import constants, moduli, open_material
 from corota.model import hyperelastic as rubber
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def hyperfoam(deck: Deck, card: Card) -> None:
 
 
 def _law(deck: Deck, card: Card, kind: str) -> None:
+    moduli(deck, card)
     most = MOST.get(kind, 0)
     count = deck.parameter_integer(card, "N", 1, 1) if most else 0
     if count > most:

@@ -47,7 +47,15 @@ def elastic(deck: Deck, card: Card) -> None:
     if law is None:
         deck.choice(card, "TYPE", ("ISO", "ORTHO", "ENGINEERING CONSTANTS", "LAMINA"), "")
         return
+    moduli(deck, card)
     constants(deck, card, law)
+
+
+def moduli(deck: Deck, card: Card) -> None:
+    """``MODULI=``: whether constants are those at once, or after a viscoelastic body relaxed."""
+    kind = deck.choice(card, "MODULI", ("LONGTERM", "INSTANTANEOUS"), "LONGTERM")
+    if deck.material is not None:
+        deck.material.moduli = kind
 
 
 def constants(deck: Deck, card: Card, law: str) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from corota.errors import InputError
 from corota.io.deck import numerals
 from corota.io.deck.cards.material import open_material
+from corota.io.deck.cards.rates import johnson_cook
 from corota.io.deck.drafts import CurveDraft, PlasticDraft
 from corota.model.plasticity import Mises, Voce
 
@@ -24,11 +25,18 @@ MOST_BACK_STRESSES = 20
 
 
 def plastic(deck: Deck, card: Card) -> None:
-    """``*PLASTIC[, HARDENING=]``: yield stress against plastic strain, or parameters."""
+    """``*PLASTIC[, HARDENING=][, RATE=]``: yield stress against plastic strain, or parameters."""
     found = open_material(deck, card)
     if found is None:
         return
-    kind = deck.choice(card, "HARDENING", ("ISOTROPIC", "KINEMATIC", "COMBINED"), "ISOTROPIC")
+    kinds = ("ISOTROPIC", "KINEMATIC", "COMBINED", "JOHNSONCOOK")
+    kind = deck.choice(card, "HARDENING", kinds, "ISOTROPIC")
+    if kind == "JOHNSONCOOK":
+        johnson_cook(deck, card)
+        return
+    if card.has("RATE"):
+        _curve_of_rate(deck, card, found, kind)
+        return
     data = deck.choice(card, "DATATYPE", ("HALFCYCLE", "PARAMETERS"), "HALFCYCLE")
     if data == "PARAMETERS" and kind != "COMBINED":
         deck.error(card, card.at("DATATYPE"), "DATA TYPE=PARAMETERS needs HARDENING=COMBINED")
@@ -57,6 +65,31 @@ def plastic(deck: Deck, card: Card) -> None:
             "give HARDENING=COMBINED, DATA TYPE=PARAMETERS with several back-stresses",
         )
         draft.ready = False
+
+
+def _curve_of_rate(deck: Deck, card: Card, found: MaterialDraft, kind: str) -> None:
+    """One of several curves, each at a rate of the plastic strain."""
+    rate = deck.parameter_number(card, "RATE", 0.0, 0.0)
+    draft = found.plastic = found.plastic or PlasticDraft()
+    if kind != "ISOTROPIC" or (draft.card is not None and not draft.rated):
+        deck.error(card, card.at("RATE"), "RATE= belongs to isotropic tables, in every *PLASTIC")
+        return
+    table = _table(deck, card)
+    draft.ready = draft.ready and table is not None
+    if table is None:
+        return
+    if len(table) > 1:
+        deck.error(card, card.at("RATE"), "curves by rate take one temperature")
+        draft.ready = False
+        return
+    if any(other == rate for other, _ in draft.rated):
+        deck.error(card, card.at("RATE"), f"the rate {rate:g} is given twice")
+        draft.ready = False
+        return
+    if draft.card is None or rate < min(other for other, _ in draft.rated):
+        # The curve at the lowest rate is that below it too.
+        draft.card, draft.curves = card, table
+    draft.rated.append((rate, table[0].points))
 
 
 def _parameters(deck: Deck, card: Card, draft: PlasticDraft) -> bool:

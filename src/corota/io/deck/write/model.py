@@ -26,7 +26,7 @@ from corota.io.deck.write.contact import contact_cards
 from corota.io.deck.write.lines import LINE_TYPES, line_cards
 from corota.io.deck.write.loads import boundary
 from corota.io.deck.write.mesh import TYPES
-from corota.io.deck.write.plastic import plastic_cards
+from corota.io.deck.write.plastic import plastic_cards, prony_cards
 from corota.io.deck.write.steps import step_cards
 from corota.io.deck.write.text import number, plain, rows
 from corota.io.deck.write.thermal import expansion_cards, initial_cards
@@ -35,6 +35,7 @@ from corota.mesh.parts import cells_of, nodes_of_cells
 from corota.model.local_strain import dialect_strain
 from corota.model.material_table import MaterialTable
 from corota.model.steps import Static, Step
+from corota.model.viscoelastic import Viscoelastic
 
 if TYPE_CHECKING:
     import os
@@ -216,12 +217,20 @@ class _Writer:
         while name in self._materials.values():
             name += "_"
         self._materials[index] = name
+        relaxing = material
+        if isinstance(material, Viscoelastic):
+            material = material.parent
         law = law_cards(material, number)
         if law is None:
             raise UnsupportedError(
                 f"a material of type {type(material).__name__} cannot be written to a deck"
             )
+        if isinstance(relaxing, Viscoelastic) and relaxing.moduli == "instantaneous":
+            law = law.replace("\n", ", MODULI=INSTANTANEOUS\n", 1)
         lines.append(f"*MATERIAL, NAME={name}\n{law}{plastic_cards(material)}")
+        if isinstance(relaxing, Viscoelastic):
+            lines.append(prony_cards(relaxing))
+            material = relaxing
         lines.append(expansion_cards(material) + damping_card(material.rayleigh))
         if isinstance(material, MaterialTable) and material.density_varies:
             lines.append("*DENSITY\n")

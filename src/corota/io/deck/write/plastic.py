@@ -6,14 +6,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from corota.errors import UnsupportedError
-from corota.io.deck.write.text import numbers
+from corota.io.deck.write.text import number, numbers
+from corota.model.johnson_cook import JohnsonCook
 from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises, Voce
+from corota.model.rates import Norton, RateCurves, YieldRatio
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from corota.model.materials import Material
+    from corota.model.viscoelastic import Viscoelastic
 
 #: Plastic strain up to which a table represents linear hardening, beyond any analysis.
 FAR = 100.0
@@ -36,10 +39,70 @@ def plastic_cards(material: Material) -> str:
     table: Sequence[tuple[float | None, Material]] = [(None, material)]
     if isinstance(material, MaterialTable):
         table = material.table
+    if isinstance(table[0][1], JohnsonCook):
+        return _johnson_cook(table[0][1], len(table) > 1)
     # The temperature follows its numbers.
     rows = [((t,) if t is not None else (), m) for t, m in table if isinstance(m, Mises)]
     if not rows:
         return ""
+    rate = rate_cards(rows)
+    if not rows[0][1].has_yield or isinstance(rows[0][1].rate, RateCurves):
+        return rate
+    return _hardening_cards(material, rows) + rate
+
+
+def _johnson_cook(material: JohnsonCook, by_temperature: bool) -> str:
+    """Cards of Johnson-Cook plasticity."""
+    if material.temperature is not None and not by_temperature:
+        raise UnsupportedError(
+            f"material {material.name or 'JohnsonCook'}: its temperature has no card in a deck: "
+            "use with_temperatures() and the temperatures of the model"
+        )
+    numbers_ = [material.A, material.B, material.n]
+    if material.melting is not None:
+        numbers_ += [material.m, material.melting, material.transition]
+    text = f"*PLASTIC, HARDENING=JOHNSON COOK\n{numbers(numbers_)}\n"
+    if material.C:
+        text += f"*RATE DEPENDENT, TYPE=JOHNSON COOK\n{numbers((material.C, material.rate))}\n"
+    if material.heat_fraction:
+        text += f"*SPECIFIC HEAT\n{numbers((material.specific_heat,))}\n"
+        text += f"*INELASTIC HEAT FRACTION\n{numbers((material.heat_fraction,))}\n"
+    return text
+
+
+def rate_cards(rows: Sequence[tuple[tuple[float, ...], Mises]]) -> str:
+    """Cards of the rate of plastic flow, or of creep; empty without one."""
+    first = rows[0][1]
+    rate = first.rate
+    if rate is None:
+        return ""
+    if isinstance(rate, RateCurves):
+        assert first.yield_curve is not None
+        curves = [(0.0, first.yield_curve), *rate.curves]
+        return "".join(
+            f"*PLASTIC, RATE={number(at)}\n" + "".join(numbers(point) + "\n" for point in curve)
+            for at, curve in curves
+        )
+    if isinstance(rate, YieldRatio):
+        lines = "".join(numbers(row) + "\n" for row in rate.table)
+        return f"*RATE DEPENDENT, TYPE=YIELD RATIO\n{lines}"
+    if isinstance(rate, Norton):
+        lines = "".join(
+            numbers((m.rate.A, m.rate.n, m.rate.m, *at)) + "\n"
+            for at, m in rows
+            if isinstance(m.rate, Norton)
+        )
+        return f"*CREEP, LAW={rate.hardening.upper()}\n{lines}"
+    if any(m.rate != rate for _, m in rows):
+        raise UnsupportedError(
+            f"material {first.name or 'Mises'}: a rate that follows the temperature has no card "
+            "in a deck"
+        )
+    return f"*RATE DEPENDENT\n{numbers((rate.D, rate.n))}\n"
+
+
+def _hardening_cards(material: Material, rows: Sequence[tuple[tuple[float, ...], Mises]]) -> str:
+    """Cards of the yield stress and its hardening."""
     laws, back = [m.isotropic for _, m in rows], rows[0][1].back_stresses
     if any(isinstance(law, Voce) and law.H for law in laws):
         raise UnsupportedError(
@@ -82,4 +145,24 @@ def _table(material: Mises, at: tuple[float, ...] = ()) -> str:
     return "".join(numbers((*point, *at)) + "\n" for point in curve)
 
 
-__all__ = ["plastic_cards"]
+def prony_cards(material: Viscoelastic) -> str:
+    """Cards of the relaxation of a viscoelastic material; its parent has its own.
+
+    Raises
+    ------
+    UnsupportedError
+        If its temperature differs from that of its times.
+    """
+    shift = material.shift
+    if shift is not None and material.temperature not in (None, shift.T0):
+        raise UnsupportedError(
+            f"material {material.name or 'Viscoelastic'}: its temperature cannot be written to a "
+            "deck: keep the model in Python"
+        )
+    text = "*VISCOELASTIC, TIME=PRONY\n" + "".join(numbers(row) + "\n" for row in material.terms)
+    if shift is not None:
+        text += f"*TRS\n{numbers((shift.T0, shift.C1, shift.C2))}\n"
+    return text
+
+
+__all__ = ["plastic_cards", "prony_cards"]

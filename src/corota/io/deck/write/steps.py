@@ -26,6 +26,7 @@ from corota.model.steps import (
     Static,
     SteadyState,
     Step,
+    Visco,
 )
 
 if TYPE_CHECKING:
@@ -159,7 +160,12 @@ def _static(says: _Says) -> tuple[str, str]:
             "whose steps take 1e-9 or a tighter one"
         )
     ramp = "" if step.ramp else "STEP"
-    plain_text = f"*STATIC{says.direct()}\n{says.times()}"
+    name = "STATIC"
+    if isinstance(step, Visco):
+        ramp, name = "RAMP" if step.ramp else "", "VISCO"
+        if step.creep_tolerance:
+            name += f", CETOL={number(step.creep_tolerance)}"
+    plain_text = f"*{name}{says.direct()}\n{says.times()}"
     text = plain_text if step.path is None else _riks(says, step)
     most = getattr(step.path, "increments", 0) or step.max_increments
     most = min(most, step.max_increments)
@@ -296,6 +302,7 @@ def _outputs(writer: Writer, step: Step) -> Iterator[str]:
 #: Writers of the cards of a procedure: ``*STEP``, and the procedure itself.
 PROCEDURES: dict[type[Step], Callable[[_Says], tuple[str, str]]] = {
     Static: _static,
+    Visco: _static,
     Dynamic: _dynamic,
     Buckle: _buckle,
     Frequency: _frequency,
