@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from corota.model.attachments import Dashpot, PointMass
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
     from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+    from corota.model.hill import Hill
     from corota.model.hyperelastic import (
         ArrudaBoyce,
         Hyperfoam,
@@ -183,6 +184,7 @@ _HOMES = {
     "value_and_grad": "gradients",
     "write": "io.formats",
     "JohnsonCook": "model.johnson_cook",
+    "Hill": "model.hill",
     "CowperSymonds": "model.rates",
     "Norton": "model.rates",
     "RateCurves": "model.rates",
@@ -224,6 +226,7 @@ __all__ = [
     "Force",
     "Frame",
     "Frequency",
+    "Hill",
     "History",
     "Hyperfoam",
     "InitialStress",

@@ -6,6 +6,7 @@ pub mod by_temperature;
 pub mod clock;
 pub mod elastic;
 pub mod hardening;
+pub mod hill;
 pub mod hyperelastic;
 pub mod hyperfoam;
 pub mod law;
@@ -30,6 +31,7 @@ macro_rules! laws {
             elastic::Elastic,
             orthotropic::Orthotropic,
             mises::Mises,
+            hill::Hill,
             viscoplastic::Viscoplastic,
             viscoelastic::Viscoelastic,
             ramberg_osgood::RambergOsgood,

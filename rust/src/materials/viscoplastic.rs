@@ -168,7 +168,7 @@ impl Rate {
             [4.0, count, ref rest @ ..]
                 if count >= 2.0
                     && rest.len() > count as usize
-                    && (rest.len() - count as usize) % count as usize == 0 =>
+                    && (rest.len() - count as usize).is_multiple_of(count as usize) =>
             {
                 let count = count as usize;
                 let (rate, numbers) = rest.split_at(count);
@@ -336,7 +336,6 @@ impl RateFlow {
     fn cold<T: Real>(&self, start: &Start<T>, dp: T) -> (T, T) {
         let (y, h) = self.hardening.at(start.p + dp);
         match &self.rate {
-            Rate::None => (y, h),
             Rate::Power { rate, exponent } => {
                 let x = power(dp.scale(1.0 / (rate * start.time)), 1.0 / exponent);
                 let slope = y * x.scale(1.0 / exponent) / dp;
@@ -364,7 +363,7 @@ impl RateFlow {
                 let (over, slope) = self.overstress(start, dp);
                 (y + over, h + slope)
             }
-            Rate::Creep { .. } => (y, h),
+            Rate::None | Rate::Creep { .. } => (y, h),
         }
     }
 }

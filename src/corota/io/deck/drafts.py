@@ -159,6 +159,9 @@ class MaterialDraft:
     johnson_cook: list[float] | None = None
     johnson_cook_card: Card | None = None
     specific_heat: float = 0.0
+    #: Ratios of Hill's yield function, with their card.
+    potential: tuple[float, ...] = ()
+    potential_card: Card | None = None
     #: Terms of a Prony series with its card, its shift, and what the constants are.
     prony: list[tuple[float, float, float]] = field(default_factory=list)
     prony_card: Card | None = None

@@ -123,6 +123,7 @@ _TABLE: dict[str, Keyword] = {
     "PLASTIC": Keyword(
         card("plastic.plastic"), "HARDENING DATATYPE NUMBERBACKSTRESSES RATE", place="model"
     ),
+    "POTENTIAL": Keyword(card("plastic.potential"), "", place="model"),
     "RATE DEPENDENT": Keyword(card("rates.rate_dependent"), "TYPE", place="model"),
     "CREEP": Keyword(card("rates.creep"), "LAW", place="model"),
     "SPECIFIC HEAT": Keyword(card("rates.specific_heat"), "", place="model"),

@@ -11,6 +11,7 @@ import numpy as np
 
 from corota.errors import InputError
 from corota.model import hyperelastic as rubber
+from corota.model.hill import Hill
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.material_table import MaterialTable
 from corota.model.materials import Elastic, Orthotropic
@@ -175,7 +176,7 @@ LAWS: dict[str, DeckLaw] = {
         Elastic,
         per_row=2,
         optional=1,
-        writes=(Elastic, Mises, JohnsonCook),
+        writes=(Elastic, Mises, Hill, JohnsonCook),
         values=lambda m: (m.E, m.nu),
     ),
     "LAMINA": DeckLaw(

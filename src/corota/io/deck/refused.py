@@ -121,7 +121,6 @@ UNSUPPORTED: dict[str, str] = {
             "CONCRETEDAMAGEDPLASTICITY",
             "HYPOELASTIC",
             "SWELLING",
-            "POTENTIAL",
             "NOTENSION",
             "NOCOMPRESSION",
             "SUPERELASTIC",

@@ -91,6 +91,10 @@ def _by_temperature(draft: MaterialDraft) -> Material | None:
         johnson: Material = build_johnson_cook(draft, (e, nu), True, **common)
         return johnson
     rate_of = _rate(draft)
+    if draft.potential_card is not None and draft.plastic is None:
+        raise InputError(
+            "*POTENTIAL needs *PLASTIC in the same material", draft.potential_card.where
+        )
     if draft.plastic is None and rate_of is not None:
         rows: list[tuple[float, Material]] = [
             (t, Mises(constants(t)[0], constants(t)[1], rate=rate_of(t), **common)) for t in given

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import fields
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from corota.io.deck import numerals
 from corota.io.deck.cards.material import open_material
 from corota.io.deck.cards.rates import johnson_cook
 from corota.io.deck.drafts import CurveDraft, PlasticDraft
+from corota.model.hill import Hill
 from corota.model.plasticity import Mises, Voce
 
 if TYPE_CHECKING:
@@ -177,6 +179,25 @@ def _table(deck: Deck, card: Card) -> list[CurveDraft] | None:
     return curves
 
 
+def potential(deck: Deck, card: Card) -> None:
+    """``*POTENTIAL``: R11, R22, R33, R12, R13, R23; the last two are out of the plane."""
+    found = open_material(deck, card)
+    rows = list(card.rows())
+    if found is None:
+        return
+    if len(rows) != 1:
+        deck.error(card, card.where, "one data line is expected: R11, R22, R33, R12, R13, R23")
+        return
+    values = []
+    for index, name in enumerate(("R11", "R22", "R33", "R12")):
+        value = deck.real(card, rows[0], index, name)
+        if value is None:
+            return
+        values.append(value)
+    deck.extra_fields(card, rows[0], 6)
+    found.potential, found.potential_card = tuple(values), card
+
+
 def cyclic_hardening(deck: Deck, card: Card) -> None:
     """``*CYCLIC HARDENING[, PARAMETERS]``: size of the yield surface against plastic strain."""
     found = open_material(deck, card)
@@ -244,6 +265,9 @@ def build_mises(
         return None
     common["where"] = p.card.where
     cyclic = {curve.temperature: curve for curve in p.cyclic or ()}
+    ratios: dict[str, Any] = {}
+    if draft.potential:
+        ratios = dict(zip(("R11", "R22", "R33", "R12"), draft.potential, strict=True))
     if len(cyclic) == 1 and len(p.curves) == 1:
         cyclic = {p.curves[0].temperature: next(iter(cyclic.values()))}
     if cyclic and set(cyclic) != {curve.temperature for curve in p.curves}:
@@ -255,10 +279,18 @@ def build_mises(
     return [
         (
             curve.temperature,
-            _mises(p.kind, curve, cyclic.get(curve.temperature), elastic, common),
+            _hill(_mises(p.kind, curve, cyclic.get(curve.temperature), elastic, common), ratios),
         )
         for curve in p.curves
     ]
+
+
+def _hill(law: Mises, ratios: dict[str, Any]) -> Mises:
+    """The same with the ratios of Hill's yield function, if there are any."""
+    if not ratios:
+        return law
+    own: dict[str, Any] = {f.name: getattr(law, f.name) for f in fields(law)}
+    return Hill(**own, **ratios)
 
 
 def _mises(

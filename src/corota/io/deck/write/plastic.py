@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from corota.errors import UnsupportedError
 from corota.io.deck.write.text import number, numbers
+from corota.model.hill import Hill
 from corota.model.johnson_cook import JohnsonCook
 from corota.model.material_table import MaterialTable
 from corota.model.plasticity import Mises, Voce
@@ -48,7 +49,12 @@ def plastic_cards(material: Material) -> str:
     rate = rate_cards(rows)
     if not rows[0][1].has_yield or isinstance(rows[0][1].rate, RateCurves):
         return rate
-    return _hardening_cards(material, rows) + rate
+    text = _hardening_cards(material, rows) + rate
+    first = rows[0][1]
+    if isinstance(first, Hill):
+        ratios = (first.R11, first.R22, first.R33, first.R12, 1.0, 1.0)
+        text += f"*POTENTIAL\n{numbers(ratios)}\n"
+    return text
 
 
 def _johnson_cook(material: JohnsonCook, by_temperature: bool) -> str:

@@ -1,0 +1,390 @@
+//! Plasticity of rolled sheet: the yield function of Hill (1948) with isotropic hardening, isotropic
+//! elasticity and an implicit return map in the axes of the material, as one scalar equation.
+//!
+//! Parameters: E, nu, R11, R22, R33, R12 (yield stresses over that of the hardening; of shear over
+//! the square root of a third of it), angle of axis 1, then the numbers of [`Isotropic::new`].
+//!
+//! With the step `dp` and the multiplier `g = dp / sy` the stress is `(1 + g A)^-1` times its trial
+//! value, by a matrix of two normal components (in plane strain of the deviator) and the shear.
+// SPDX-License-Identifier: BSD-3-Clause
+
+use super::hardening::Isotropic;
+use super::material::{Material, Plane, PointState, Response, TensorOutput, broadcast};
+use crate::base::Real;
+use crate::base::small::Mat;
+
+/// Iterations of the scalar equation, relative error after which one more step is exact, and the
+/// excess over the yield stress that is rounding: as in [`super::mises`].
+const MAX_ITERATIONS: usize = 80;
+const TOLERANCE: f64 = 1e-12;
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Members of the state: plastic strain 11, 22, 12 (engineering), equivalent plastic strain, work.
+const EQUIVALENT: usize = 3;
+const WORK: usize = 4;
+const MEMBERS: usize = 5;
+
+#[derive(Clone, Debug)]
+pub struct Hill {
+    young: f64,
+    nu: f64,
+    shear: f64,
+    plane: Plane,
+    isotropic: Isotropic,
+    /// Strain in the axes of the material by that of the plane.
+    turn: Mat<f64, 3>,
+    moduli: Mat<f64, 3>,
+    /// Normal stress of a unit elastic strain, without the mean stress in plane strain; the rest.
+    elastic: Mat<f64, 2>,
+    volume: f64,
+    /// Matrix of the return in the normal components, and number of the shear.
+    a: Mat<f64, 2>,
+    a_shear: f64,
+    /// Squared norm: of normal components and of the shear.
+    square: Mat<f64, 2>,
+    square_shear: f64,
+    /// Smallest rate at which a step lowers the equivalent stress.
+    softest: f64,
+}
+
+/// The state at a trial step.
+struct Trial<T: Real> {
+    /// Multiplier and its derivative by the step.
+    g: T,
+    dg: T,
+    normal: [T; 2],
+    shear: T,
+    /// `A` times the stress, returned once more.
+    along: [T; 3],
+    q: T,
+    /// `sy' - q'`.
+    slope: T,
+    value: T,
+    derivative: T,
+}
+
+#[inline(always)]
+fn times<T: Real>(m: &Mat<f64, 2>, v: &[T; 2]) -> [T; 2] {
+    [v[0].scale(m[0][0]) + v[1].scale(m[0][1]), v[0].scale(m[1][0]) + v[1].scale(m[1][1])]
+}
+
+impl Hill {
+    /// `(1 + g A)^-1`.
+    #[inline(always)]
+    fn inverse<T: Real>(&self, g: T) -> Mat<T, 2> {
+        let a = |i: usize, j: usize| g.scale(self.a[i][j]);
+        let (x, y) = (a(0, 0) + T::one(), a(1, 1) + T::one());
+        let det = (x * y - a(0, 1) * a(1, 0)).recip();
+        [[y * det, -(a(0, 1) * det)], [-(a(1, 0) * det), x * det]]
+    }
+
+    #[inline(always)]
+    fn equivalent<T: Real>(&self, n: &[T; 2], s: T) -> T {
+        let p = times(&self.square, n);
+        (p[0] * n[0] + p[1] * n[1] + (s * s).scale(self.square_shear)).sqrt()
+    }
+
+    #[inline(always)]
+    fn trial<T: Real>(&self, normal: &[T; 2], shear: T, p: T, dp: T) -> Trial<T> {
+        let (sy, h) = self.isotropic.at(p + dp);
+        let r = sy.recip();
+        let g = dp * r;
+        let dg = (T::one() - g * h) * r;
+        let b = self.inverse(g);
+        let by = |v: &[T; 2]| [b[0][0] * v[0] + b[0][1] * v[1], b[1][0] * v[0] + b[1][1] * v[1]];
+        let by_shear = g.fma(T::real(self.a_shear), T::one()).recip();
+        let (n, s) = (by(normal), shear * by_shear);
+        let [x, y] = by(&times(&self.a, &n));
+        let along = [x, y, s.scale(self.a_shear) * by_shear];
+        let q = self.equivalent(&n, s).max(T::real(f64::MIN_POSITIVE));
+        let inverse = q.recip();
+        let w = times(&self.square, &n);
+        let lost = w[0] * along[0] + w[1] * along[1] + (s * along[2]).scale(self.square_shear);
+        let dq = -(lost * inverse * dg);
+        let value = (sy - q) * inverse;
+        let derivative = (h - sy * dq * inverse) * inverse;
+        Trial { g, dg, normal: n, shear: s, along, q, slope: h - dq, value, derivative }
+    }
+
+    /// Step in the lanes that yield; also the lanes in which it did not settle.
+    #[inline(always)]
+    fn solve<T: Real>(
+        &self,
+        normal: &[T; 2],
+        shear: T,
+        p: T,
+        excess: T,
+        yields: T::Mask,
+    ) -> (T, T::Mask) {
+        let (mut low, mut high) = (T::zero(), excess.scale((1.0 + 1e-9) / self.softest));
+        let (mut dp, mut open) = (T::zero(), T::zero());
+        for _ in 0..MAX_ITERATIONS {
+            let at = self.trial(normal, shear, p, dp);
+            let settled = at.value.abs().lt(T::real(TOLERANCE));
+            let short = at.value.lt(T::zero());
+            low = T::select(short, dp, low);
+            high = T::select(short, high, dp);
+            let next = dp - at.value / at.derivative;
+            let inside = T::or(settled, T::and(low.lt(next), next.lt(high)));
+            let next = T::select(inside, next, (low + high).scale(0.5));
+            dp = T::select(yields, next, T::zero());
+            open = T::select(yields, T::select(settled, T::zero(), T::one()), T::zero());
+            if !T::any(T::real(0.5).lt(open)) {
+                break;
+            }
+        }
+        (dp, T::real(0.5).lt(open))
+    }
+
+    /// Strain and stress in the axes of the material.
+    fn in_axes(&self, e: [f64; 3], s: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let t = &self.turn;
+        let strain = std::array::from_fn(|i| (0..3).map(|j| t[i][j] * e[j]).sum());
+        // Stress turns like strain whose shear is not doubled.
+        let half = |i: usize| if i == 2 { 0.5 } else { 1.0 };
+        let stress =
+            std::array::from_fn(|i| (0..3).map(|j| half(i) * t[i][j] / half(j) * s[j]).sum());
+        (strain, stress)
+    }
+
+    /// Stress through the thickness.
+    fn normal(&self, s: [f64; 3], state: &[f64]) -> f64 {
+        match self.plane {
+            Plane::Stress => 0.0,
+            Plane::Strain => self.nu * (s[0] + s[1]) + self.young * (state[0] + state[1]),
+        }
+    }
+}
+
+impl Material for Hill {
+    const NAME: &'static str = "hill";
+    const EXAMPLES: &'static [&'static [f64]] = &[
+        &[1000.0, 0.3, 1.0, 1.1, 0.9, 1.05, 0.4, 2.0, 80.0, 20.0, 5.0, 100.0],
+        &[7.0, 0.3, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.05, 0.0],
+        &[7.0, 0.3, 1.0, 1.2, 0.9, 0.8, 0.5, 0.0, 0.05, 0.4],
+        &[7.0, 0.3, 0.9, 1.0, 1.2, 1.1, -1.0, 1.0, 0.05, 0.0, 0.07, 0.01, 0.08, 0.2],
+    ];
+
+    fn new(parameters: &[f64], plane: Plane) -> Result<Self, String> {
+        let &[young, nu, r11, r22, r33, r12, angle, ref numbers @ ..] = parameters else {
+            return Err("hill takes E, nu, four ratios, an angle and a hardening".into());
+        };
+        if !(young > 0.0 && young.is_finite() && nu > -1.0 && nu < 0.5 && angle.is_finite()) {
+            return Err(format!("hill needs E > 0, -1 < nu < 0.5, not {young}, {nu}"));
+        }
+        if ![r11, r22, r33, r12].iter().all(|r| *r > 0.0 && r.is_finite()) {
+            return Err("hill needs ratios > 0".into());
+        }
+        let inverse = [r11, r22, r33].map(|r: f64| 0.5 / (r * r));
+        let f = inverse[1] + inverse[2] - inverse[0];
+        let g = inverse[2] + inverse[0] - inverse[1];
+        let h = inverse[0] + inverse[1] - inverse[2];
+        if f * g + g * h + h * f <= 0.0 {
+            return Err("the ratios of hill do not close a yield surface: bring them closer".into());
+        }
+        let (shear, bulk) = (young / (2.0 * (1.0 + nu)), young / (3.0 * (1.0 - 2.0 * nu)));
+        let square_shear = 3.0 / (r12 * r12);
+        let (elastic, volume, square, a, local);
+        match plane {
+            Plane::Stress => {
+                let c = young / (1.0 - nu * nu);
+                elastic = [[c, nu * c], [nu * c, c]];
+                volume = 0.0;
+                square = [[g + h, -h], [-h, f + h]];
+                a = std::array::from_fn(|i| {
+                    std::array::from_fn(|j| (0..2).map(|k| elastic[i][k] * square[k][j]).sum())
+                });
+                local = elastic;
+            }
+            Plane::Strain => {
+                let d = 2.0 * shear / 3.0;
+                elastic = [[2.0 * d, -d], [-d, 2.0 * d]];
+                volume = bulk;
+                square = [
+                    [f + 4.0 * g + h, 2.0 * f + 2.0 * g - h],
+                    [2.0 * f + 2.0 * g - h, 4.0 * f + g + h],
+                ];
+                let m = [[h + 2.0 * g, g - h], [f - h, h + 2.0 * f]];
+                a = m.map(|row| row.map(|v| 2.0 * shear * v));
+                local = elastic.map(|row| row.map(|v| v + bulk));
+            }
+        }
+        // The matrix is symmetric in the product of the norm, so that its values are real.
+        let half = 0.5 * (a[0][0] + a[1][1]);
+        let det: f64 = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+        let least = half - (half * half - det).max(0.0).sqrt();
+        let a_shear = shear * square_shear;
+        let (c, s) = (angle.cos(), angle.sin());
+        let turn = [
+            [c * c, s * s, c * s],
+            [s * s, c * c, -c * s],
+            [-2.0 * c * s, 2.0 * c * s, c * c - s * s],
+        ];
+        let whole =
+            [[local[0][0], local[0][1], 0.0], [local[1][0], local[1][1], 0.0], [0.0, 0.0, shear]];
+        Ok(Self {
+            young,
+            nu,
+            shear,
+            plane,
+            isotropic: Isotropic::new(numbers)?,
+            turn,
+            // Isotropic: the same in all axes.
+            moduli: whole,
+            elastic,
+            volume,
+            a,
+            a_shear,
+            square,
+            square_shear,
+            softest: least.min(a_shear) * (1.0 - 1e-9),
+        })
+    }
+    fn n_state(&self) -> usize {
+        MEMBERS
+    }
+    fn moduli(&self) -> Mat<f64, 3> {
+        self.moduli
+    }
+    #[inline(always)]
+    fn update<T: Real>(&self, strain: [T; 3], state: &mut PointState<'_>) -> Response<T> {
+        let o = T::zero();
+        let t = &self.turn;
+        let mut e = [o; 3];
+        for (row, e) in t.iter().zip(&mut e) {
+            for (k, v) in row.iter().zip(strain) {
+                *e = v.fma(T::real(*k), *e);
+            }
+        }
+        let plastic: [T; 3] = std::array::from_fn(|i| state.get(i));
+        let mut inside = [e[0] - plastic[0], e[1] - plastic[1]];
+        if self.plane == Plane::Strain {
+            // The strains whose deviator it is, with none through the thickness.
+            let out = plastic[0] + plastic[1];
+            inside = inside.map(|v| v - out);
+        }
+        let pressure = (e[0] + e[1]).scale(self.volume);
+        let normal = times(&self.elastic, &inside);
+        let shear = (e[2] - plastic[2]).scale(self.shear);
+        let p: T = state.get(EQUIVALENT);
+        let work: T = state.get(WORK);
+        let limit = self.isotropic.at(p).0;
+        let excess = self.equivalent(&normal, shear) - limit;
+        let yields = o.lt(excess);
+        let (mut stress, mut tangent, mut failed) =
+            ([normal[0], normal[1], shear], broadcast(&self.moduli), T::none());
+        let (mut added, mut dp) = ([o; 3], o);
+        if T::any(yields) {
+            (dp, failed) = self.solve(&normal, shear, p, excess, yields);
+            let at = self.trial(&normal, shear, p, dp);
+            stress = [at.normal[0], at.normal[1], at.shear];
+            let w = match self.plane {
+                Plane::Stress => times(&self.square, &at.normal),
+                Plane::Strain => times(&self.a, &at.normal).map(|v| v.scale(0.5 / self.shear)),
+            };
+            added = [at.g * w[0], at.g * w[1], (at.g * at.shear).scale(self.square_shear)];
+            let mut size = limit;
+            for v in [normal[0].abs(), normal[1].abs(), shear.abs()] {
+                size += v;
+            }
+            let flows = size.scale(ROUNDING).lt(excess);
+            let b = self.inverse(at.g);
+            let by_shear = at.g.fma(T::real(self.a_shear), T::one()).recip();
+            let factor = T::select(flows, at.dg / (at.q * at.slope), o);
+            // In the axes of the material, then in those of the plane.
+            let mut d = [[o; 3]; 3];
+            for i in 0..2 {
+                for j in 0..2 {
+                    let c = b[i][0].scale(self.elastic[0][j]) + b[i][1].scale(self.elastic[1][j]);
+                    d[i][j] = c + T::real(self.volume);
+                }
+            }
+            d[2][2] = by_shear.scale(self.shear);
+            for i in 0..3 {
+                for j in 0..3 {
+                    d[i][j] -= factor * at.along[i] * at.along[j];
+                }
+            }
+            for i in 0..3 {
+                for j in 0..3 {
+                    let mut sum = o;
+                    for k in 0..3 {
+                        for l in 0..3 {
+                            sum = d[k][l].fma(T::real(t[k][i] * t[l][j]), sum);
+                        }
+                    }
+                    tangent[i][j] = sum;
+                }
+            }
+        }
+        for i in 0..3 {
+            state.set(i, plastic[i] + added[i]);
+        }
+        state.set(EQUIVALENT, p + dp);
+        state.set(WORK, work + self.isotropic.work(p, dp));
+        stress[0] += pressure;
+        stress[1] += pressure;
+        let mut out = [o; 3];
+        for (k, row) in t.iter().enumerate() {
+            for i in 0..3 {
+                out[i] = stress[k].fma(T::real(row[i]), out[i]);
+            }
+        }
+        Response { stress: out, tangent, failed }
+    }
+    fn bulk(&self) -> Option<f64> {
+        Some(self.young / (3.0 * (1.0 - 2.0 * self.nu)))
+    }
+    fn out_of_plane(&self, _: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
+        match self.plane {
+            Plane::Stress => (-self.nu / self.young * (s[0] + s[1]) - state[0] - state[1], 0.0),
+            Plane::Strain => (0.0, self.normal(s, state)),
+        }
+    }
+    fn energy(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> f64 {
+        let (strain, stress) = self.in_axes(e, s);
+        let inside: f64 = (0..3).map(|i| stress[i] * (strain[i] - state[i])).sum();
+        0.5 * (inside + self.normal(s, state) * (state[0] + state[1]))
+    }
+    fn spherical(&self) -> bool {
+        self.plane == Plane::Strain
+    }
+    fn initial_energy(&self, s: [f64; 3], normal: f64, initial: f64) -> f64 {
+        let thrice = 3.0 * (1.0 - 2.0 * self.nu) / self.young;
+        initial * thrice * ((s[0] + s[1] + normal) / 3.0 + 0.5 * initial)
+    }
+    fn outputs(&self) -> &'static [&'static str] {
+        &["PEEQ", "YRATIO", "PWORK", "PDISS"]
+    }
+    fn output(&self, i: usize, s: [f64; 3], state: &[f64]) -> f64 {
+        match i {
+            0 => state[EQUIVALENT],
+            1 => {
+                let (_, m) = self.in_axes([0.0; 3], s);
+                let mean = match self.plane {
+                    Plane::Stress => 0.0,
+                    Plane::Strain => (s[0] + s[1] + self.normal(s, state)) / 3.0,
+                };
+                let q = self.equivalent(&[m[0] - mean, m[1] - mean], m[2]);
+                q / self.isotropic.at(state[EQUIVALENT]).0
+            }
+            2 => state[WORK],
+            _ => state[WORK] - self.isotropic.stored(state[EQUIVALENT]),
+        }
+    }
+    fn tensors(&self) -> &'static [TensorOutput] {
+        &[TensorOutput { name: "PE", engineering: true }]
+    }
+    fn tensor(&self, _: usize, state: &[f64]) -> [f64; 4] {
+        // The transposed turn of stresses is the inverse one of strains, with half the shear.
+        let t = &self.turn;
+        let p = [state[0], state[1], 0.5 * state[2]];
+        let [xx, yy, xy] = std::array::from_fn(|i| (0..3).map(|k| t[k][i] * p[k]).sum::<f64>());
+        [xx, yy, -(state[0] + state[1]), 2.0 * xy]
+    }
+    fn plastic_member(&self) -> Option<usize> {
+        Some(EQUIVALENT)
+    }
+    fn work_member(&self) -> Option<usize> {
+        Some(WORK)
+    }
+}
