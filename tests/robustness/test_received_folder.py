@@ -141,6 +141,18 @@ def test_an_included_file_is_part_of_the_deck_for_resume(folder):
     assert "cells.inc: it has changed since" in done.stderr
 
 
+def test_an_included_file_is_part_of_the_deck_for_restart(folder):
+    job = folder / "job.inp"
+    job.write_text(DECK.replace("*CLOAD", "*RESTART, WRITE, FREQUENCY=1\n*CLOAD"))
+    assert run(folder).returncode == 0
+    (folder / "more.inp").write_text("*RESTART, READ, JOB=job\n*STEP\n*STATIC\n*END STEP\n")
+    assert corota("run", "more.inp", cwd=folder).returncode == 0
+    (folder / "cells.inc").write_text("** edited\n" + CELLS)
+    done = corota("run", "more.inp", cwd=folder)
+    assert done.returncode == 6
+    assert "or a file that it includes" in done.stderr
+
+
 def test_an_included_file_is_part_of_the_deck_for_sweeps(folder):
     text = DECK.replace("*NODE, NSET", "*PARAMETER\nload = 1.\n*NODE, NSET").replace(
         "-1.", "<load>"

@@ -94,6 +94,30 @@ def section_of_cells(model: Model) -> Ints:
     return group
 
 
+def nodes_of_groups(
+    groups: list[Ints], nodes: list[Ints], n_nodes: int
+) -> tuple[Ints, Ints, list[Ints]]:
+    """Nodes, once for each section group that has a cell there.
+
+    Parameters
+    ----------
+    groups : list of ndarray, shape (n,)
+        Section group of each cell, by blocks of one kind of cells.
+    nodes : list of ndarray, shape (n, k)
+    n_nodes : int
+
+    Returns
+    -------
+    group, node : ndarray, shape (c,)
+        In ascending order of groups, then of nodes.
+    places : list of ndarray, shape (n * k,)
+        Where the nodes of each cell are among them.
+    """
+    keys = [(g[:, None] * n_nodes + k).ravel() for g, k in zip(groups, nodes, strict=True)]
+    found = distinct(np.concatenate(keys)) if keys else np.zeros(0, dtype=np.int64)
+    return found // n_nodes, found % n_nodes, [np.searchsorted(found, key) for key in keys]
+
+
 class Averaging:
     """Point values averaged at nodes; caches the maps of the last blocks.
 
@@ -106,60 +130,40 @@ class Averaging:
 
     def __init__(self, mesh: Mesh, sections: Ints) -> None:
         self.mesh, self.sections = mesh, sections
-        self._nodes: dict[tuple[int, int, int], tuple[Ints, Ints]] = {}
+        self._cells: list[Ints] = []
+        self._nodes: list[Ints] = []
+        self._groups: tuple[Ints, Ints, list[Ints]] | None = None
 
-    def cell_nodes(self, cells: Ints) -> Ints:
-        """Node indices of cells of one kind, shape (n, k)."""
-        key = (len(cells), int(cells[0]), int(cells[-1]))
-        known = self._nodes.get(key)
-        if known is not None and (known[0] is cells or np.array_equal(known[0], cells)):
-            return known[1]
-        block, _ = self.mesh.locate(int(cells[0]))
-        offset = int(self.mesh.offsets[block])
-        nodes = self.mesh.cells[block].nodes[cells - offset]
-        self._nodes[key] = (cells, nodes)
-        return nodes
+    def _locate(self, fields: list[PointFields]) -> None:
+        """Find nodes and section groups of the cells of blocks, unless they are those before."""
+        cells = [b.cells for b in fields if len(b.cells)]
+        if len(cells) == len(self._cells) and all(
+            a is b or np.array_equal(a, b) for a, b in zip(cells, self._cells, strict=True)
+        ):
+            return
+        self._cells, self._nodes, self._groups = cells, [], None
+        for own in cells:
+            block, _ = self.mesh.locate(int(own[0]))
+            offset = int(self.mesh.offsets[block])
+            self._nodes.append(self.mesh.cells[block].nodes[own - offset])
 
-    def average(
-        self,
-        fields: list[PointFields],
-        names: list[str],
-        chosen: NDArray[np.bool_] | None = None,
+    def _average(
+        self, fields: list[PointFields], names: list[str], places: list[Ints], n: int
     ) -> dict[str, Floats]:
-        """Average stored values (tensors and scalars) at nodes.
-
-        Parameters
-        ----------
-        fields : list of PointFields
-        names : list of str
-            Keys of ``values``; a block without one counts as zero.
-        chosen : ndarray of bool, shape (n_cells,), optional
-            Cells that take part; all by default.
-
-        Returns
-        -------
-        dict of str to ndarray, shape (n_nodes, 4) or (n_nodes,)
-            Zero at nodes without a cell.
-        """
-        n = self.mesh.n_nodes
+        """Averages at `n` places, given those of the nodes of each cell."""
         count = np.zeros(n)
         sums: dict[str, Floats] = {}
         for name in names:
             width = {b.values[name].shape[2:] for b in fields if name in b.values} or {()}
             sums[name] = np.zeros((n, *width.pop()))
-        for block in fields:
-            pick = slice(None) if chosen is None else chosen[block.cells]
-            nodes = self.cell_nodes(block.cells)[pick]
-            flat = nodes.ravel()
-            if not flat.size:
-                continue
+        for block, flat in zip((b for b in fields if len(b.cells)), places, strict=True):
             count += np.bincount(flat, minlength=n)
             matrix = extrapolation(block.shape)
             # einsum, not @: threads of a BLAS would compete with the solver for a small product.
             for name in names:
                 if name not in block.values:
                     continue
-                values = block.values[name][pick]
+                values = block.values[name]
                 if values.ndim == 2:
                     at = np.einsum("np,kp->nk", values, matrix)
                     sums[name] += np.bincount(flat, weights=at.ravel(), minlength=n)
@@ -174,6 +178,30 @@ class Averaging:
         for name in POSITIVE & found.keys():
             np.maximum(found[name], 0.0, out=found[name])  # extrapolation must not make them < 0
         return found
+
+    def by_group(
+        self, fields: list[PointFields], names: list[str]
+    ) -> tuple[Ints, Ints, dict[str, Floats]]:
+        """Stored values (tensors and scalars) at the nodes of each section group.
+
+        Parameters
+        ----------
+        fields : list of PointFields
+        names : list of str
+            Keys of ``values``; a block without one counts as zero.
+
+        Returns
+        -------
+        group, node : ndarray, shape (c,)
+            In ascending order of groups, then of nodes.
+        values : dict of str to ndarray, shape (c, 4) or (c,)
+        """
+        self._locate(fields)
+        if self._groups is None:
+            groups = [self.sections[cells] for cells in self._cells]
+            self._groups = nodes_of_groups(groups, self._nodes, self.mesh.n_nodes)
+        group, node, places = self._groups
+        return group, node, self._average(fields, names, places, len(node))
 
     def nodal(
         self, fields: list[PointFields], names: list[str], section: int | None = None
@@ -190,21 +218,25 @@ class Averaging:
         Returns
         -------
         dict of str to ndarray, shape (n_nodes, 4) or (n_nodes,)
+            Zero at nodes without a cell.
         """
+        n = self.mesh.n_nodes
+        self._locate(fields)
+        extent = [g for cells in self._cells for g in _extent(self.sections[cells])]
+        if section is None and (not extent or min(extent) == max(extent)):
+            return self._average(fields, names, [nodes.ravel() for nodes in self._nodes], n)
+        group, node, values = self.by_group(fields, names)
         if section is not None:
-            return self.average(fields, names, self.sections == section)
-        groups = sorted({int(g) for b in fields for g in distinct(self.sections[b.cells])})
-        if len(groups) < 2:
-            return self.average(fields, names)
-        found: dict[str, Floats] = {}
-        for group in groups:
-            for name, values in self.average(fields, names, self.sections == group).items():
-                if name not in found:
-                    found[name] = values
-                    continue
-                both = np.stack([found[name], values]).reshape(2, len(values), -1)
-                larger = (both[1] ** 2).sum(axis=1) > (both[0] ** 2).sum(axis=1)
-                found[name][larger] = values[larger]
+            chosen = group == section
+            group, node = group[chosen], node[chosen]
+            values = {name: rows[chosen] for name, rows in values.items()}
+        found = {name: np.zeros((n, *rows.shape[1:])) for name, rows in values.items()}
+        for turn in _turns(node):
+            for name, rows in values.items():
+                at, new = node[turn], rows[turn]
+                sizes = [(v.reshape(len(at), -1) ** 2).sum(axis=1) for v in (found[name][at], new)]
+                larger = sizes[1] > sizes[0]
+                found[name][at[larger]] = new[larger]
         return found
 
     def values(self, fields: list[PointFields], name: str, section: int | None = None) -> Floats:
@@ -214,6 +246,20 @@ class Averaging:
         if name in INVARIANTS:
             return invariant(name, values)
         return values if column < 0 else values[:, column]
+
+
+def _extent(values: Ints) -> tuple[int, int]:
+    return int(values.min()), int(values.max())
+
+
+def _turns(nodes: Ints) -> list[Ints]:
+    """Indices of the first mention of each node, those of the second ones, and so on."""
+    order = np.argsort(nodes, kind="stable")
+    first = np.ones(len(nodes), dtype=bool)
+    first[1:] = nodes[order][1:] != nodes[order][:-1]
+    starts = np.flatnonzero(first)
+    turn = np.arange(len(nodes)) - np.repeat(starts, np.diff([*starts, len(nodes)]))
+    return [order[turn == k] for k in range(int(turn.max(initial=-1)) + 1)]
 
 
 def cell_weights(block: PointFields) -> Floats:

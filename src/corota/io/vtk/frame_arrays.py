@@ -10,12 +10,19 @@ import numpy as np
 from corota.arrays import distinct
 from corota.io.finite import check
 from corota.results import variables as vf
-from corota.results.averaging import Averaging, cell_mean, cell_weights, section_of_cells
+from corota.results.averaging import (
+    Averaging,
+    cell_mean,
+    cell_weights,
+    nodes_of_groups,
+    section_of_cells,
+)
 from corota.results.table import CONTACT, INVARIANTS, TABLE, TENSORS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.mesh import Mesh
     from corota.model.model import Model
     from corota.results.results import Frame
 
@@ -105,27 +112,30 @@ def halved(frame: Frame, arrays: dict[str, Floats]) -> dict[str, Any]:
     return found
 
 
-def cells_and_nodes(model: Model) -> dict[int, tuple[NDArray[np.bool_], Ints]]:
-    """Cells and nodes of each section group of planar elements."""
-    mesh, of_cells = model.mesh, section_of_cells(model)
-    planar = np.zeros(mesh.n_cells, dtype=bool)
-    for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
-        planar[offset : offset + len(cells)] = cells.kind.startswith(("tri", "quad"))
-    found = {}
-    for group in distinct(of_cells[planar]).tolist():
-        chosen = (of_cells == group) & planar
-        nodes = [
-            cells.nodes[chosen[offset : offset + len(cells)]].ravel()
-            for offset, cells in zip(mesh.offsets, mesh.cells, strict=False)
-        ]
-        found[int(group)] = chosen, distinct(np.concatenate(nodes))
-    return found
+def planar_cells(mesh: Mesh) -> NDArray[np.bool_]:
+    """Whether each cell is of a planar element, shape (n_cells,)."""
+    kinds = [cells.kind.startswith(("tri", "quad")) for cells in mesh.cells]
+    return np.repeat(kinds, [len(cells) for cells in mesh.cells])
+
+
+def nodes_of_sections(model: Model) -> dict[int, Ints]:
+    """Nodes of each section group of planar elements."""
+    mesh, of_cells, planar = model.mesh, section_of_cells(model), planar_cells(model.mesh)
+    blocks = [
+        (of_cells[offset : offset + len(cells)], cells.nodes)
+        for offset, cells in zip(mesh.offsets, mesh.cells, strict=False)
+        if len(cells) and planar[offset]
+    ]
+    group, node, _ = nodes_of_groups([g for g, _ in blocks], [k for _, k in blocks], mesh.n_nodes)
+    bounds = {g: np.searchsorted(group, [g, g + 1]) for g in distinct(group).tolist()}
+    return {g: node[first:last] for g, (first, last) in bounds.items()}
 
 
 __all__ = [
     "cell_data",
-    "cells_and_nodes",
     "halved",
+    "nodes_of_sections",
+    "planar_cells",
     "point_data",
     "scalars",
     "six",

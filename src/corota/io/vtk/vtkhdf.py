@@ -19,7 +19,14 @@ from corota.io.datasets import Series, make_group, store
 from corota.io.description import store_description
 from corota.io.file_options import FileOptions, wanted
 from corota.io.finite import check_frame
-from corota.io.vtk.frame_arrays import cell_data, cells_and_nodes, halved, point_data, scalars
+from corota.io.vtk.frame_arrays import (
+    cell_data,
+    halved,
+    nodes_of_sections,
+    planar_cells,
+    point_data,
+    scalars,
+)
 from corota.io.vtk.grid import Grid
 from corota.lazy import lazy
 from corota.results import variables as vf
@@ -118,7 +125,7 @@ class VtkhdfWriter:
         self._twin = AtomicFile(path, keep=resume is not None)
         groups = section_of_cells(model) if sections is None else sections
         self._averaging = Averaging(model.mesh, groups)
-        self._sections = cells_and_nodes(model)
+        self._sections, self._planar = nodes_of_sections(model), planar_cells(model.mesh)
         count = self._options.parts
         self._grid = Grid(model, sections, process_of_cells(model, count) if count > 1 else None)
         try:
@@ -340,15 +347,17 @@ class VtkhdfWriter:
         if self._options.points or len(self._sections) < 2:
             return {}
         names = sorted({k for b in frame.fields for k in b.values} - INVARIANTS.keys())
-        found = {}
-        for group, (cells, nodes) in self._sections.items():
-            mean = self._averaging.average(frame.fields, names, cells)
-            self._nodes_of_section(group, nodes)
-            found[_section(group)] = {
-                name: values[nodes]
-                for name, values in mean.items()
-                if wanted(vf.STORED.get(name, name), self._chosen)
-            }
+        names = [name for name in names if wanted(vf.STORED.get(name, name), self._chosen)]
+        planar = [b for b in frame.fields if len(b.cells) and self._planar[b.cells[0]]]
+        groups, at, mean = self._averaging.by_group(planar, names)
+        found: dict[str, dict[str, Floats]] = {}
+        for number, nodes in self._sections.items():
+            self._nodes_of_section(number, nodes)
+            begin, end = np.searchsorted(groups, [number, number + 1])
+            own = found[_section(number)] = {}
+            for name, values in mean.items():
+                own[name] = np.zeros((len(nodes), *values.shape[1:]))
+                own[name][np.searchsorted(nodes, at[begin:end])] = values[begin:end]
         return found
 
     def _nodes_of_section(self, group: int, nodes: Ints) -> None:
