@@ -423,6 +423,25 @@ def test_words_of_the_command_line_are_refused(capfd, here, words):
     assert not list(here.parent.rglob("owned*"))
 
 
+def test_a_sweep_without_memory_for_some_rows_says_so(capfd, here, monkeypatch):
+    """Also where warnings are not asked for: it ended with 4 and no message."""
+    from corota.sweeps import variant
+
+    (here / "job.inp").write_text(SWEPT)
+    solve, calls = variant.solved, []
+
+    def short(*args, **options):
+        calls.append(1)
+        if len(calls) == 2:
+            raise MemoryError("no room")
+        return solve(*args, **options)
+
+    monkeypatch.setattr(variant, "solved", short)
+    words = ("sweep", "job.inp", "-p", "load=1,2", "-m", "last(U2@NALL)", "--workers", "1", "-q")
+    _, said = corota(capfd, *words, allowed=(5,))
+    assert "1 of 2 rows failed; the first: MemoryError: no room" in said
+
+
 LINEAR = ct.Elastic(E=1e3, nu=0.3, rho=1.0)
 
 

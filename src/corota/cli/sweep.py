@@ -83,4 +83,8 @@ def run(args: Any, terminal: Terminal) -> int:
         by = found.parameters[1] if len(found.parameters) == 2 and not args.sample else ""
         found.plot(by=by, path=args.plot)
         terminal.line(f"picture: {args.plot}")
-    return 4 if found.failed else 0
+    if not found.failed:
+        return 0
+    first = found["error"][found.failed[0]]
+    terminal.error(f"{len(found.failed)} of {len(found)} rows failed; the first: {first}")
+    return 5 if any(outcome.short for outcome in found.outcomes) else 4
