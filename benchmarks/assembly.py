@@ -73,8 +73,8 @@ class Case:
             array.fill(0.0)
             array += 1.0
 
-    def factorise(self) -> None:
-        """Factorise the tangent that :meth:`prepare` left."""
+    def factorize(self) -> None:
+        """Factorize the tangent that :meth:`prepare` left."""
         self.solver.factorize(self.masked)
 
     def prepare(self) -> None:
@@ -137,7 +137,7 @@ def table_of_ratios(sizes: list[float], repeats: int) -> None:
             case = Case(name, n_dofs)
             case.prepare()
             t = interleaved(
-                {"assemble": case.assemble, "factor": case.factorise},
+                {"assemble": case.assemble, "factor": case.factorize},
                 repeats,
                 clock=time.thread_time,
             )
@@ -150,8 +150,8 @@ def table_of_ratios(sizes: list[float], repeats: int) -> None:
                     round(t["assemble"] / t["factor"], 3),
                 ]
             )
-    head = ["element", "dofs", "assembly [ms]", "factorisation [ms]", "ratio"]
-    report("Residual and tangent against the factorisation, one thread", head, rows)
+    head = ["element", "dofs", "assembly [ms]", "factorization [ms]", "ratio"]
+    report("Residual and tangent against the factorization, one thread", head, rows)
 
 
 def main() -> int:

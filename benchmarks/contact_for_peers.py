@@ -77,7 +77,7 @@ def _fits(given: Problem) -> bool:
     material = given.model.sections[0].material
     plain = isinstance(material, ct.Elastic) and material.nu < 0.4
     pairs = given.model.contacts
-    alone = any(pair.itself or pair.stabilise for pair in pairs)
+    alone = any(pair.itself or pair.stabilize for pair in pairs)
     return given.static and plain and not alone
 
 

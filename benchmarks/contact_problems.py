@@ -206,8 +206,8 @@ def press(d: Draw) -> tuple[ct.Model, list[Step]]:
         model.fix("up.top", y=None, rotation=True)
         model.traction("up.top", y=-0.004 * d.young)
         if gap > 0.0:
-            d.what += " stabilised"
-            model.contacts[0].stabilise = True
+            d.what += " stabilized"
+            model.contacts[0].stabilize = True
     steps: list[Step] = [step]
     if far:
         steps.append(ct.Static(first_increment=0.1, supports=[Fixed("up.top", 0, far * L)]))

@@ -30,7 +30,7 @@ TYPES = {
 SIDES = {3: ((0, 1), (0, 2), (1, 2), (1, 3)), 4: ((0, 1), (0, 2), (0, 3), (0, 4))}
 #: Share of the area that each node carries.
 SHARE = {3: [1 / 3] * 3, 4: [0.25] * 4, 6: [0] * 3 + [1 / 3] * 3, 8: [-1 / 12] * 4 + [1 / 3] * 4}
-LINKS = ("none", "contact", "stabilised", "tie", "equation", "coupling", "rigid")
+LINKS = ("none", "contact", "stabilized", "tie", "equation", "coupling", "rigid")
 SUPPORTS = ("clamped", "clamped", "sliding", "hinge", "roller", "none")
 
 
@@ -204,7 +204,7 @@ class _Maker:
         self.bodies = [lower]
         if two:
             gap = 0.0
-            if self.link in ("contact", "stabilised"):
+            if self.link in ("contact", "stabilized"):
                 gap = draw.choice((0.0, 0.0, 1e-3, 1e-2)) * w
             elif self.link not in ("tie",):
                 gap = draw.choice((0.0, 0.05)) * w
@@ -258,7 +258,7 @@ class _Maker:
 
     def join(self) -> None:
         link, draw, model, deck = self.link, self.draw, self.model, self.deck
-        if link in ("contact", "stabilised", "tie"):
+        if link in ("contact", "stabilized", "tie"):
             self.surface("SLAVE", 1, 0)
             self.surface("MASTER", 0, 2)
             for label in [*self.bodies[1].side(0).tolist(), *self.bodies[0].side(2).tolist()]:
@@ -443,10 +443,10 @@ class _Maker:
             lines += ["*DYNAMIC", f"{period / 10!r}, {period!r}"]
         else:
             lines += ["*STATIC", self.draw.choice(("1., 1.", ".25, 1."))]
-        if self.link == "stabilised":
+        if self.link == "stabilized":
             lines.append("*CONTACT CONTROLS, STABILIZE")
         deck.text = "\n".join([*lines, *self.step, "*END STEP", ""])
-        if self.link in ("contact", "stabilised"):
+        if self.link in ("contact", "stabilized"):
             deck.held = None
         else:
             # Lengths in sizes of the model: rows of translations and turns compare.

@@ -1,6 +1,6 @@
 """Numeric factorization and solve of Q4 elasticity matrices by all direct solvers here.
 
-Rows are ratios inside one run. The refactorisation is timed: the pattern is known,
+Rows are ratios inside one run. The refactorization is timed: the pattern is known,
 the values are new, as in every Newton iteration.
 """
 

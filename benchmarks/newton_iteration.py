@@ -1,4 +1,4 @@
-"""A whole Newton iteration against factorising and solving alone, up to a million equations.
+"""A whole Newton iteration against factorizing and solving alone, up to a million equations.
 
 Between two reports of Newton's method lie assembly, boundary conditions, factorization, solution,
 line search and the judgement of the residual: everything that an iteration costs. Target: at most

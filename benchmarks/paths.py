@@ -152,7 +152,7 @@ def main() -> None:
         "equations",
         "threads",
         "factor / Euler",
-        "factorisation [s]",
+        "factorization [s]",
         "buckling [s]",
         "ratio",
         f"<= {BUCKLING_TARGET:g}",

@@ -1,4 +1,4 @@
-"""Check what no linter sees: sizes, licence lines, foreign addresses, changelog, import circles."""
+"""Check what no linter sees: sizes, license lines, foreign addresses, changelog, import circles."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -103,7 +103,7 @@ def main() -> int:
         f"modules import each other in a circle: {', '.join(sorted(group))}"
         for group in house_facts.circles(graph)
     ]
-    print("\n".join(lines) if lines else "tree: sizes, licences, pins and imports are in order")
+    print("\n".join(lines) if lines else "tree: sizes, licenses, pins and imports are in order")
     return 1 if lines else 0
 
 

@@ -190,10 +190,10 @@ def faces() -> str:
                 svg.arrow(u + 30 * a, v + 30 * b, u + 3 * a, v + 3 * b, "load")
             svg.text(x - 18 * a, y - 18 * b + 5, f"S{number}", "face", bold=True)
             svg.text(x + 43 * a, y + 43 * b + 5, f"P{number}", "load", bold=True)
-        centre = np.mean(nodes, axis=0)
+        center = np.mean(nodes, axis=0)
         for number, (x, y) in enumerate(nodes, 1):
             svg.circle(x, y, 4.5, "node-fill")
-            out = np.array([x, y]) - centre
+            out = np.array([x, y]) - center
             step = 17 * out / np.hypot(*out)
             svg.text(x + step[0], y + step[1] + 5, str(number), bold=True)
     svg.text(
@@ -263,7 +263,7 @@ def why_no_convergence() -> str:
             (
                 "Is a body supported by contact alone?",
                 "Close the gap in a first step by a prescribed displacement, or give the pair "
-                "stabilise=True (decks: *CONTACT CONTROLS, STABILIZE).",
+                "stabilize=True (decks: *CONTACT CONTROLS, STABILIZE).",
             ),
             (
                 "Does it name a folded element?",

@@ -583,8 +583,8 @@ def test_punch_on_a_column_with_friction_and_flow_is_symmetric(element: str, met
     u = got[0].U[:-1]
     if element != "T6":
         mirror = [int(np.argmin(np.abs(x - [1 - p[0], p[1]]).sum(axis=1))) for p in x]
-        centre = u[:, 0].mean()
-        assert np.allclose(u[mirror, 0] - centre, -(u[:, 0] - centre), atol=2e-6)
+        center = u[:, 0].mean()
+        assert np.allclose(u[mirror, 0] - center, -(u[:, 0] - center), atol=2e-6)
         assert np.allclose(u[mirror, 1], u[:, 1], atol=2e-6)
     force = -got[0].RF[top, 1]
     mean = force / 1.1  # wider than 1 by about the plastic volume

@@ -80,8 +80,8 @@ def test_turned_model_gives_turned_results(angle: float) -> None:
         assert fb.scalars[name] == pytest.approx(fa.scalars[name], rel=1e-7, abs=1e-10)
 
 
-def test_metres_and_millimetres() -> None:
-    """The same part in SI and in micrometre-like units: factors of length, force, energy only."""
+def test_meters_and_millimeters() -> None:
+    """The same part in SI and in micrometer-like units: factors of length, force, energy only."""
     base = ct.mesh.rectangle(5.0, 1.0, nx=6, ny=2, cell="quad8")
     a = ct.solve(gripper(base, 0.0, (1.0, 1.0)), ct.Static(increments=6), threads=1).frames[-1]
     for length, force in ((1e-3, 1.0), (1e6, 1e-3), (1e-6, 1e-9)):

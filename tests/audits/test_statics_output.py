@@ -81,7 +81,7 @@ def part(
 @pytest.mark.parametrize("element", ["Q4I", "Q8R", "T6", "Q4D"])
 @pytest.mark.parametrize("change", ["units", "angle", "numbers"])
 def test_contact_flow_and_heat_in_other_words(element: str, change: str) -> None:
-    """Metres to millimetres, axes turned by 37 degrees, nodes renumbered: the same answer.
+    """Meters to millimeters, axes turned by 37 degrees, nodes renumbered: the same answer.
 
     Flow, friction, heat, weight, pressure and local axes in three steps; histories of energies,
     contact forces and plastic strain scale with the units, vectors turn with the axes.

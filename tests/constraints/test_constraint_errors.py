@@ -79,9 +79,9 @@ def test_rotation_of_a_node_without_one() -> None:
     fails(model, "has no drilling rotation to constrain")
 
 
-def test_radial_axes_at_the_centre() -> None:
+def test_radial_axes_at_the_center() -> None:
     model, _ = beam()
-    model.local_axes([0], centre=tuple(model.mesh.points[0]))
+    model.local_axes([0], center=tuple(model.mesh.points[0]))
     fails(model, "no radial direction")
 
 

@@ -79,7 +79,7 @@ def test_inertia_counts_the_reduced_matrix(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_corrections_satisfy_the_linearised_constraints(kind: str) -> None:
+def test_corrections_satisfy_the_linearized_constraints(kind: str) -> None:
     from corota.model.steps import Static
 
     model, reference = constrained(kind)

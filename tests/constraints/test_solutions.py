@@ -49,11 +49,11 @@ def test_body_turned_by_several_turns(kind: str) -> None:
     model.fix([reference], rotation=2.0 * np.pi * turns)
     frames = ct.solve(model, ct.Static(increments=12 * turns)).frames
     x = model.mesh.points
-    centre = x[reference]
+    center = x[reference]
     for frame in frames[1:]:
         angle = 2.0 * np.pi * turns * frame.factor
         c, s = np.cos(angle), np.sin(angle)
-        exact = centre + (x - centre) @ np.array([[c, s], [-s, c]])
+        exact = center + (x - center) @ np.array([[c, s], [-s, c]])
         body = np.unique(model.mesh.cells[0].nodes)
         assert np.abs(x[body] + frame.U[body] - exact[body]).max() < 1e-9
         assert frame.UR[measured] == pytest.approx(angle, abs=1e-9)
@@ -121,7 +121,7 @@ def test_radial_axes_expand_a_ring_without_turning_it() -> None:
     model = ct.Model(ring)
     model.section("all", element="Q4I", material=ct.Elastic(E=1000.0, nu=0.3))
     inner = np.flatnonzero(np.hypot(*ring.points.T) < 1.0 + 1e-9)
-    model.local_axes(inner, centre=(0.0, 0.0))
+    model.local_axes(inner, center=(0.0, 0.0))
     model.fix(inner, x=0.02, y=0.0)
     frame = ct.solve(model).frames[-1]
     radius = np.hypot(*ring.points.T)

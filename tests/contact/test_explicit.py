@@ -241,7 +241,7 @@ def test_spinning_ring_on_a_floor(friction):
     The moment of the floor is what the ring gains in angular momentum.
     """
     middle = (0.0, 1.01)
-    mesh = ct.mesh.annulus(0.6, 1.0, 2, 36, centre=middle)
+    mesh = ct.mesh.annulus(0.6, 1.0, 2, 36, center=middle)
     model = elastic(ct.Model(mesh), "Q4I", nu=0.3)
     model.velocity("all", y=-1.0, spin=-3.0, about=middle)
     floor = ct.RigidCurve.line((-5.0, 0.0), (5.0, 0.0))
@@ -258,7 +258,7 @@ def test_spinning_ring_on_a_floor(friction):
 
 def test_ring_beside_the_implicit_scheme_with_small_increments():
     """The same rebound as energy-momentum on the same masses."""
-    model = ct.Model(ct.mesh.annulus(0.8, 1.0, 2, 48, centre=(0.0, 1.0)))
+    model = ct.Model(ct.mesh.annulus(0.8, 1.0, 2, 48, center=(0.0, 1.0)))
     elastic(model, "Q4I", nu=0.3)
     model.velocity(y=-1.0)
     floor = ct.RigidCurve.line((-5.0, 0.0), (5.0, 0.0))
@@ -334,7 +334,7 @@ def test_tied_halves_move_as_one(ny):
 
 
 def test_inner_walls_of_a_crushed_ring_meet():
-    model = ct.Model(ct.mesh.annulus(0.85, 1.0, 2, 48, centre=(0.0, 1.01)))
+    model = ct.Model(ct.mesh.annulus(0.85, 1.0, 2, 48, center=(0.0, 1.01)))
     material = ct.Elastic(E=E, nu=0.3, rho=1.0)
     model.section("all", element="Q4I", material=material, local_strain="logarithmic")
     model.velocity("all", y=-14.0)

@@ -47,7 +47,7 @@ def test_ring_keeps_its_energy(element):
     assert flight.sideways < 1e-9
 
 
-def test_ring_in_metres_and_millimetres():
+def test_ring_in_meters_and_millimeters():
     """Same increments, same iterations, same motion."""
     runs = [ring.fly("Q4I", around=24, increments=30, period=0.15, unit=u) for u in (1.0, 1e3)]
     assert runs[0].iterations == runs[1].iterations

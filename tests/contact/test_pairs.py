@@ -41,11 +41,11 @@ def test_moved_and_loaded_disc_agree(method):
 
 
 def test_units_change_nothing():
-    metres, _ = punch()
-    millimetres, _ = punch(scale=1e3)
-    a, b = (r.history("iterations").values for r in (metres, millimetres))
+    meters, _ = punch()
+    millimeters, _ = punch(scale=1e3)
+    a, b = (r.history("iterations").values for r in (meters, millimeters))
     assert a.tolist() == b.tolist()
-    force = [r.frames[-1].scalars["punch: force y"] for r in (metres, millimetres)]
+    force = [r.frames[-1].scalars["punch: force y"] for r in (meters, millimeters)]
     assert force[1] == pytest.approx(force[0] / 1e3, rel=1e-8)  # per thickness 1 in either
 
 
@@ -68,7 +68,7 @@ def stacked(gap=0.0, **options):
 
 
 @pytest.mark.parametrize(
-    "options", [{}, {"stabilise": True}, {"start": "adjust", "adjust": 0.2}, {"clearance": 0.05}]
+    "options", [{}, {"stabilize": True}, {"start": "adjust", "adjust": 0.2}, {"clearance": 0.05}]
 )
 def test_a_body_free_before_contact(options):
     model = stacked(0.1, **options)
@@ -78,7 +78,7 @@ def test_a_body_free_before_contact(options):
     sunk = {"adjust": 0.0, "clearance": -0.05}.get(list(options)[-1] if options else "", -0.1)
     bottom = model.mesh.nodes_of("up.bottom")
     assert frame.U[bottom, 1].mean() == pytest.approx(sunk, abs=0.005)
-    assert (frame.scalars["stabilisation energy"] > 0.0) == ("stabilise" in options)
+    assert (frame.scalars["stabilization energy"] > 0.0) == ("stabilize" in options)
 
 
 @pytest.mark.parametrize(("start", "share"), [("keep", 1.0), ("ramp", 0.5), ("adjust", 0.0)])

@@ -183,11 +183,11 @@ def snap_fit(friction):
 
     sides = [lambda t: (length * t, 0.0), lambda t: (length, height * t)]
     mesh = ct.mesh.mapped([*sides, top, lambda t: (0.0, height * t)], 40, 2)
-    centre = (18.3, height + 0.2 + radius)
-    ball = ct.mesh.add_node(mesh, *centre, "ball")
+    center = (18.3, height + 0.2 + radius)
+    ball = ct.mesh.add_node(mesh, *center, "ball")
     model = ct.Model(mesh)
     model.section("all", element="Q4I", material=ct.Elastic(E=2300.0, nu=0.38), thickness=4.0)
-    curve = ct.RigidCurve.circle(centre, radius, reference=ball)
+    curve = ct.RigidCurve.circle(center, radius, reference=ball)
     model.contact("top", curve, friction=friction, name="bump")
     model.fix("left")
     model.fix("ball", x=None, y=0.0, rotation=0.0)

@@ -75,7 +75,7 @@ def test_a_prescribed_displacement_needs_the_force_that_gives_it(element):
 
 
 def test_orthotropic_axes_turn_with_the_body():
-    """The same strip in axes turned by 37 degrees, its fibres with it."""
+    """The same strip in axes turned by 37 degrees, its fibers with it."""
     answers = []
     for angle in (0.0, 37.0):
         mesh = ct.mesh.distort(ct.mesh.rectangle(4.0, 1.0, 8, 2, "quad8"), 0.2)

@@ -12,40 +12,40 @@ SAME = 1e-10
 ANGLE = 37.0
 
 
-def clamped_strip(element, *, metre=1.0, angle=0.0, seed=None, local_strain="linear"):
-    """A strip under pressure, end shear and its weight; lengths in units of 1 / metre."""
+def clamped_strip(element, *, meter=1.0, angle=0.0, seed=None, local_strain="linear"):
+    """A strip under pressure, end shear and its weight; lengths in units of 1 / meter."""
     mesh = ct.mesh.rectangle(4.0, 1.0, 8, 2, cell(element), "alternate")
     mesh = ct.mesh.distort(mesh, 0.2, seed=4)
     labels = np.arange(mesh.n_nodes)
-    mesh = ct.mesh.move(mesh, angle=angle, scale=metre)
+    mesh = ct.mesh.move(mesh, angle=angle, scale=meter)
     if seed is not None:
         mesh.node_sets["order"] = labels
         mesh = ct.mesh.renumber(mesh, seed=seed)
         labels = mesh.node_sets["order"]
     model = ct.Model(mesh)
-    material = ct.Elastic(E=1000.0 / metre**2, nu=0.3, rho=2.0 / metre**4)
+    material = ct.Elastic(E=1000.0 / meter**2, nu=0.3, rho=2.0 / meter**4)
     model.section(
-        "all", element=element, material=material, thickness=metre, local_strain=local_strain
+        "all", element=element, material=material, thickness=meter, local_strain=local_strain
     )
     model.fix("left", rotation=True)
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    model.traction("right", x=-s * 3.0 / metre**2, y=c * 3.0 / metre**2)
-    model.pressure("top", -1.0 / metre**2)
-    model.gravity(x=-s * 0.2 * metre, y=c * 0.2 * metre)
+    model.traction("right", x=-s * 3.0 / meter**2, y=c * 3.0 / meter**2)
+    model.pressure("top", -1.0 / meter**2)
+    model.gravity(x=-s * 0.2 * meter, y=c * 0.2 * meter)
     return model, labels
 
 
 def solved(element, **change):
     """Iterations, displacement by original node, rotations, energy, in the first units."""
-    metre, angle = change.get("metre", 1.0), np.radians(change.get("angle", 0.0))
+    meter, angle = change.get("meter", 1.0), np.radians(change.get("angle", 0.0))
     model, labels = clamped_strip(element, **change)
     watch = Watch()
     frame = ct.solve(model, Static(increments=3), observers=[watch], threads=1).frames[-1]
     back = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    u = frame.U[labels] @ back.T / metre
+    u = frame.U[labels] @ back.T / meter
     mises = np.sort(np.concatenate([f.values["MISES"].ravel() for f in frame.fields]))
-    energy = frame.scalars["strain energy"] / metre
-    return watch.iterations, u, frame.UR[labels], mises * metre**2, energy
+    energy = frame.scalars["strain energy"] / meter
+    return watch.iterations, u, frame.UR[labels], mises * meter**2, energy
 
 
 @pytest.mark.parametrize("local_strain", ["linear", "green_lagrange"])
@@ -54,7 +54,7 @@ def solved(element, **change):
 def test_units_axes_and_numbering_do_not_matter(element, local_strain):
     reference = solved(element, local_strain=local_strain)
     assert np.abs(reference[1]).max() > 0.5
-    changes = ({"metre": 1000.0}, {"angle": ANGLE}, {"seed": 1})
+    changes = ({"meter": 1000.0}, {"angle": ANGLE}, {"seed": 1})
     for change in changes:
         other = solved(element, local_strain=local_strain, **change)
         assert other[0] == reference[0], change

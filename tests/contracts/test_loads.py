@@ -111,11 +111,11 @@ def test_two_gravities_and_two_pressures_add_up():
 
 
 def test_two_spins_add_up():
-    """Each about its own centre."""
+    """Each about its own center."""
     parts = []
-    for centres in ([(0.0, 0.0)], [(1.0, 2.0)], [(0.0, 0.0), (1.0, 2.0)]):
+    for centers in ([(0.0, 0.0)], [(1.0, 2.0)], [(0.0, 0.0), (1.0, 2.0)]):
         model = strip()
-        model.loads += [BodyForce("", "centrifugal", (2.0, *c)) for c in centres]
+        model.loads += [BodyForce("", "centrifugal", (2.0, *c)) for c in centers]
         parts.append(linear(model).F)
     assert np.abs(parts[0] + parts[1] - parts[2]).max() <= ROUNDOFF * 30
 

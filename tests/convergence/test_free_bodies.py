@@ -27,8 +27,8 @@ REFUSED = {
     "free_in_x": (3, "part with element 1 can move in x"),
     "free_with_contact": (3, "the part with element 1 can move in x"),
     "loose_tie": (3, "parts with element 1, 2 can move in x"),
-    "stabilise_gap_flies": (4, "stopped at"),
-    "stabilised_pulled_away": (4, "part with element 2 can move in y"),
+    "stabilize_gap_flies": (4, "stopped at"),
+    "stabilized_pulled_away": (4, "part with element 2 can move in y"),
 }
 
 
@@ -46,7 +46,7 @@ def test_decks_with_free_motions_are_refused(name, tmp_path, capsys):
     assert words in text
 
 
-@pytest.mark.parametrize("name", ["moments_of_rounding", "stabilise_touching_flies"])
+@pytest.mark.parametrize("name", ["moments_of_rounding", "stabilize_touching_flies"])
 def test_decks_that_end_do_so_in_equilibrium(name, tmp_path, capsys):
     code, text = run(name, tmp_path, capsys)
     assert code == 0, text

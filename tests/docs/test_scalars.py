@@ -74,6 +74,6 @@ def test_labels_have_these_dimensions() -> None:
 
 def strip_units(name: str) -> str:
     from corota.model.units import Units
-    from corota.results.variables import labelled
+    from corota.results.variables import labeled
 
-    return labelled(name, Units.of("mm", "N", "t", "s"))
+    return labeled(name, Units.of("mm", "N", "t", "s"))

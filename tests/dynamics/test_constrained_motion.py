@@ -93,7 +93,7 @@ def pendulum(element="Q4I"):
 
 
 def swing(period):
-    """Angle of a pendulum of 2 x 1, whose centre is at 2 from the pivot."""
+    """Angle of a pendulum of 2 x 1, whose center is at 2 from the pivot."""
     inertia = 2.0 * (2.0**2 + 1.0) / 12.0 + 2.0 * 2.0**2
     pull = 2.0 * GRAVITY * 2.0 / inertia
     found = solve_ivp(

@@ -133,15 +133,15 @@ def test_rigid_spin_has_the_kinetic_energy_of_the_body(element, mass):
     turned = system.from_nodes(np.column_stack([-x[:, 1], x[:, 0], np.ones(len(x))]))
     polar = turned @ matrix @ turned
     total = one @ matrix @ one
-    centre = np.array([one @ matrix @ at, two @ matrix @ at]) / total
+    center = np.array([one @ matrix @ at, two @ matrix @ at]) / total
     assert mass_all == pytest.approx(total, rel=1e-12)
-    v_centre = np.array(velocity) + omega * np.array([-centre[1], centre[0]])
-    about_centre = polar - total * (centre @ centre)
-    expected = 0.5 * total * (v_centre @ v_centre) + 0.5 * about_centre * omega**2
+    v_center = np.array(velocity) + omega * np.array([-center[1], center[0]])
+    about_center = polar - total * (center @ center)
+    expected = 0.5 * total * (v_center @ v_center) + 0.5 * about_center * omega**2
     assert kinetic == pytest.approx(expected, rel=1e-12)
-    assert (px, py) == pytest.approx(tuple(total * v_centre), rel=1e-12)
+    assert (px, py) == pytest.approx(tuple(total * v_center), rel=1e-12)
     assert angular == pytest.approx(
-        total * (centre[0] * v_centre[1] - centre[1] * v_centre[0]) + about_centre * omega,
+        total * (center[0] * v_center[1] - center[1] * v_center[0]) + about_center * omega,
         rel=1e-12,
     )
     if mass != "lumped":

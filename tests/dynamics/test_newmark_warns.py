@@ -22,7 +22,7 @@ WORDS = ("gained by step 1", "newmark does not conserve energy", "scheme='energy
 
 def ring() -> ct.Model:
     """An elastic ring that flies to a wall."""
-    model = ct.Model(ct.mesh.annulus(0.8, 1.0, 2, 24, centre=(0.0, 1.02)))
+    model = ct.Model(ct.mesh.annulus(0.8, 1.0, 2, 24, center=(0.0, 1.02)))
     material = ct.Elastic(E=2e3, nu=0.3, rho=1.0)
     model.section("all", element="Q4I", material=material, local_strain="green_lagrange")
     model.contact("outer", ct.RigidCurve.line((-9.0, 0.0), (9.0, 0.0)))

@@ -141,7 +141,7 @@ def test_conserving_scheme_conserves_with_light_nodes(element, monkeypatch):
 def test_nodes_without_mass_start_without_acceleration(element):
     """A ring above a plane begins to fall; closed form of the momentum: weight times time."""
     cell = "tri3" if element == "OPT" else "quad4"
-    mesh = ct.mesh.annulus(0.3, 1.0, 2, 24, cell=cell, centre=(0.0, 1.01))
+    mesh = ct.mesh.annulus(0.3, 1.0, 2, 24, cell=cell, center=(0.0, 1.01))
     model = ct.Model(mesh)
     model.section("all", element=element, material=ct.Elastic(E=2e4, nu=0.3, rho=1.0))
     model.contact("outer", ct.RigidCurve.line((-10.0, 0.0), (10.0, 0.0)))

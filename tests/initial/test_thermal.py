@@ -127,7 +127,7 @@ def test_held_bar_yields_when_it_is_heated() -> None:
     assert stresses(frame)[:, [0, 2]] == pytest.approx(-1.0, rel=1e-8)
 
 
-def test_orthotropic_expansion_follows_the_fibres() -> None:
+def test_orthotropic_expansion_follows_the_fibers() -> None:
     angle = 0.4
     material = ct.Orthotropic(100.0, 10.0, 12.0, 0.3, 0.25, 0.4, 5.0, expansion=(1e-3, 3e-3, 2e-3))
     model = plate("Q4", material, orientation=angle)
@@ -161,7 +161,7 @@ def test_orthotropic_plane_strain_against_the_inverted_compliance() -> None:
         c * s * (own[0] - own[1]),
     ]
     found = stresses(frame)
-    # The middle of the plate moves a little: it is not symmetric to the fibres.
+    # The middle of the plate moves a little: it is not symmetric to the fibers.
     assert found.mean(axis=0) == pytest.approx(expected, rel=2e-2)
     assert found[:, 2].mean() == pytest.approx(expected[2], rel=2e-2)
 

@@ -194,3 +194,21 @@ def test_one_text_says_which_local_strain_to_take() -> None:
     flowing.force("right", y=1e-6)
     flowing.steps = [ct.Static()]
     assert any(local_strain.ADVICE in d.message for d in flowing.check())
+
+
+@pytest.mark.parametrize(
+    ("call", "new"),
+    [
+        (lambda: ct.mesh.annulus(1.0, 2.0, 1, 8, centre=(3.0, 0.0)), "center"),
+        (lambda: ct.RigidCurve.circle(centre=(0.0, 0.0), radius=1.0), "center"),
+        (lambda: ct.ContactPair("a", "b", stabilise=True), "stabilize"),
+        (lambda: ct.LocalAxes("a", centre=(0.0, 0.0)), "center"),
+        (
+            lambda: ct.mesh.to_quadratic(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1), centre=True),
+            "center",
+        ),
+    ],
+)
+def test_former_keywords_work_and_name_the_new_one(call, new) -> None:
+    with pytest.warns(DeprecationWarning, match=f"is now called {new}"):
+        call()

@@ -117,7 +117,7 @@ def test_the_start_of_a_pair(tmp_path: Path) -> None:
     step = STEP.replace("*CLOAD", "*CONTACT INTERFERENCE, SHRINK\nLow, High\n*CLOAD")
     assert read(tmp_path, deck(INTERACTION + PAIR, step)).contacts[0].start == "ramp"
     step = STEP.replace("*CLOAD", "*CONTACT CONTROLS, STABILIZE\n*CLOAD")
-    assert read(tmp_path, deck(INTERACTION + PAIR, step)).contacts[0].stabilise
+    assert read(tmp_path, deck(INTERACTION + PAIR, step)).contacts[0].stabilize
 
 
 def test_a_surface_with_itself(tmp_path: Path) -> None:

@@ -115,7 +115,7 @@ def test_controls_hold_for_general_contact(tmp_path: Path) -> None:
         + GENERAL
         + STEP.replace("*BOUNDARY\nTOP", "*CONTACT CONTROLS, STABILIZE\n*BOUNDARY\nTOP")
     )
-    assert [pair.stabilise for pair in read(tmp_path, text).contacts] == [True]
+    assert [pair.stabilize for pair in read(tmp_path, text).contacts] == [True]
 
 
 def test_inclusions_name_pairs(tmp_path: Path) -> None:

@@ -233,9 +233,9 @@ def test_orthotropic_materials_with_an_orientation(
     tmp_path: Path, type_: str, rows: str, wanted: list[float]
 ) -> None:
     text = DECK.replace("*ELASTIC\n210000., .3", f"*ELASTIC, TYPE={type_}\n{rows}").replace(
-        "MATERIAL=steel\n2.", "MATERIAL=steel, ORIENTATION=fibre\n2."
+        "MATERIAL=steel\n2.", "MATERIAL=steel, ORIENTATION=fiber\n2."
     )
-    text = text.replace("*MATERIAL", "*ORIENTATION, NAME=Fibre\n1., 1., 0., -1., 1.\n*MATERIAL", 1)
+    text = text.replace("*MATERIAL", "*ORIENTATION, NAME=Fiber\n1., 1., 0., -1., 1.\n*MATERIAL", 1)
     section = read(tmp_path, text).sections[0]
     assert section.material.parameters()[:7] == pytest.approx(wanted)
     assert section.orientation == pytest.approx(math.pi / 4)

@@ -86,8 +86,8 @@ def test_transform(tmp_path: Path) -> None:
     )
     straight, round_ = read(tmp_path, deck(lines)).axes
     assert straight.angle == pytest.approx(math.pi / 4)
-    assert straight.centre is None
-    assert round_.centre == (5.0, 6.0)
+    assert straight.center is None
+    assert round_.center == (5.0, 6.0)
 
 
 def test_a_deck_with_a_rigid_end_bends_like_the_model(tmp_path: Path) -> None:

@@ -186,7 +186,7 @@ def test_what_a_deck_cannot_hold_is_refused(tmp_path: Path) -> None:
             lambda m: m.couple("right", 2, kind="distributing", dofs="x", weights=[1.0, 2.0, 3.0]),
             "weights and only some dofs",
         ),
-        (lambda m: m.local_axes([1], angle=0.5, centre=(0.0, 1.0)), "local axes about a point"),
+        (lambda m: m.local_axes([1], angle=0.5, center=(0.0, 1.0)), "local axes about a point"),
         (lambda m: m.contact("left", "right", reach=0.5), "reach"),
         (
             lambda m: m.steps.append(ct.Static(path=ct.DisplacementControl("right", "y", 1.0))),
@@ -274,7 +274,7 @@ def test_contact(tmp_path: Path) -> None:
     assert second.ties == first.ties
     assert len(second.contacts) == len(first.contacts) == 4
     for a, b in zip(first.contacts, second.contacts, strict=True):
-        for name in ("slave", "method", "friction", "clearance", "start", "stabilise", "adjust"):
+        for name in ("slave", "method", "friction", "clearance", "start", "stabilize", "adjust"):
             assert getattr(a, name) == getattr(b, name)
         assert (a.law is None) == (b.law is None)
         if a.law is not None and b.law is not None:

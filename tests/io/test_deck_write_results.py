@@ -73,9 +73,9 @@ def straight() -> ct.Model:
     return model
 
 
-def axes(centre: tuple[float, float] | None) -> ct.Model:
+def axes(center: tuple[float, float] | None) -> ct.Model:
     model = strip()
-    model.local_axes("right", angle=0.0 if centre else 0.6, centre=centre)
+    model.local_axes("right", angle=0.0 if center else 0.6, center=center)
     model.fix("right", x=0.0, y=-0.05)
     return model
 

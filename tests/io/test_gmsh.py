@@ -85,9 +85,9 @@ def test_physical_groups_become_sets(
     assert sorted(found.cell_sets) == ["both", "one", "two"]
     assert len(found.cell_sets["both"]) == found.n_cells
     assert len(np.intersect1d(found.cell_sets["one"], found.cell_sets["two"])) == 0
-    centre = found.points[found.cells[0].nodes].mean(axis=1)
-    assert (centre[found.cell_sets["one"], 0] < 1.0).all()
-    assert (centre[found.cell_sets["two"], 0] > 1.0).all()
+    center = found.points[found.cells[0].nodes].mean(axis=1)
+    assert (center[found.cell_sets["one"], 0] < 1.0).all()
+    assert (center[found.cell_sets["two"], 0] > 1.0).all()
     assert np.allclose(found.points[found.node_sets["left side"], 0], 0.0)
     assert np.allclose(found.points[found.node_sets["corner"]], [[2.0, 1.0]])
     top = found.edge_nodes(found.edge_sets["top"])

@@ -58,11 +58,11 @@ def test_rectangle_has_its_area_sides_and_sets(kind: str, diagonal: str) -> None
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("angle", [90.0, 360.0])
 def test_annulus_follows_the_circles(kind: str, angle: float) -> None:
-    found = mesh.annulus(1.0, 2.0, 2, 12, angle, kind, start=30.0, centre=(1.0, 2.0))
+    found = mesh.annulus(1.0, 2.0, 2, 12, angle, kind, start=30.0, center=(1.0, 2.0))
     check(found)
     for name, radius in (("inner", 1.0), ("outer", 2.0)):
-        from_centre = found.points[found.node_sets[name]] - [1.0, 2.0]
-        assert np.allclose(np.linalg.norm(from_centre, axis=1), radius)
+        from_center = found.points[found.node_sets[name]] - [1.0, 2.0]
+        assert np.allclose(np.linalg.norm(from_center, axis=1), radius)
     sides = {"inner", "outer"} | ({"start", "end"} if angle < 360.0 else set())
     assert set(found.edge_sets) == sides
     # Area of the polygon ring with 12 sides on the arc.
@@ -98,10 +98,10 @@ def test_distortion_keeps_boundary_and_area(kind: str) -> None:
     assert np.array_equal(found.points[edge], plain.points[edge])
 
 
-@pytest.mark.parametrize(("kind", "centre"), [("tri3", False), ("quad4", False), ("quad4", True)])
-def test_quadratic_mesh_equals_the_generated_one(kind: str, centre: bool) -> None:
-    found = mesh.to_quadratic(mesh.rectangle(2.0, 1.0, 4, 2, kind), centre=centre)
-    wanted = {"tri3": "tri6", "quad4": "quad9" if centre else "quad8"}[kind]
+@pytest.mark.parametrize(("kind", "center"), [("tri3", False), ("quad4", False), ("quad4", True)])
+def test_quadratic_mesh_equals_the_generated_one(kind: str, center: bool) -> None:
+    found = mesh.to_quadratic(mesh.rectangle(2.0, 1.0, 4, 2, kind), center=center)
+    wanted = {"tri3": "tri6", "quad4": "quad9" if center else "quad8"}[kind]
     direct = mesh.rectangle(2.0, 1.0, 4, 2, wanted)
     check(found)
     assert found.n_nodes == direct.n_nodes

@@ -87,7 +87,7 @@ def test_element_type_is_replaced(tmp_path, here):
         (["run"], "deck"),
         (["run", "a.inp", "--threads", "0"], "not a whole number from 1"),
         (["run", "a.inp", "--element", "CPS4"], "OLD=NEW"),
-        (["run", "a.inp", "--colour"], "unrecognized arguments"),
+        (["run", "a.inp", "--color"], "unrecognized arguments"),
     ],
 )
 def test_wrong_command_line_is_64_with_a_pointer(arguments, words, capsys):

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 def results() -> ct.Results:
     """A block under a rigid disc that comes down and turns."""
     block = ct.mesh.rectangle(4.0, 1.0, nx=8, ny=2)
-    centre = ct.mesh.add_node(block, 2.0, 3.0, name="centre")
+    center = ct.mesh.add_node(block, 2.0, 3.0, name="center")
     model = ct.Model(block, name="pressed")
     model.section("all", element="Q4I", material=ct.Elastic(E=100.0, nu=0.3))
     model.fix("bottom")
-    model.contact("top", ct.RigidCurve.circle((2.0, 3.0), 2.0, reference=centre), name="disc")
-    model.fix("centre", y=-0.04, rotation=0.25)
+    model.contact("top", ct.RigidCurve.circle((2.0, 3.0), 2.0, reference=center), name="disc")
+    model.fix("center", y=-0.04, rotation=0.25)
     return ct.solve(model, ct.Static(first_increment=0.5), threads=1)
 
 

@@ -183,7 +183,7 @@ def test_requests_of_a_deck_choose_fields(tmp_path: Path) -> None:
         ({"fields": ["Q7"]}, "unknown field 'Q7'"),
         ({"fields": "some"}, "give 'all', 'requested'"),
         ({"compression": 10}, "a level from 0 to 9"),
-        ({"colour": 1}, "options are points"),
+        ({"color": 1}, "options are points"),
     ],
 )
 def test_wrong_options_are_refused(tmp_path: Path, options: dict[str, Any], text: str) -> None:

@@ -13,7 +13,7 @@ from corota.cli import main
 from corota.io.result_reader import read_results
 from corota.mesh import Mesh
 from corota.mesh.data import Cells
-from corota.results.variables import labelled
+from corota.results.variables import labeled
 
 KINDS = {"T3": "tri3", "OPT": "tri3", "T6": "tri6", "Q8R": "quad8", "Q8": "quad8", "Q9": "quad9"}
 ELEMENTS = ("T3", "T6", "Q4", "Q4I", "Q4S", "Q4R", "Q8", "Q8R", "Q9", "OPT", "Q4D", "Q4DI")
@@ -338,7 +338,7 @@ def test_history_and_pictures(tmp_path):
     units = ct.Model(results.mesh)
     units.units("mm", "N")
     shear = results.section_history("V", (4.0, 0.0), (4.0, 1.0))
-    assert labelled(shear.name, units.unit_system) == "section V [N]"  # no speed
+    assert labeled(shear.name, units.unit_system) == "section V [N]"  # no speed
     assert history[-1] == results.section((4.0, 0.0), (4.0, 1.0)).M
     file = results.write(tmp_path / "job.vtkhdf")
     lines = beam().write(tmp_path / "lines.vtkhdf")

@@ -70,7 +70,7 @@ def macneal(element):
     if kind.startswith("tri"):
         mesh = ct.mesh.to_triangles(mesh)
     if kind in ("tri6", "quad8", "quad9"):
-        mesh = ct.mesh.to_quadratic(mesh, centre=kind == "quad9")
+        mesh = ct.mesh.to_quadratic(mesh, center=kind == "quad9")
     return mesh
 
 

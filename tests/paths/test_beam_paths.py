@@ -20,7 +20,7 @@ def limits(model: ct.Model, node: int, end: float, first: float = 0.0) -> list[f
     return [p.factor for p in results.critical_points]
 
 
-def test_metres_millimetres_and_any_first_increment_give_the_same_path() -> None:
+def test_meters_millimeters_and_any_first_increment_give_the_same_path() -> None:
     plain = limits(*beam_models.lee_frame(10), -62.0)
     for scale in (1e-3, 1e3):
         model, node = beam_models.lee_frame(10, scale=scale)

@@ -81,7 +81,7 @@ def test_the_same_path_whatever_the_first_increment(lee, first):
         assert loads[0] == pytest.approx(loads[1], rel=SAME)
 
 
-def test_metres_and_millimetres_give_the_same_path(lee):
+def test_meters_and_millimeters_give_the_same_path(lee):
     results, node = lee
     model, _ = lee_frame(scale=1e-3)
     path = ct.ArcLength(displacement=(node, "y", -0.062))

@@ -56,7 +56,7 @@ def test_the_path_is_the_exact_one_whatever_the_first_increment(follow, first, s
     assert path[-1].point.u[3] == pytest.approx(-2.2 * rise, rel=1e-12)
 
 
-def test_metres_and_millimetres_give_the_same_path(follow):
+def test_meters_and_millimeters_give_the_same_path(follow):
     """Lengths in another unit: the same increments, to rounding."""
     paths = []
     for size in (1.0, 1e3):

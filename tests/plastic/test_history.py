@@ -125,7 +125,7 @@ def test_strongly_plastic_internal_modes() -> None:
 
 
 def test_units() -> None:
-    """Metres and newtons, or millimetres and megapascals: the same strains."""
+    """Meters and newtons, or millimeters and megapascals: the same strains."""
     found = []
     for length, stress in ((1.0, 1.0), (1e-3, 1e6), (1e3, 1e-6)):
         model = ct.Model(ct.mesh.rectangle(10.0 * length, length, 10, 2))

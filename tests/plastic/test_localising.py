@@ -136,7 +136,7 @@ def test_uniform_tension_is_unstable_where_theory_says(hardening, stable):
     ("element", "hardening", "said"),
     [("Q4I", 0.135, True), ("Q4I", 0.3, False), ("Q8", 0.135, False)],
 )
-def test_localised_flow_is_said(element, hardening, said):
+def test_localized_flow_is_said(element, hardening, said):
     """On Cook's panel; once."""
     model = cook(element, 8, 1.8, "logarithmic", law(hardening))
     with warnings.catch_warnings(record=True) as caught:

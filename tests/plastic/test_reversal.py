@@ -63,12 +63,12 @@ def strain(kind: str) -> float:
     """Of a bar after the three steps: each yields beyond twice the yield stress of the last."""
     isotropic, kinematic = HARDENING[kind]
     slope, radius, flow = isotropic + kinematic, YIELD, 0.0
-    before, centre = 0.0, 0.0
+    before, center = 0.0, 0.0
     for stress in PEAKS:
         sign = np.sign(stress - before)
-        step = (sign * (stress - centre) - radius) / slope
+        step = (sign * (stress - center) - radius) / slope
         radius += isotropic * step
-        centre += sign * kinematic * step
+        center += sign * kinematic * step
         flow += sign * step
         before = stress
     return float(before / YOUNG + flow)

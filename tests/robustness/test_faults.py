@@ -217,7 +217,7 @@ def test_controls_of_a_later_step_do_not_damp_an_earlier_one(tmp_path):
     }.items():
         (tmp_path / f"{name}.inp").write_text(text)
         model = ct.read(tmp_path / f"{name}.inp")
-        assert [c.stabilise_from for c in model.contacts] == [2 if name == "second" else 1]
+        assert [c.stabilize_from for c in model.contacts] == [2 if name == "second" else 1]
         frames[name] = [f.U for f in ct.solve(model, threads=1).frames if f.step == 1]
     assert len(frames["none"]) > 2
     for one, other in zip(frames["none"], frames["second"], strict=True):

@@ -2,7 +2,7 @@
 
 Total Lagrangian, written from the definitions: shape functions from monomials, first
 Piola-Kirchhoff stress and its derivative by the deformation gradient, no frames. Cells of 3,
-4, 6, 8 and 9 nodes, numbered as everywhere: corners, mid-sides, centre.
+4, 6, 8 and 9 nodes, numbered as everywhere: corners, mid-sides, center.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -43,7 +43,7 @@ impl<T: Smooth> Frame<T> {
 #[derive(Clone, Debug)]
 pub enum Piece {
     Line(Vec2<f64>, Vec2<f64>),
-    /// Centre, radius, first angle, sweep: counter-clockwise for solid, clockwise for hollow.
+    /// Center, radius, first angle, sweep: counter-clockwise for solid, clockwise for hollow.
     Arc(Vec2<f64>, f64, f64, f64),
 }
 

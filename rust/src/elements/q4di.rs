@@ -5,7 +5,7 @@
 
 use super::element::{Drilling, Element, Point, Sample};
 use super::q4d::Q4d;
-use super::q4i::{Centre, Q4i};
+use super::q4i::{Center, Q4i};
 use super::shapes;
 use crate::base::Real;
 use crate::base::small::{Mat, Nodal};
@@ -18,7 +18,7 @@ impl Element<4, 3, 2> for Q4di {
     const CELL: &'static str = "quad4";
     const ALPHA_B: f64 = Q4d::ALPHA_B;
     type Op<T: Real> = Drilling<T, 4>;
-    type Prepared<T: Real> = (Centre<T>, [[T; 2]; 4]);
+    type Prepared<T: Real> = (Center<T>, [[T; 2]; 4]);
 
     fn rule() -> Vec<[f64; 3]> {
         Q4d::rule()
@@ -42,10 +42,10 @@ impl Element<4, 3, 2> for Q4di {
     #[inline(always)]
     fn sample<T: Real>(
         x: &Nodal<T, 4, 2>,
-        (centre, bulges): &Self::Prepared<T>,
+        (center, bulges): &Self::Prepared<T>,
         point: &Point<4>,
     ) -> Sample<T, Drilling<T, 4>, 2> {
-        let Sample { op, modes, weight } = Q4i::sample(x, centre, point);
+        let Sample { op, modes, weight } = Q4i::sample(x, center, point);
         let (inverse, _) = crate::base::small::inverse2(&shapes::jacobian(x, &point.dn));
         let dm = shapes::push(&inverse, &shapes::square_sides(point.xi).1);
         let op = Drilling { grad: op.0, turn: shapes::turning_rows(bulges, &dm), n: point.n };

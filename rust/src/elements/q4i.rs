@@ -1,5 +1,5 @@
 //! Four-node quadrilateral with incompatible modes `1 - r^2`, `1 - s^2` whose gradients are
-//! taken with the centre Jacobian, so that any shape passes the patch test (Wilson et al.
+//! taken with the center Jacobian, so that any shape passes the patch test (Wilson et al.
 //! 1973; Taylor, Beresford & Wilson 1976; in a co-rotational frame: Battini 2008).
 // SPDX-License-Identifier: BSD-3-Clause
 
@@ -13,9 +13,9 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy)]
 pub struct Q4i;
 
-/// Inverse Jacobian and determinant at the centre.
+/// Inverse Jacobian and determinant at the center.
 #[derive(Clone, Copy)]
-pub struct Centre<T> {
+pub struct Center<T> {
     pub inverse: [[T; 2]; 2],
     det: T,
 }
@@ -25,7 +25,7 @@ impl Element<4, 2, 2> for Q4i {
     const CELL: &'static str = "quad4";
     const FREE_VOLUME: bool = true;
     type Op<T: Real> = Grad<T, 4>;
-    type Prepared<T: Real> = Centre<T>;
+    type Prepared<T: Real> = Center<T>;
 
     fn rule() -> Vec<[f64; 3]> {
         shapes::gauss_square(2)
@@ -37,21 +37,21 @@ impl Element<4, 2, 2> for Q4i {
         shapes::square_linear(xi)
     }
     #[inline(always)]
-    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, _: f64, _: &[T; 4]) -> Centre<T> {
+    fn prepare<T: Real>(x: &Nodal<T, 4, 2>, _: f64, _: &[T; 4]) -> Center<T> {
         let (_, dn) = shapes::square_linear([0.0, 0.0]);
         let (inverse, det) = inverse2(&shapes::jacobian(x, &dn));
-        Centre { inverse, det }
+        Center { inverse, det }
     }
     #[inline(always)]
     fn sample<T: Real>(
         x: &Nodal<T, 4, 2>,
-        centre: &Centre<T>,
+        center: &Center<T>,
         point: &Point<4>,
     ) -> Sample<T, Grad<T, 4>, 2> {
         let (g, weight) = shapes::gradients(x, point);
         let [r, s] = point.xi;
-        let mut modes = shapes::push(&centre.inverse, &[[-2.0 * r, 0.0], [0.0, -2.0 * s]]);
-        let ratio = centre.det.scale(point.weight) / weight;
+        let mut modes = shapes::push(&center.inverse, &[[-2.0 * r, 0.0], [0.0, -2.0 * s]]);
+        let ratio = center.det.scale(point.weight) / weight;
         for mode in &mut modes {
             for j in 0..2 {
                 mode[j] = mode[j] * ratio;
@@ -65,10 +65,10 @@ impl Revolved<4, 2> for Q4i {
     #[inline(always)]
     fn ring<T: Real>(
         x: &Nodal<T, 4, 2>,
-        centre: &Centre<T>,
+        center: &Center<T>,
         point: &Point<4>,
     ) -> Sample<T, Hoop<T, 4>, 2> {
-        ring_sample(x, centre, point)
+        ring_sample(x, center, point)
     }
 }
 
@@ -77,18 +77,18 @@ impl Revolved<4, 2> for Q4i {
 #[inline(always)]
 pub fn ring_sample<T: Real>(
     x: &Nodal<T, 4, 2>,
-    centre: &Centre<T>,
+    center: &Center<T>,
     point: &Point<4>,
 ) -> Sample<T, Hoop<T, 4>, 2> {
-    let Sample { op: Grad(grad), mut modes, weight } = Q4i::sample(x, centre, point);
+    let Sample { op: Grad(grad), mut modes, weight } = Q4i::sample(x, center, point);
     let (n, dn) = shapes::square_linear([0.0, 0.0]);
     let slope = shapes::jacobian(x, &dn)[0];
     let middle = radius(x, &n).scale(3.0).recip();
-    let ratio = centre.det.scale(point.weight) / weight;
+    let ratio = center.det.scale(point.weight) / weight;
     for m in 0..2 {
         let shift = (slope[m] * middle * ratio).scale(2.0);
         for i in 0..2 {
-            modes[m][i] = centre.inverse[m][i].fma(shift, modes[m][i]);
+            modes[m][i] = center.inverse[m][i].fma(shift, modes[m][i]);
         }
     }
     let r = radius(x, &point.n);

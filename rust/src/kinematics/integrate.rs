@@ -45,7 +45,7 @@ pub struct Section<const N: usize> {
 
 impl<const N: usize> Section<N> {
     /// The same section for a geometrically linear analysis.
-    pub fn linearised(&self) -> Self {
+    pub fn linearized(&self) -> Self {
         Self { strain: LocalStrain::Linear, finite: false, ..self.clone() }
     }
 

@@ -8,7 +8,7 @@ use super::delayed_pivots::Special;
 use super::multifrontal::Numeric;
 use super::symbolic::{Front, Symbolic};
 
-/// Views of a factorisation for one solve.
+/// Views of a factorization for one solve.
 pub struct Backsolve<'a> {
     pub symbolic: &'a Symbolic,
     pub numeric: &'a Numeric,

@@ -59,7 +59,7 @@ struct Dense {
     e: Vec<f64>,
 }
 
-/// Assembles and factorises front `s` with exchanges.
+/// Assembles and factorizes front `s` with exchanges.
 pub fn factorize(
     sym: &Symbolic,
     s: usize,

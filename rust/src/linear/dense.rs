@@ -48,7 +48,7 @@ impl Scratch {
     }
 }
 
-/// Factorises the first `width` columns of a front of `height` rows, held in `panel`.
+/// Factorizes the first `width` columns of a front of `height` rows, held in `panel`.
 ///
 /// On return the panel holds unit-lower L with D on its diagonal (copied to `d`).
 /// `false` says that a pivot or the growth broke the bounds: the panel is spoilt.

@@ -35,14 +35,14 @@ const BAND: f64 = 0.03;
 const MOVES: usize = 4;
 
 /// Nodes of a part without a cut that are ordered by minimum degree, at most. In larger ones, where
-/// nearly all nodes are neighbours, the degrees of the whole graph serve.
+/// nearly all nodes are neighbors, the degrees of the whole graph serve.
 const CLUSTER: usize = 1024;
 /// Parts of more nodes are judged: with more than so many times the square root of their number in
 /// the separator, their edges do not follow the coordinates.
 const JUDGED: usize = 2048;
 const POOR: usize = 4;
 
-/// A vertex with so many times the mean number of neighbours (the reference node of a coupling) is
+/// A vertex with so many times the mean number of neighbors (the reference node of a coupling) is
 /// a separator by itself, unless there are many of them.
 const HUB: usize = 8;
 
@@ -64,7 +64,7 @@ pub struct Graph<'a> {
 }
 
 impl Graph<'_> {
-    pub(super) fn neighbours(&self, v: u32) -> &[u32] {
+    pub(super) fn neighbors(&self, v: u32) -> &[u32] {
         &self.adjncy[self.xadj[v as usize] as usize..self.xadj[v as usize + 1] as usize]
     }
 
@@ -101,7 +101,7 @@ struct Dissection<'a> {
 pub fn dissect(graph: Graph<'_>, shared: bool) -> Vec<u32> {
     let n = graph.weights.len() as u32;
     let is_hub =
-        |&v: &u32| graph.neighbours(v).len() * graph.weights.len() > HUB * graph.adjncy.len();
+        |&v: &u32| graph.neighbors(v).len() * graph.weights.len() > HUB * graph.adjncy.len();
     let (mut hubs, mut order): (Vec<u32>, Vec<u32>) = (0..n).partition(is_hub);
     if hubs.len() > graph.weights.len().isqrt() {
         (hubs, order) = (Vec::new(), (0..n).collect());
@@ -127,7 +127,7 @@ impl Dissection<'_> {
             if part.len() <= CLUSTER {
                 minimum_degree::order(&self.graph, part, &mut scratch.leaf);
             } else {
-                part.sort_by_key(|&v| self.graph.neighbours(v).len());
+                part.sort_by_key(|&v| self.graph.neighbors(v).len());
             }
             return;
         };
@@ -208,7 +208,7 @@ impl Dissection<'_> {
         }
         layout.clear();
         for &v in part {
-            let near = self.graph.neighbours(v).iter();
+            let near = self.graph.neighbors(v).iter();
             let near = near.map(|&u| self.number[u as usize].load(Relaxed));
             layout.list.extend(near.filter(|&k| k != DONE));
             layout.start.push(layout.list.len() as u32);
@@ -275,12 +275,12 @@ impl Dissection<'_> {
             last = k;
             number(d, span);
             // What a cut before each slot adds to the separator: vertices from there on with a
-            // neighbour before it; and the weights in the slots.
+            // neighbor before it; and the weights in the slots.
             steps.clear();
             steps.resize(slots + 1, [0, 0]);
             for &v in part {
                 let own = self.number[v as usize].load(Relaxed);
-                let first = self.first_neighbour(v, own);
+                let first = self.first_neighbor(v, own);
                 let weight = self.graph.weight(v);
                 steps[own as usize][1] += weight;
                 steps[first as usize + 1][0] += weight;
@@ -307,16 +307,16 @@ impl Dissection<'_> {
             let own = self.number[v as usize].load(Relaxed);
             match own < slot {
                 true => BEFORE,
-                false if self.first_neighbour(v, own) < slot => SEPARATOR,
+                false if self.first_neighbor(v, own) < slot => SEPARATOR,
                 false => BEHIND,
             }
         }));
         true
     }
 
-    /// Least number of a vertex and its neighbours.
-    fn first_neighbour(&self, v: u32, own: u32) -> u32 {
-        let numbers = self.graph.neighbours(v).iter();
+    /// Least number of a vertex and its neighbors.
+    fn first_neighbor(&self, v: u32, own: u32) -> u32 {
+        let numbers = self.graph.neighbors(v).iter();
         numbers.fold(own, |a, &u| a.min(self.number[u as usize].load(Relaxed)))
     }
 
@@ -341,7 +341,7 @@ impl Dissection<'_> {
         while at < members.len() {
             let v = part[members[at] as usize];
             at += 1;
-            for &u in self.graph.neighbours(v) {
+            for &u in self.graph.neighbors(v) {
                 let k = self.number[u as usize].load(Relaxed);
                 if k == DONE || in_band[k as usize] != DONE {
                     continue;
@@ -357,7 +357,7 @@ impl Dissection<'_> {
         band.clear();
         for &k in members.iter() {
             let mut touches = [false; 2];
-            for &u in self.graph.neighbours(part[k as usize]) {
+            for &u in self.graph.neighbors(part[k as usize]) {
                 let j = self.number[u as usize].load(Relaxed);
                 if j == DONE {
                     continue;
@@ -413,7 +413,7 @@ fn cost(before: i64, behind: i64, separator: i64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Graph of a grid of quadrilaterals: neighbours share an element. `bend` turns it to a ring.
+    /// Graph of a grid of quadrilaterals: neighbors share an element. `bend` turns it to a ring.
     fn grid(nx: i64, ny: i64, bend: f64) -> (Vec<u32>, Vec<u32>, Vec<[f64; 2]>) {
         let (mut xadj, mut adjncy, mut points) = (vec![0], Vec::new(), Vec::new());
         for i in 0..nx {

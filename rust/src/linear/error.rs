@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::base::memory::Shortage;
 
-/// Reasons for which a factorisation or a solve gives no answer.
+/// Reasons for which a factorization or a solve gives no answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinearError {
     /// The pattern or the shape of an argument is not what the interface asks for.

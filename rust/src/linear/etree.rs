@@ -31,7 +31,7 @@ fn column_tree(graph: &NodeGraph, order: &[u32], rank: &[u32]) -> (Vec<u32>, Vec
         let weight = graph.weight(v);
         seen[j] = j as u32;
         height[j] += weight;
-        for &u in graph.neighbours(v) {
+        for &u in graph.neighbors(v) {
             let mut i = rank[u as usize] as usize;
             if i >= j {
                 continue;

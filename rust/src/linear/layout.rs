@@ -3,7 +3,7 @@
 //!
 //! A few vertices are chosen as far apart as possible. The difference of the distances from two of
 //! them, counted in edges, rises from the one to the other and stands for the distance along a
-//! direction. Averages over the neighbours make its steps fine. Source: Harel & Koren, *Graph
+//! direction. Averages over the neighbors make its steps fine. Source: Harel & Koren, *Graph
 //! Drawing by High-Dimensional Embedding*, J. Graph Algorithms Appl. 8 (2004) 195-214.
 
 use std::array;
@@ -12,7 +12,7 @@ use std::array;
 const FAR: usize = 4;
 /// Pairs of them.
 pub const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
-/// Averages over neighbours.
+/// Averages over neighbors.
 const AVERAGES: usize = 8;
 /// No vertex, and a distance that is not known yet.
 const NONE: u32 = u32::MAX;
@@ -20,7 +20,7 @@ const NONE: u32 = u32::MAX;
 /// A part of a graph with local numbers, and the distances of its vertices.
 #[derive(Default)]
 pub struct Layout {
-    /// Start of each vertex's list of neighbours in the part, and the lists.
+    /// Start of each vertex's list of neighbors in the part, and the lists.
     pub start: Vec<u32>,
     pub list: Vec<u32>,
     /// Distances of each vertex from the far ones, averaged.

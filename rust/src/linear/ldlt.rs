@@ -30,7 +30,7 @@ const SINGULAR: f64 = 4e-16;
 /// Bytes that finding the order of elimination takes for each entry of the matrix (measured).
 const ORDERING: usize = 24;
 
-/// Multiplications from which a factorisation may be, and from which it is always shared.
+/// Multiplications from which a factorization may be, and from which it is always shared.
 const SHARED_FACTOR: [f64; 2] = [3e7, 2e9];
 /// Values of the factor from which a solve may be, and from which it is always shared.
 const SHARED_SOLVE: [f64; 2] = [5e5, 1e7];
@@ -63,7 +63,7 @@ impl Ldlt {
         self.points = points;
     }
 
-    /// Values of the factor and multiplications of a factorisation.
+    /// Values of the factor and multiplications of a factorization.
     pub fn size(&self) -> (usize, f64) {
         (self.symbolic.factor_len, self.symbolic.work)
     }
@@ -114,7 +114,7 @@ impl Ldlt {
         Ok(())
     }
 
-    /// Solves the scaled system with a pivoting LU, made once per factorisation.
+    /// Solves the scaled system with a pivoting LU, made once per factorization.
     fn solve_by_lu(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), LinearError> {
         if self.fallback.is_none() {
             let (col_ptr, row_idx, values) = full(&self.col_ptr, &self.row_idx, &self.values);
@@ -241,7 +241,7 @@ impl LinearSolver for Ldlt {
             })?;
         }
         let values = self.symbolic.values(threads) + pattern.row_idx.len();
-        memory::require(8 * values, || format!("the factorisation of {n} equations"))?;
+        memory::require(8 * values, || format!("the factorization of {n} equations"))?;
         self.numeric = Numeric::new(&self.symbolic);
         self.col_ptr = pattern.col_ptr.to_vec();
         self.row_idx = pattern.row_idx.to_vec();

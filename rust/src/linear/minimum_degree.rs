@@ -27,7 +27,7 @@ pub fn order(graph: &Graph<'_>, part: &mut [u32], scratch: &mut Scratch) {
     // The part itself, then what it touches.
     known.clear();
     for &v in part.iter() {
-        known.extend(graph.neighbours(v).iter().filter(|u| part.binary_search(u).is_err()));
+        known.extend(graph.neighbors(v).iter().filter(|u| part.binary_search(u).is_err()));
     }
     known.sort_unstable();
     known.dedup();
@@ -35,7 +35,7 @@ pub fn order(graph: &Graph<'_>, part: &mut [u32], scratch: &mut Scratch) {
     rows.clear();
     rows.resize(words * n, 0);
     for (i, &v) in part.iter().enumerate() {
-        for &u in graph.neighbours(v) {
+        for &u in graph.neighbors(v) {
             let j =
                 part.binary_search(&u).unwrap_or_else(|_| n + known.binary_search(&u).unwrap_or(0));
             rows[i * words + j / BITS] |= 1 << (j % BITS);

@@ -10,7 +10,7 @@
 //! matrices keep an exact inertia, and the columns left at a root count the
 //! rank deficiency of the matrix.
 //!
-//! What was tried, Q4 plane stress, numeric refactorisation on two cores of an AMD
+//! What was tried, Q4 plane stress, numeric refactorization on two cores of an AMD
 //! EPYC with AVX-512 (this module: `python -m benchmarks linear_solver`):
 //!
 //! | seconds | 250 thousand dofs | 1 million |
@@ -24,7 +24,7 @@
 //! themselves and delay pivots. Copying children into the parent's square after the
 //! update instead of clearing it first saves one pass over memory. Squares live on
 //! two stacks, one for each parity of the depth, so that none is ever moved, and
-//! all memory is kept for the next factorisation: at a million equations the first
+//! all memory is kept for the next factorization: at a million equations the first
 //! one takes twice as long for the pages alone. Substitution is bound by memory;
 //! vector instructions made it 5 % faster, two threads 1.6 times. Threads are not
 //! woken for small matrices.
@@ -82,7 +82,7 @@ pub trait LinearSolver: Send {
     /// Orders and prepares for a pattern; done once.
     fn analyze(&mut self, pattern: &Pattern<'_>) -> Result<(), LinearError>;
 
-    /// Factorises the values, given in the order of the pattern.
+    /// Factorizes the values, given in the order of the pattern.
     ///
     /// The inertia is `None` where the method does not tell it.
     fn factorize(&mut self, values: &[f64]) -> Result<Option<Inertia>, LinearError>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Numeric multifrontal factorisation over the tree of fronts.
+//! Numeric multifrontal factorization over the tree of fronts.
 //!
 //! The pieces below the top of the tree go to whichever thread is free; the
 //! fronts of the top share their tiles. Every front sums its children in a fixed
@@ -13,7 +13,7 @@ use super::delayed_pivots::{self, DelayedFront, Special};
 use super::dense::{self, Scratch};
 use super::symbolic::Symbolic;
 
-/// Values of a factorisation: `panels` as laid out by `Symbolic`, `d` the pivots.
+/// Values of a factorization: `panels` as laid out by `Symbolic`, `d` the pivots.
 #[derive(Default)]
 pub struct Numeric {
     pub panels: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct Numeric {
     buffers: Mutex<Vec<Vec<f64>>>,
 }
 
-/// Working memory of one thread, kept between factorisations.
+/// Working memory of one thread, kept between factorizations.
 #[derive(Default)]
 struct Arena {
     stack: [Vec<f64>; 2],
@@ -85,7 +85,7 @@ impl Numeric {
         }
     }
 
-    /// Factorises scaled values; rayon's current pool is used if `threads > 1`.
+    /// Factorizes scaled values; rayon's current pool is used if `threads > 1`.
     pub fn factorize(&mut self, symbolic: &Symbolic, values: &[f64], threads: usize) {
         let shared =
             Shared { symbolic, values, threads, arenas: &self.arenas, buffers: &self.buffers };
@@ -95,7 +95,7 @@ impl Numeric {
 }
 
 impl Shared<'_> {
-    /// Factorises the subtrees of `list`, which fill `parts` from front `begin` on.
+    /// Factorizes the subtrees of `list`, which fill `parts` from front `begin` on.
     fn children(&self, list: &[u32], begin: usize, mut parts: Parts<'_>) -> Vec<Update> {
         let fronts = &self.symbolic.fronts;
         let mut jobs = Vec::with_capacity(list.len());
@@ -194,7 +194,7 @@ impl Shared<'_> {
         pending.pop().unwrap_or(Update::Empty)
     }
 
-    /// Factorises one front whose square goes to a buffer of its own.
+    /// Factorizes one front whose square goes to a buffer of its own.
     fn front(
         &self,
         s: usize,
@@ -214,7 +214,7 @@ impl Shared<'_> {
         }
     }
 
-    /// Factorises one front; its square goes to `out` unless columns are held back.
+    /// Factorizes one front; its square goes to `out` unless columns are held back.
     fn front_into(
         &self,
         s: usize,

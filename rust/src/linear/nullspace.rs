@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Motions without stiffness, found from a factorisation at little cost.
+//! Motions without stiffness, found from a factorization at little cost.
 //!
 //! A small pivot alone says little: rounding leaves a free rotation a pivot of
 //! 1e-6 or more when the nodes eliminated last stand close together. So every
@@ -153,10 +153,10 @@ impl FrontMatrix<'_> {
             let mut stiffness = f64::INFINITY;
             for _ in 0..STEPS {
                 remove(&found, &mut y);
-                normalise(&mut y);
+                normalize(&mut y);
                 self.solve(&mut y);
                 remove(&found, &mut y);
-                stiffness = 1.0 / normalise(&mut y);
+                stiffness = 1.0 / normalize(&mut y);
             }
             if stiffness.is_nan() || stiffness > SUSPECT_FRONT {
                 break;
@@ -180,7 +180,7 @@ fn remove(found: &[Vec<f64>], y: &mut [f64]) {
     }
 }
 
-fn normalise(y: &mut [f64]) -> f64 {
+fn normalize(y: &mut [f64]) -> f64 {
     let length = product(y, y).sqrt();
     for v in y.iter_mut() {
         *v /= length;

@@ -12,7 +12,7 @@ use super::dissection::{self, Graph};
 use super::pattern::NodeGraph;
 use crate::base::pool;
 
-/// Most neighbours of a multiplier that are tied together before the dissection.
+/// Most neighbors of a multiplier that are tied together before the dissection.
 const CLIQUE_LIMIT: usize = 48;
 
 /// Nodes in the orders that are kept, all together.
@@ -95,7 +95,7 @@ fn compute(graph: &NodeGraph, points: &[[f64; 2]], threads: usize) -> Vec<u32> {
     }
     let mut ties: Vec<Vec<u32>> = vec![Vec::new(); kept.len()];
     for m in (0..nodes).filter(|&v| graph.after[v]) {
-        let tied: Vec<u32> = graph.neighbours(m).iter().map(|&u| place[u as usize]).collect();
+        let tied: Vec<u32> = graph.neighbors(m).iter().map(|&u| place[u as usize]).collect();
         let tied: Vec<u32> = tied.into_iter().filter(|&u| u != u32::MAX).collect();
         if tied.len() <= CLIQUE_LIMIT {
             for &u in &tied {
@@ -106,7 +106,7 @@ fn compute(graph: &NodeGraph, points: &[[f64; 2]], threads: usize) -> Vec<u32> {
     let mut xadj = vec![0_u32];
     let mut adjncy = Vec::with_capacity(graph.adjncy.len());
     for (k, &v) in kept.iter().enumerate() {
-        let own = graph.neighbours(v as usize).iter().map(|&u| place[u as usize]);
+        let own = graph.neighbors(v as usize).iter().map(|&u| place[u as usize]);
         let mut list: Vec<u32> =
             own.filter(|&u| u != u32::MAX).chain(ties[k].iter().copied()).collect();
         list.sort_unstable();
@@ -127,7 +127,7 @@ fn compute(graph: &NodeGraph, points: &[[f64; 2]], threads: usize) -> Vec<u32> {
         .map(|v| {
             let is_after = graph.after[v as usize];
             let key = if is_after {
-                let primal = graph.neighbours(v as usize).iter();
+                let primal = graph.neighbors(v as usize).iter();
                 let primal = primal.filter(|&&u| !graph.after[u as usize]);
                 primal.map(|&u| rank[u as usize]).max().unwrap_or(u32::MAX)
             } else {

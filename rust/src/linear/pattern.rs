@@ -60,14 +60,14 @@ impl Pattern<'_> {
     }
 }
 
-/// Graph of the nodes: two nodes are neighbours if any of their equations couple.
+/// Graph of the nodes: two nodes are neighbors if any of their equations couple.
 #[derive(Debug, Clone)]
 pub struct NodeGraph {
     /// First equation of each node, `n_nodes + 1` values.
     pub first_dof: Vec<u32>,
-    /// Start of each node's list of neighbours.
+    /// Start of each node's list of neighbors.
     pub xadj: Vec<u32>,
-    /// Neighbours, rising inside a list, no self loops.
+    /// Neighbors, rising inside a list, no self loops.
     pub adjncy: Vec<u32>,
     /// Whether the node carries a multiplier.
     pub after: Vec<bool>,
@@ -171,8 +171,8 @@ impl NodeGraph {
         self.after.is_empty()
     }
 
-    /// Neighbours of node `v`.
-    pub fn neighbours(&self, v: usize) -> &[u32] {
+    /// Neighbors of node `v`.
+    pub fn neighbors(&self, v: usize) -> &[u32] {
         &self.adjncy[self.xadj[v] as usize..self.xadj[v + 1] as usize]
     }
 

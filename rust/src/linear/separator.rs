@@ -13,7 +13,7 @@ const BEHIND: u32 = u32::MAX - 2;
 /// A band of vertices with local numbers, and the flow through it.
 #[derive(Default)]
 pub struct Band {
-    /// Start of each vertex's list of neighbours in the band, and the lists.
+    /// Start of each vertex's list of neighbors in the band, and the lists.
     pub start: Vec<u32>,
     pub list: Vec<u32>,
     /// Whether a vertex touches the side before the band, and the side behind it.
@@ -208,7 +208,7 @@ impl Band {
                     visit(2 * self.to[v] as usize, &mut self.queue);
                 }
             } else {
-                // Arcs into an entry: from the neighbours' exits, and from its own if it has flow.
+                // Arcs into an entry: from the neighbors' exits, and from its own if it has flow.
                 if self.from[v] != FREE {
                     visit(2 * v + 1, &mut self.queue);
                 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//! Everything about a factorisation that depends on the pattern alone.
+//! Everything about a factorization that depends on the pattern alone.
 
 use std::ops::Range;
 
@@ -45,7 +45,7 @@ impl Front {
     }
 }
 
-/// Symbolic factorisation.
+/// Symbolic factorization.
 #[derive(Debug, Default)]
 pub struct Symbolic {
     pub n: usize,
@@ -66,7 +66,7 @@ pub struct Symbolic {
     pub factor_len: usize,
     /// Longest even and odd stacks that a piece of the tree needs.
     pub stack_len: [usize; 2],
-    /// Multiplications of a factorisation.
+    /// Multiplications of a factorization.
     pub work: f64,
     /// Largest front and largest `width * below`.
     pub max_height: usize,
@@ -116,7 +116,7 @@ impl Symbolic {
         Ok(this)
     }
 
-    /// Values that a factorisation holds at once: factor, a stack for each thread, and the
+    /// Values that a factorization holds at once: factor, a stack for each thread, and the
     /// squares that the fronts above them hand up, at most as many as the largest pairs of them.
     pub fn values(&self, threads: usize) -> usize {
         let stacks = threads * self.stack_len.iter().sum::<usize>();
@@ -196,7 +196,7 @@ impl Symbolic {
                 seen[v as usize] = s as u32;
             }
             for &v in &columns[s] {
-                for &u in graph.neighbours(v as usize) {
+                for &u in graph.neighbors(v as usize) {
                     if front_of[u as usize] > s as u32 && seen[u as usize] != s as u32 {
                         seen[u as usize] = s as u32;
                         rows.push(u);

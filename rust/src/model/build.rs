@@ -1,4 +1,4 @@
-//! Blocks of elements from what the caller says of them, and their chunks by colour.
+//! Blocks of elements from what the caller says of them, and their chunks by color.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::chunk::{CHUNK, Chunk, Shared as BlockData};
@@ -123,7 +123,7 @@ pub fn build(
         };
         let shape = section.points.iter().flat_map(|p| p.n).collect();
         let mass_points = E::points(&E::mass_rule());
-        let (linear, stressed) = (section.linearised(), section.stressed());
+        let (linear, stressed) = (section.linearized(), section.stressed());
         let shared = BlockData {
             block: index,
             section,
@@ -169,28 +169,28 @@ pub fn build(
     Err(format!("no element named {:?}", input.element))
 }
 
-/// Greedy colouring: chunks of a colour share no node.
-pub fn colour(chunks: Vec<Box<dyn Chunk>>, n_nodes: usize) -> Vec<Vec<Box<dyn Chunk>>> {
-    let mut colours: Vec<Vec<Box<dyn Chunk>>> = Vec::new();
-    // Colours seen at each node, 64 at a time; more fall into colours of their own.
+/// Greedy coloring: chunks of a color share no node.
+pub fn color(chunks: Vec<Box<dyn Chunk>>, n_nodes: usize) -> Vec<Vec<Box<dyn Chunk>>> {
+    let mut colors: Vec<Vec<Box<dyn Chunk>>> = Vec::new();
+    // Colors seen at each node, 64 at a time; more fall into colors of their own.
     let mut seen = vec![0u64; n_nodes];
     for chunk in chunks {
         let nodes = chunk.nodes();
         let taken = nodes.iter().fold(0u64, |m, &n| m | seen[n as usize]);
         let free = (!taken).trailing_zeros() as usize;
         if free >= 64 {
-            colours.resize_with(colours.len().max(64), Vec::new);
-            colours.push(vec![chunk]);
+            colors.resize_with(colors.len().max(64), Vec::new);
+            colors.push(vec![chunk]);
             continue;
         }
         for &n in &nodes {
             seen[n as usize] |= 1 << free;
         }
-        if colours.len() <= free {
-            colours.resize_with(free + 1, Vec::new);
+        if colors.len() <= free {
+            colors.resize_with(free + 1, Vec::new);
         }
-        colours[free].push(chunk);
+        colors[free].push(chunk);
     }
-    colours.retain(|c| !c.is_empty());
-    colours
+    colors.retain(|c| !c.is_empty());
+    colors
 }

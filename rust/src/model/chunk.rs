@@ -11,7 +11,7 @@ use crate::kinematics::integrate::Section;
 use crate::materials::Clock;
 use crate::materials::by_temperature::LawTable;
 
-/// Elements a chunk; large enough to hide a virtual call, small enough to colour well.
+/// Elements a chunk; large enough to hide a virtual call, small enough to color well.
 pub const CHUNK: usize = 512;
 /// Parts of the state of a chunk.
 pub const PARTS: usize = 5;

@@ -4,7 +4,7 @@
 /// Degrees of freedom by node and the upper triangle by columns.
 ///
 /// A node's dofs are consecutive. The rows of a node's columns are: all dofs of its
-/// neighbours with a smaller index, then its own up to the diagonal; so the entries of a node
+/// neighbors with a smaller index, then its own up to the diagonal; so the entries of a node
 /// pair are found from one number (see [`Dofs::slot`]).
 #[derive(Clone, Debug, Default)]
 pub struct Dofs {
@@ -16,10 +16,10 @@ pub struct Dofs {
     pub indices: Vec<u32>,
     /// Number of rows above the diagonal block in the columns of each node.
     pub lead: Vec<u32>,
-    /// Neighbours with a smaller index: pointers and nodes.
+    /// Neighbors with a smaller index: pointers and nodes.
     below_ptr: Vec<usize>,
     below: Vec<u32>,
-    /// Row offset of each such neighbour in the column.
+    /// Row offset of each such neighbor in the column.
     below_offset: Vec<u32>,
 }
 
@@ -32,7 +32,7 @@ impl Dofs {
         for n in 0..n_nodes {
             start[n + 1] = start[n] + u32::from(per_node[n]);
         }
-        let (below_ptr, below) = neighbours(n_nodes, cells);
+        let (below_ptr, below) = neighbors(n_nodes, cells);
         let n_dofs = start[n_nodes] as usize;
         let mut below_offset = vec![0u32; below.len()];
         let mut lead = vec![0u32; n_nodes];
@@ -123,8 +123,8 @@ impl Dofs {
     }
 }
 
-/// For each node its neighbours with a smaller index, sorted.
-fn neighbours(n_nodes: usize, cells: &[(&[u32], usize)]) -> (Vec<usize>, Vec<u32>) {
+/// For each node its neighbors with a smaller index, sorted.
+fn neighbors(n_nodes: usize, cells: &[(&[u32], usize)]) -> (Vec<usize>, Vec<u32>) {
     let mut ptr = vec![0usize; n_nodes + 1];
     for &(conn, width) in cells {
         for cell in conn.chunks_exact(width) {

@@ -1,7 +1,7 @@
-//! An order of elements in which neighbours follow each other, whatever the mesh's numbering.
+//! An order of elements in which neighbors follow each other, whatever the mesh's numbering.
 //!
 //! Chunks of such an order are compact patches: their nodes and matrix entries stay in the
-//! cache, and few colours keep them apart. Measured with 1M dofs: elements in random order cost
+//! cache, and few colors keep them apart. Measured with 1M dofs: elements in random order cost
 //! 2.6 times as much as in the order of their nodes, which is also better than a space-filling
 //! curve as long as the nodes are numbered with sense.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -73,9 +73,9 @@ fn sorted(keys: impl Iterator<Item = u64>) -> Vec<u32> {
     keys.into_iter().map(|k| k as u32).collect()
 }
 
-/// Elements along the curve of Hilbert (1891) through their centres.
+/// Elements along the curve of Hilbert (1891) through their centers.
 fn along_curve(x: &[[f64; 2]], nodes: &[u32], width: usize) -> Vec<u32> {
-    let centre = |element: &[u32]| {
+    let center = |element: &[u32]| {
         let mut c = [0.0; 2];
         for &n in element {
             for i in 0..2 {
@@ -86,7 +86,7 @@ fn along_curve(x: &[[f64; 2]], nodes: &[u32], width: usize) -> Vec<u32> {
     };
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for element in nodes.chunks_exact(width) {
-        let c = centre(element);
+        let c = center(element);
         for i in 0..2 {
             low[i] = low[i].min(c[i]);
             high[i] = high[i].max(c[i]);
@@ -96,7 +96,7 @@ fn along_curve(x: &[[f64; 2]], nodes: &[u32], width: usize) -> Vec<u32> {
     let extent = (high[0] - low[0]).max(high[1] - low[1]);
     let scale = if extent > 0.0 { f64::from((1u32 << BITS) - 1) / extent } else { 0.0 };
     sorted(nodes.chunks_exact(width).map(|element| {
-        let c = centre(element);
+        let c = center(element);
         let cell = |i: usize| ((c[i] - low[i]) * scale) as u32;
         u64::from(along(cell(0), cell(1)))
     }))

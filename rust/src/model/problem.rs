@@ -1,7 +1,7 @@
-//! The whole discrete model: blocks of elements, their chunks by colour, assembly.
+//! The whole discrete model: blocks of elements, their chunks by color, assembly.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::build::{Block, BlockInput, build, colour};
+use super::build::{Block, BlockInput, build, color};
 use super::chunk::{Chunk, Context, Kinematics, PARTS};
 use super::dofs::Dofs;
 use super::dynamics::{Between, BodyLoad, Momenta, Motion};
@@ -31,8 +31,8 @@ pub struct Problem {
     pub x: Vec<[f64; 2]>,
     pub dofs: Dofs,
     pub blocks: Vec<Block>,
-    /// Chunks of one colour share no node.
-    colours: Vec<Vec<Box<dyn Chunk>>>,
+    /// Chunks of one color share no node.
+    colors: Vec<Vec<Box<dyn Chunk>>>,
     threads: usize,
     lanes: Lanes,
     clock: Clock,
@@ -71,12 +71,12 @@ impl Problem {
             blocks.push(block);
             chunks.extend(own);
         }
-        let colours = colour(chunks, x.len());
+        let colors = color(chunks, x.len());
         Ok(Self {
             x,
             dofs,
             blocks,
-            colours,
+            colors,
             threads: 1,
             lanes: Lanes::Best,
             clock: Clock::default(),
@@ -104,7 +104,7 @@ impl Problem {
 
     /// The threads, where two chunks can run side by side; else a pool costs more than it brings.
     fn pool_if_apart(&self) -> Option<Arc<rayon::ThreadPool>> {
-        if self.colours.iter().any(|c| c.len() > 1) { self.pool() } else { None }
+        if self.colors.iter().any(|c| c.len() > 1) { self.pool() } else { None }
     }
 
     /// Use these instructions from now on; results differ by rounding.
@@ -140,13 +140,13 @@ impl Problem {
             ..Context::new(&self.x, &self.dofs, self.lanes, u)
         };
         let pool = self.pool_if_apart();
-        let (colours, active) = (&mut self.colours, &self.active);
+        let (colors, active) = (&mut self.colors, &self.active);
         let work = |pool: bool| {
             for array in [&mut *force, &mut *scale, &mut *values] {
                 zero(array, pool);
             }
             let sink = Sink::new(force, scale, values);
-            failures(colours, pool, &|c| {
+            failures(colors, pool, &|c| {
                 let idle = active.get(c.block()) == Some(&false);
                 if idle { Vec::new() } else { c.assemble(&context, &sink) }
             })
@@ -168,14 +168,14 @@ impl Problem {
         let tangent = !values.is_empty();
         let context = Context { tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
         let sink = Sink::new(force, scale, values);
-        let (colours, active) = (&self.colours, &self.active);
+        let (colors, active) = (&self.colors, &self.active);
         let evaluate = |c: &dyn Chunk| {
             if active.get(c.block()) != Some(&false) {
                 c.inertia(&context, motion, &sink);
             }
         };
         let pool = self.pool_if_apart();
-        let work = |pool: bool| each_chunk(colours, pool, &evaluate);
+        let work = |pool: bool| each_chunk(colors, pool, &evaluate);
         share(&mut self.inertia_tuner, pool.as_deref(), &self.blocks, work);
     }
 
@@ -198,9 +198,9 @@ impl Problem {
         let sink = Sink::new(force, scale, values);
         let alone = Sink::new(internal, &mut unused, &mut []);
         let pool = self.pool_if_apart();
-        let colours = &mut self.colours;
+        let colors = &mut self.colors;
         let evaluate = |c: &mut dyn Chunk| c.conserving(&context, between, &sink, &alone);
-        let work = |pool: bool| failures(colours, pool, &evaluate);
+        let work = |pool: bool| failures(colors, pool, &evaluate);
         let failed = share(&mut self.conserving_tuner, pool.as_deref(), &self.blocks, work);
         if failed.is_empty() { Ok(()) } else { Err(Failed(failed)) }
     }
@@ -208,7 +208,7 @@ impl Problem {
     /// Begin a motion of the conserving scheme.
     pub fn start_motion(&mut self, u: &[f64], v: &[f64]) {
         let context = Context::new(&self.x, &self.dofs, self.lanes, u);
-        for chunk in self.colours.iter_mut().flatten() {
+        for chunk in self.colors.iter_mut().flatten() {
             chunk.start(&context, v);
         }
     }
@@ -226,7 +226,7 @@ impl Problem {
         let mut each = vec![0.0; own.n_elements];
         let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
-        for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
+        for chunk in self.colors.iter().flatten().filter(|c| c.block() == block) {
             chunk.momenta(&context, v, kind, carried, &mut sums, &mut each);
         }
         Ok(each)
@@ -236,7 +236,7 @@ impl Problem {
     pub fn momenta(&self, u: &[f64], v: &[f64], kind: MassKind, carried: bool) -> Momenta {
         let context = Context::new(&self.x, &self.dofs, self.lanes, u);
         let mut sums = Momenta::default();
-        for chunk in self.colours.iter().flatten() {
+        for chunk in self.colors.iter().flatten() {
             chunk.momenta(&context, v, kind, carried, &mut sums, &mut []);
         }
         sums
@@ -250,7 +250,7 @@ impl Problem {
         if !values.is_empty() && values.len() != 4 * b.facts.n_points * b.n_elements {
             return Err("initial strains do not fit the block".into());
         }
-        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+        for chunk in self.colors.iter_mut().flatten().filter(|c| c.block() == block) {
             chunk.set_initial(values);
         }
         Ok(())
@@ -262,7 +262,7 @@ impl Problem {
         if values.len() != b.facts.n_points * b.n_elements {
             return Err("temperatures do not fit the block".into());
         }
-        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+        for chunk in self.colors.iter_mut().flatten().filter(|c| c.block() == block) {
             chunk.set_temperatures(values)?;
         }
         Ok(())
@@ -273,7 +273,7 @@ impl Problem {
         if !massless.is_empty() && massless.len() != self.x.len() {
             return Err("flags do not fit the nodes".into());
         }
-        for chunk in self.colours.iter_mut().flatten() {
+        for chunk in self.colors.iter_mut().flatten() {
             chunk.set_massless(massless);
         }
         Ok(())
@@ -285,7 +285,7 @@ impl Problem {
         if !factors.is_empty() && factors.len() != own.n_elements {
             return Err("factors do not fit the elements".into());
         }
-        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+        for chunk in self.colors.iter_mut().flatten().filter(|c| c.block() == block) {
             chunk.set_mass_factors(factors);
         }
         Ok(())
@@ -293,7 +293,7 @@ impl Problem {
 
     /// Make the trial histories of the last evaluation the committed ones.
     pub fn commit(&mut self) {
-        for chunk in self.colours.iter_mut().flatten() {
+        for chunk in self.colors.iter_mut().flatten() {
             chunk.commit();
         }
     }
@@ -301,7 +301,7 @@ impl Problem {
     /// Committed states of all chunks, one after the other, and the lengths of their parts.
     pub fn state(&self) -> (Vec<f64>, Vec<u64>) {
         let (mut values, mut lengths) = (Vec::new(), Vec::new());
-        for chunk in self.colours.iter().flatten() {
+        for chunk in self.colors.iter().flatten() {
             for part in chunk.state() {
                 values.extend_from_slice(part);
                 lengths.push(part.len() as u64);
@@ -313,7 +313,7 @@ impl Problem {
     /// Take the states that [`Problem::state`] gave of the same model.
     pub fn restore(&mut self, values: &[f64], lengths: &[u64]) -> Result<(), String> {
         let wrong = || "the state does not fit the problem".to_string();
-        let chunks: Vec<_> = self.colours.iter_mut().flatten().collect();
+        let chunks: Vec<_> = self.colors.iter_mut().flatten().collect();
         if lengths.len() != PARTS * chunks.len() {
             return Err(wrong());
         }
@@ -333,7 +333,7 @@ impl Problem {
 
     /// Largest growth of the equivalent plastic strain since the last commit.
     pub fn plastic_increment(&self) -> f64 {
-        let chunks = self.colours.iter().flatten();
+        let chunks = self.colors.iter().flatten();
         chunks.map(|c| c.plastic_increment()).fold(0.0, f64::max)
     }
 
@@ -360,8 +360,8 @@ impl Problem {
         let sink = Sink::new(force, &mut scale, values);
         let evaluate = |c: &dyn Chunk| c.body_force(&context, load, &masks[c.block()], &sink);
         let pool = self.pool_if_apart();
-        let colours = &self.colours;
-        let work = |pool: bool| each_chunk(colours, pool, &evaluate);
+        let colors = &self.colors;
+        let work = |pool: bool| each_chunk(colors, pool, &evaluate);
         share(&mut self.body_tuner, pool.as_deref(), &self.blocks, work);
     }
 
@@ -371,7 +371,7 @@ impl Problem {
         let b = &self.blocks[block];
         let mut out = vec![0.0; b.n_elements * b.facts.n_points * 3];
         let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
-        for chunk in self.colours.iter().flatten().filter(|c| c.block() == block) {
+        for chunk in self.colors.iter().flatten().filter(|c| c.block() == block) {
             chunk.strains(&context, committed, &mut out);
         }
         out
@@ -384,7 +384,7 @@ impl Problem {
         if values.len() != wanted {
             return Err(format!("the history has {} numbers, {wanted} are needed", values.len()));
         }
-        for chunk in self.colours.iter_mut().flatten().filter(|c| c.block() == block) {
+        for chunk in self.colors.iter_mut().flatten().filter(|c| c.block() == block) {
             chunk.give(values);
         }
         Ok(())
@@ -394,7 +394,7 @@ impl Problem {
     /// the committed state, which stays.
     pub fn gradients(&self, u: &[f64], nlgeom: bool, weights: &Weights<'_>) -> Sums {
         let context = Context { nlgeom, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
-        let chunks: Vec<&dyn Chunk> = self.colours.iter().flatten().map(AsRef::as_ref).collect();
+        let chunks: Vec<&dyn Chunk> = self.colors.iter().flatten().map(AsRef::as_ref).collect();
         let evaluate = |chunk: &&dyn Chunk| chunk.differentiate(&context, weights);
         let parts: Vec<Gradients> = match self.pool() {
             Some(pool) => pool.install(|| chunks.par_iter().map(evaluate).collect()),
@@ -410,7 +410,7 @@ impl Problem {
     /// Histories of the elements by block, `[n, members]`, committed or of the last evaluation.
     pub fn histories(&self, trial: bool) -> Vec<Vec<f64>> {
         let mut all = vec![Vec::new(); self.blocks.len()];
-        for chunk in self.colours.iter().flatten() {
+        for chunk in self.colors.iter().flatten() {
             let own: &mut Vec<f64> = &mut all[chunk.block()];
             own.resize(chunk.members() * self.blocks[chunk.block()].n_elements, 0.0);
             chunk.histories(trial, own);
@@ -420,7 +420,7 @@ impl Problem {
 
     /// Make such histories the committed ones.
     pub fn set_histories(&mut self, values: &[Vec<f64>]) -> Result<(), String> {
-        for chunk in self.colours.iter_mut().flatten() {
+        for chunk in self.colors.iter_mut().flatten() {
             let wanted = chunk.members() * self.blocks[chunk.block()].n_elements;
             match values.get(chunk.block()) {
                 Some(own) if own.len() == wanted => chunk.set_histories(own),
@@ -444,7 +444,7 @@ impl Problem {
             chunk.recover(&context, &mut part);
             part
         };
-        let chunks: Vec<&dyn Chunk> = self.colours.iter().flatten().map(AsRef::as_ref).collect();
+        let chunks: Vec<&dyn Chunk> = self.colors.iter().flatten().map(AsRef::as_ref).collect();
         let work = |pool: bool| {
             let mut fields: Vec<_> =
                 blocks.iter().enumerate().map(|(k, b)| empty(k, b.n_elements)).collect();
@@ -489,17 +489,17 @@ impl Problem {
     }
 }
 
-/// Evaluate all chunks, those of one colour side by side if `parallel`.
+/// Evaluate all chunks, those of one color side by side if `parallel`.
 fn each_chunk(
-    colours: &[Vec<Box<dyn Chunk>>],
+    colors: &[Vec<Box<dyn Chunk>>],
     parallel: bool,
     evaluate: &(dyn Fn(&dyn Chunk) + Sync),
 ) {
-    for colour in colours {
-        if parallel && colour.len() > 1 {
-            colour.par_iter().for_each(|c| evaluate(c.as_ref()));
+    for color in colors {
+        if parallel && color.len() > 1 {
+            color.par_iter().for_each(|c| evaluate(c.as_ref()));
         } else {
-            for c in colour {
+            for c in color {
                 evaluate(c.as_ref());
             }
         }
@@ -508,7 +508,7 @@ fn each_chunk(
 
 /// Evaluate all chunks likewise; the elements that failed, by block and index in it.
 fn failures(
-    colours: &mut [Vec<Box<dyn Chunk>>],
+    colors: &mut [Vec<Box<dyn Chunk>>],
     parallel: bool,
     evaluate: &(dyn Fn(&mut dyn Chunk) -> Vec<usize> + Sync),
 ) -> Vec<(usize, usize)> {
@@ -518,12 +518,12 @@ fn failures(
         bad.into_iter().map(|e| (block, e)).collect::<Vec<_>>()
     };
     let mut failed = Vec::new();
-    for colour in colours {
-        if parallel && colour.len() > 1 {
-            let bad: Vec<_> = colour.par_iter_mut().map(of_block).collect();
+    for color in colors {
+        if parallel && color.len() > 1 {
+            let bad: Vec<_> = color.par_iter_mut().map(of_block).collect();
             failed.extend(bad.into_iter().flatten());
         } else {
-            failed.extend(colour.iter_mut().flat_map(of_block));
+            failed.extend(color.iter_mut().flat_map(of_block));
         }
     }
     failed

@@ -1,8 +1,8 @@
 //! Where chunks of elements add their forces and stiffnesses.
 //!
 //! One of the two places with `unsafe` code: several threads add to the same arrays. It is
-//! sound because chunks that run at the same time share no node (they have the same colour),
-//! so they never touch the same entry; the order of the colours is fixed, so sums do not
+//! sound because chunks that run at the same time share no node (they have the same color),
+//! so they never touch the same entry; the order of the colors is fixed, so sums do not
 //! depend on the number of threads.
 // SPDX-License-Identifier: BSD-3-Clause
 #![allow(unsafe_code)]
@@ -17,7 +17,7 @@ pub struct Shared<'a> {
     owner: PhantomData<&'a mut [f64]>,
 }
 
-// SAFETY: see the head of this file; the colouring keeps concurrent writes apart.
+// SAFETY: see the head of this file; the coloring keeps concurrent writes apart.
 unsafe impl Send for Shared<'_> {}
 // SAFETY: as above.
 unsafe impl Sync for Shared<'_> {}
@@ -30,7 +30,7 @@ impl<'a> Shared<'a> {
     #[inline(always)]
     pub fn add(&self, i: usize, value: f64) {
         assert!(i < self.len);
-        // SAFETY: in bounds by the assertion; not aliased by the colouring.
+        // SAFETY: in bounds by the assertion; not aliased by the coloring.
         unsafe { *self.data.add(i) += value }
     }
 
@@ -39,7 +39,7 @@ impl<'a> Shared<'a> {
     pub fn add_run<const K: usize>(&self, i: usize, values: &[f64; K]) {
         assert!(i + K <= self.len);
         for (k, v) in values.iter().enumerate() {
-            // SAFETY: in bounds by the assertion; not aliased by the colouring.
+            // SAFETY: in bounds by the assertion; not aliased by the coloring.
             unsafe { *self.data.add(i + k) += v }
         }
     }

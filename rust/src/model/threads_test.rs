@@ -74,7 +74,7 @@ fn any_number_of_threads_recovers_the_same_bits() {
         all.map(|v| v.into_iter().map(f64::to_bits).collect::<Vec<_>>())
     };
     let one = run(1);
-    // Nothing is left out: neighbours differ.
+    // Nothing is left out: neighbors differ.
     assert!(one.iter().take(5).all(|v| v.windows(2).all(|w| w[0] != w[1])));
     for threads in [2, 3, 8] {
         assert!(run(threads) == one, "{threads} threads");

@@ -91,7 +91,7 @@ macro_rules! solver_class {
                 py.detach(|| inner.analyze(&pattern)).map_err(|e| to_python(py, e))
             }
 
-            /// Factorise the values; returns (positive, negative, zero) pivots or None.
+            /// Factorize the values; returns (positive, negative, zero) pivots or None.
             fn factorize(
                 &mut self,
                 py: Python<'_>,

@@ -81,11 +81,11 @@ def describe(system: NumberedModel, modes: Floats) -> str:
     if not tops.all() or n_bodies > MOST:
         return ""
     moved /= tops[:, None, None]
-    centre = mesh.points.mean(axis=0)
+    center = mesh.points.mean(axis=0)
     rows = np.zeros((len(modes), 3 * n_bodies))
     nodes = [_nodes(mesh, np.flatnonzero(body == number)) for number in range(n_bodies)]
     for number, own in enumerate(nodes):
-        x = (mesh.points[own] - centre) / system.length
+        x = (mesh.points[own] - center) / system.length
         for row, u in zip(rows, moved[:, own], strict=True):
             motion = _rigid(x, u)
             if motion is None:
@@ -94,7 +94,7 @@ def describe(system: NumberedModel, modes: Floats) -> str:
     found: dict[str, list[str]] = {}
     for row in plain(rows.T, SMALL):
         for number in range(n_bodies):
-            said = _words(row[3 * number : 3 * number + 3], centre, system.length)
+            said = _words(row[3 * number : 3 * number + 3], center, system.length)
             if said:
                 label = str(mesh.cell_labels[np.flatnonzero(body == number)[0]])
                 found.setdefault(label, []).append(said)
@@ -133,8 +133,8 @@ def _rigid(x: Floats, u: Floats) -> tuple[float, float, float] | None:
     return move[0] + turn * middle[1], move[1] - turn * middle[0], turn
 
 
-def _words(motion: Floats, centre: Floats, length: float) -> str:
-    """A rigid motion (x, y, turn) about a centre in words, empty where there is none."""
+def _words(motion: Floats, center: Floats, length: float) -> str:
+    """A rigid motion (x, y, turn) about a center in words, empty where there is none."""
     x, y, turn = motion
     if np.abs(motion).max() <= SMALL:
         return ""
@@ -142,7 +142,7 @@ def _words(motion: Floats, centre: Floats, length: float) -> str:
         if abs(y) <= SMALL:
             return "move in x"
         return "move in y" if abs(x) <= SMALL else f"move along ({x:.3g}, {y:.3g})"
-    pivot = centre + length * np.array([-y, x]) / turn
+    pivot = center + length * np.array([-y, x]) / turn
     pivot = np.where(np.abs(pivot) < 1e-6 * length, 0.0, pivot)
     return f"turn about ({pivot[0]:.5g}, {pivot[1]:.5g})"
 

@@ -21,7 +21,7 @@ from corota.analysis.memory import require_libraries
 from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
 from corota.analysis.parallel.communicator import ALONE
-from corota.analysis.procedures.localization import localised
+from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
@@ -434,10 +434,10 @@ class Analysis:
             system.by_node(failed.at.external),
         )
 
-    def _localised(self, fields: list[PointFields]) -> tuple[int, str] | None:
+    def _localized(self, fields: list[PointFields]) -> tuple[int, str] | None:
         """The first element in which plastic flow localizes, and why it matters."""
         blocks = self.system.own_blocks
-        found = (localised(block, own) for block, own in zip(blocks, fields, strict=True))
+        found = (localized(block, own) for block, own in zip(blocks, fields, strict=True))
         own = next((each for each in found if each), None)
         every = [each for each in self.system.communicator.gather(own) if each]
         first: tuple[int, str] | None = self.system.communicator.broadcast(
@@ -484,7 +484,7 @@ class Analysis:
             scalars = {**scalars, "strain energy": sums["strain energy"]}
             strain = system.largest_linear_strain, number, increment
             state.strains[:] = max(state.strains[0], strain, key=lambda s: s[0]), strain
-            if "flow" not in self.warned and (found := self._localised(fields)):
+            if "flow" not in self.warned and (found := self._localized(fields)):
                 label = self.model.mesh.cell_labels[found[0]]
                 self._warn(
                     "flow", f"element {label}, step {number}, increment {increment}: " + found[1]

@@ -112,10 +112,10 @@ def _of_part(
     mesh: Mesh, held: Floats, rotating: NDArray[np.bool_], bodies: Ints, node: Ints, owner: Ints
 ) -> list[Diagnostic]:
     points = mesh.points[node]
-    centre = (points.min(axis=0) + points.max(axis=0)) / 2
+    center = (points.min(axis=0) + points.max(axis=0)) / 2
     size = float(np.ptp(points, axis=0).max()) or 1.0
     local = np.searchsorted(bodies, owner)
-    x, y = ((points - centre) / size).T
+    x, y = ((points - center) / size).T
     one, zero = np.ones_like(x), np.zeros_like(x)
     # Displacement x, y and rotation (times the size) of each node by the motion of its body.
     motion = np.stack(
@@ -134,7 +134,7 @@ def _of_part(
             _add(matrix, [(local[a], motion[a, dof]), (local[b], -motion[b, dof])])
     values, vectors = np.linalg.eigh(matrix)
     free = values <= FREE * max(float(values[-1]), 1.0)
-    return _describe(mesh, node, local, points, vectors[:, free], centre, size, len(bodies))
+    return _describe(mesh, node, local, points, vectors[:, free], center, size, len(bodies))
 
 
 def _add(matrix: Floats, terms: list[tuple[int, Floats]]) -> None:
@@ -149,14 +149,14 @@ def _describe(
     local: Ints,
     points: Floats,
     modes: Floats,
-    centre: Floats,
+    center: Floats,
     size: float,
     n_bodies: int,
 ) -> list[Diagnostic]:
     found = []
     for mode in plain(modes):
         motion = mode.reshape(-1, 3)[local]
-        offset = (points - centre) / size
+        offset = (points - center) / size
         u = motion[:, :2] + motion[:, 2:] * np.stack([-offset[:, 1], offset[:, 0]], axis=1)
         moving = np.abs(u).max(axis=1) > 1e-8
         if np.abs(motion[:, 2]).max() <= 1e-8:
@@ -166,7 +166,7 @@ def _describe(
             )
         else:
             turn = motion[np.abs(motion[:, 2]).argmax()]
-            pivot = centre + size * np.array([-turn[1], turn[0]]) / turn[2]
+            pivot = center + size * np.array([-turn[1], turn[0]]) / turn[2]
             pivot = np.where(np.abs(pivot) < 1e-9 * size, 0.0, pivot)
             text = f"turn about ({pivot[0]:.6g}, {pivot[1]:.6g})"
         row = int(np.abs(u).max(axis=1).argmax())

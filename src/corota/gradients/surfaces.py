@@ -78,7 +78,7 @@ def refuse_surfaces(model: Model) -> None:
     for pair in model.contacts:
         if pair.law is not None:
             why = "a law of pressure against overclosure"
-        elif pair.stabilise:
+        elif pair.stabilize:
             why = "stabilization, which depends on increments"
         else:
             continue

@@ -10,7 +10,7 @@ from corota.errors import InputError
 from corota.io.atomic_file import replace_text
 from corota.io.result_reader import read_results
 from corota.results.table import NODAL, POSITIVE
-from corota.results.variables import labelled, match_name, stored_as
+from corota.results.variables import labeled, match_name, stored_as
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -133,7 +133,7 @@ def write_paraview(
         raise InputError(f"{script}: the script must be in the folder of {source}")
     text = _SCRIPT.format(
         file=source.name,
-        label=labelled(name, unit),
+        label=labeled(name, unit),
         array=array,
         component=component,
         scale=float(scale),

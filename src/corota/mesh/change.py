@@ -11,6 +11,7 @@ import numpy as np
 from corota.arrays import distinct
 from corota.errors import InputError
 from corota.mesh.data import EDGES, Cells, Mesh
+from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -262,7 +263,8 @@ def to_triangles(mesh: Mesh, diagonal: Literal["right", "left"] = "right") -> Me
     return changed
 
 
-def to_quadratic(mesh: Mesh, centre: bool = False) -> Mesh:
+@accept_old_names(centre="center")
+def to_quadratic(mesh: Mesh, center: bool = False) -> Mesh:
     """Add nodes in the middle of straight sides: tri3 to tri6, quad4 to quad8.
 
     A new node joins the node sets that hold both ends of its side; a set of nodes on the
@@ -272,13 +274,13 @@ def to_quadratic(mesh: Mesh, centre: bool = False) -> Mesh:
     ----------
     mesh : Mesh
         Of tri3 and quad4 cells.
-    centre : bool, optional
-        Whether quadrilaterals get a centre node too (quad9).
+    center : bool, optional
+        Whether quadrilaterals get a center node too (quad9).
 
     Examples
     --------
     >>> from corota import mesh
-    >>> plate = mesh.to_quadratic(mesh.rectangle(1.0, 1.0, nx=2, ny=2), centre=True)
+    >>> plate = mesh.to_quadratic(mesh.rectangle(1.0, 1.0, nx=2, ny=2), center=True)
     >>> plate.n_nodes, plate.cells[0].kind
     (25, 'quad9')
     """
@@ -296,17 +298,17 @@ def to_quadratic(mesh: Mesh, centre: bool = False) -> Mesh:
     middle = mesh.n_nodes + inverse
     points = [mesh.points, mesh.points[ends].mean(axis=1)]
     total, at, cells = mesh.n_nodes + len(ends), 0, []
-    centres: list[tuple[Ints, Ints]] = []
+    centers: list[tuple[Ints, Ints]] = []
     for block in mesh.cells:
         parts = [block.nodes]
         for _ in EDGES[block.kind]:
             parts.append(middle[at : at + len(block), None])
             at += len(block)
         kind = "tri6" if block.kind == "tri3" else "quad8"
-        if centre and block.kind == "quad4":
+        if center and block.kind == "quad4":
             kind = "quad9"
             new = np.arange(total, total + len(block))
-            centres.append((new, block.nodes))
+            centers.append((new, block.nodes))
             points.append(mesh.points[block.nodes].mean(axis=1))
             parts.append(new[:, None])
             total += len(block)
@@ -322,7 +324,7 @@ def to_quadratic(mesh: Mesh, centre: bool = False) -> Mesh:
         hit = inside[ends].all(axis=1) & (whole | (counts == 1))
         more = [mesh.n_nodes + np.flatnonzero(hit)]
         if whole:
-            more += [new[inside[corners].all(axis=1)] for new, corners in centres]
+            more += [new[inside[corners].all(axis=1)] for new, corners in centers]
         changed.node_sets[name] = np.concatenate([nodes, *more])
     changed.cell_sets = {name: rows.copy() for name, rows in mesh.cell_sets.items()}
     changed.edge_sets = {name: edges.copy() for name, edges in mesh.edge_sets.items()}
@@ -330,7 +332,7 @@ def to_quadratic(mesh: Mesh, centre: bool = False) -> Mesh:
 
 
 def placed_middles(mesh: Mesh, points: Floats) -> Mesh:
-    """Mesh with moved corners: inner side nodes and centre nodes follow.
+    """Mesh with moved corners: inner side nodes and center nodes follow.
 
     Parameters
     ----------

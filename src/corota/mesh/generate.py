@@ -13,6 +13,7 @@ from corota.arrays import distinct
 from corota.errors import InputError
 from corota.mesh.change import merge, placed_middles
 from corota.mesh.data import Cells, Mesh
+from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -135,6 +136,7 @@ def mapped(
     return _build(_blend(sides, 2 * nx + 1, 2 * ny + 1), nx, ny, cell, diagonal)
 
 
+@accept_old_names(centre="center")
 def annulus(
     inner: float,
     outer: float,
@@ -144,7 +146,7 @@ def annulus(
     cell: Kind = "quad4",
     diagonal: Diagonal = "right",
     start: float = 0.0,
-    centre: tuple[float, float] = (0.0, 0.0),
+    center: tuple[float, float] = (0.0, 0.0),
 ) -> Mesh:
     """Mesh a ring or a sector of it.
 
@@ -162,8 +164,8 @@ def annulus(
         As for :func:`rectangle`.
     start : float, optional
         Direction of the first side, from x [degrees].
-    centre : tuple of float, optional
-        Centre [length].
+    center : tuple of float, optional
+        Center [length].
 
     Examples
     --------
@@ -183,7 +185,7 @@ def annulus(
     phi = np.radians(np.linspace(start, start + angle, 2 * n_around + 1))
     around = np.stack([np.cos(phi), np.sin(phi)], axis=1)
     lattice = radius[None, :, None] * around[:, None, :]
-    mesh = _build(lattice + np.asarray(centre), n_radial, n_around, cell, diagonal)
+    mesh = _build(lattice + np.asarray(center), n_radial, n_around, cell, diagonal)
     names = {"left": "inner", "right": "outer", "bottom": "start", "top": "end"}
     for table in (mesh.node_sets, mesh.edge_sets):
         for old in _NAMES:

@@ -10,6 +10,7 @@ import numpy as np
 
 from corota.display import Brief
 from corota.errors import InputError, Location
+from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -87,6 +88,7 @@ class Coupling(Brief):
                 raise InputError("the weights of a coupling must be > 0", self.where)
 
 
+@accept_old_names(centre="center")
 @dataclass(repr=False)
 class LocalAxes(Brief):
     """Local axes of nodes for their supports, forces and equations.
@@ -96,18 +98,18 @@ class LocalAxes(Brief):
     nodes : str or array_like of int
     angle : float
         Angle of the first axis from the global one [rad].
-    centre : tuple of float or None
+    center : tuple of float or None
         If given, the axes are radial and circumferential about this point [length], in the
         reference configuration, and `angle` is added.
     """
 
     nodes: str | Ints
     angle: float = 0.0
-    centre: tuple[float, float] | None = None
+    center: tuple[float, float] | None = None
     where: Location | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not np.isfinite([self.angle, *(self.centre or ())]).all():
+        if not np.isfinite([self.angle, *(self.center or ())]).all():
             raise InputError("the angle and the center of local axes must be finite", self.where)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import corota._core as _core
 from corota.display import Brief
 from corota.errors import InputError, Location
+from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,21 +82,23 @@ class RigidCurve(Brief):
         return cls.polyline([start, end], reference=reference)
 
     @classmethod
+    @accept_old_names(centre="center")
     def circle(
         cls,
-        centre: Sequence[float],
+        center: Sequence[float],
         radius: float,
         *,
         inside: bool = False,
         reference: Reference = None,
     ) -> RigidCurve:
         """A disc, or with `inside` a round hole that contains the deformable body."""
-        return cls.arc(centre, radius, 0.0, 360.0 if inside else -360.0, reference=reference)
+        return cls.arc(center, radius, 0.0, 360.0 if inside else -360.0, reference=reference)
 
     @classmethod
+    @accept_old_names(centre="center")
     def arc(
         cls,
-        centre: Sequence[float],
+        center: Sequence[float],
         radius: float,
         start: float,
         sweep: float,
@@ -110,7 +113,7 @@ class RigidCurve(Brief):
         if sweep == 0.0:
             raise InputError("the sweep of an arc must not be 0")
         a, turn = math.radians(start), math.radians(sweep)
-        (cx, cy), end = centre, a + turn
+        (cx, cy), end = center, a + turn
         first = (cx + radius * math.cos(a), cy + radius * math.sin(a))
         last = (cx + radius * math.cos(end), cy + radius * math.sin(end))
         return cls(np.array([[*first, *last, cx, cy, turn]]), reference)
@@ -249,6 +252,7 @@ class PressureLaw(Brief):
         return pressure, slope, energy
 
 
+@accept_old_names(stabilise="stabilize", stabilise_from="stabilize_from")
 @dataclass(repr=False)
 class ContactPair(Brief):
     """Two surfaces, or a surface and a rigid curve, that may come into contact.
@@ -280,10 +284,10 @@ class ContactPair(Brief):
     smooth : bool
         Treat the edges of a deformable master as a curve without kinks; corners sharper
         than 50 degrees are kept.
-    stabilise : bool
+    stabilize : bool
         Damp the two surfaces in static steps until the end of each, so that bodies without
         other supports come into contact.
-    stabilise_from : int
+    stabilize_from : int
         First step that is damped, from 1.
     reach : float
         Search distance for pairs [length]; 0 for four edges.
@@ -297,11 +301,11 @@ class ContactPair(Brief):
     law: PressureLaw | None = None
     clearance: float | None = None
     start: Literal["keep", "adjust", "ramp"] = "keep"
-    stabilise: bool = False
+    stabilize: bool = False
     reach: float = 0.0
     name: str = ""
     where: Location | None = field(default=None, compare=False, repr=False)
-    stabilise_from: int = field(default=1, kw_only=True)
+    stabilize_from: int = field(default=1, kw_only=True)
     adjust: float = field(default=0.0, kw_only=True)
     adjust_nodes: str | Ints | None = field(default=None, kw_only=True)
     smooth: bool = field(default=False, kw_only=True)

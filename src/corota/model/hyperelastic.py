@@ -493,7 +493,7 @@ class _OfStretches(Hyperelastic, ABC):
                 return np.full(sum(map(len, tests.values())), 1e3)
 
         best = None
-        # The powers of rubbers that Ogden fitted, and their neighbours.
+        # The powers of rubbers that Ogden fitted, and their neighbors.
         for powers in ((1.3, 5.0, -2.0, 8.0, -4.0, 11.0), (2.0, -2.0, 4.0, -4.0, 7.0, -7.0)):
             signs = np.array(powers[:terms])
             start = np.concatenate([np.full(terms, terms**-0.5), signs])

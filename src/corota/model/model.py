@@ -54,6 +54,7 @@ from corota.model.loads import (
 from corota.model.sections import Section as Section
 from corota.model.stages import Stage, Stages
 from corota.model.units import Units
+from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -350,12 +351,13 @@ class Model(Loading, LineSections, InitialFields, Stages):
             StraightLine(self._nodes(nodes), self._node(first), self._node(last))
         )
 
+    @accept_old_names(centre="center")
     def local_axes(
         self,
         nodes: str | ArrayLike,
         *,
         angle: float = 0.0,
-        centre: tuple[float, float] | None = None,
+        center: tuple[float, float] | None = None,
     ) -> None:
         """Set local axes of nodes for their supports and forces.
 
@@ -364,10 +366,10 @@ class Model(Loading, LineSections, InitialFields, Stages):
         nodes : str or array_like of int
         angle : float
             Angle of the first axis [rad].
-        centre : tuple of float, optional
+        center : tuple of float, optional
             Radial and circumferential axes about this point [length].
         """
-        self.axes.append(LocalAxes(self._nodes(nodes), angle, centre))
+        self.axes.append(LocalAxes(self._nodes(nodes), angle, center))
 
     def imperfection(self, modes: Modes, scales: Sequence[float] | Mapping[int, float]) -> None:
         """Move the nodes by shapes, such as buckling modes: a real part is not perfect.
@@ -412,6 +414,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
             moved += number(scale, "the size of an imperfection") * shapes[mode - 1, :, :2]
         self.mesh = replace(self.mesh, points=moved)
 
+    @accept_old_names(stabilise="stabilize")
     def contact(
         self,
         slave: str | ArrayLike,
@@ -423,7 +426,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
         clearance: float | None = None,
         start: Literal["keep", "adjust", "ramp"] = "keep",
         adjust: float = 0.0,
-        stabilise: bool = False,
+        stabilize: bool = False,
         reach: float = 0.0,
         smooth: bool = False,
         name: str = "",
@@ -446,7 +449,7 @@ class Model(Loading, LineSections, InitialFields, Stages):
                 law,
                 clearance,
                 start,
-                stabilise,
+                stabilize,
                 reach,
                 name,
                 adjust=adjust,

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from corota.plots.figure import INK, PALE, figure_of, finish, look
-from corota.results.variables import described, labelled
+from corota.results.variables import described, labeled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,7 +50,7 @@ def along(
         if len(names) == 1:
             ax.set_ylabel(f"{names[0]}: {described(names[0], units)}")
         else:
-            of = {labelled(name, units).partition(" [")[2] for name in names}
+            of = {labeled(name, units).partition(" [")[2] for name in names}
             ax.set_ylabel(f"[{of.pop()}" if len(of) == 1 and of != {""} else "")
             ax.legend()
         ax.margins(x=0.0)

@@ -11,7 +11,7 @@ import numpy as np
 from corota.model.units import Units
 from corota.plots.figure import INK, PALE, figure_of, finish, look
 from corota.plots.path import draw_path, has_stability
-from corota.results.variables import described, dimension, labelled
+from corota.results.variables import described, dimension, labeled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -101,5 +101,5 @@ def axis_label(name: str, units: Units | None = None) -> str:
     variable, _, place = name.partition(" at ")
     what = described(variable, told)
     if not what:
-        return labelled(name, told)
+        return labeled(name, told)
     return f"{variable}: {what}" + (f", at {place}" if place else "")

@@ -259,8 +259,8 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
     mesh = subject.mesh
     where = load.edges
     edges = mesh.edge_sets[where] if isinstance(where, str) else np.asarray(where)
-    centres = np.array([mesh.points[n[:2]].mean(axis=0) for n in mesh.edge_nodes(edges)])
-    for cell, side in edges[_spread(centres, size)] if len(edges) else ():
+    centers = np.array([mesh.points[n[:2]].mean(axis=0) for n in mesh.edge_nodes(edges)])
+    for cell, side in edges[_spread(centers, size)] if len(edges) else ():
         block, row = mesh.locate(int(cell))
         cells = mesh.cells[block]
         first, last = mesh.points[cells.nodes[row, list(EDGES[cells.kind][int(side)][:2])]]

@@ -11,7 +11,7 @@ import numpy as np
 from corota.errors import InputError
 from corota.plots.contour import Drawing, paint
 from corota.plots.figure import COLORS, INK, PALE, finish, look, new_figure
-from corota.results.variables import labelled
+from corota.results.variables import labeled
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -189,10 +189,10 @@ def energies(
         balance = np.array([f.scalars["energy balance"] for f in frames])
         lower.plot(time, balance, color=INK, linewidth=1.2)
         units = results.model.unit_system
-        upper.set_ylabel(labelled("energy", units, "energy"))
+        upper.set_ylabel(labeled("energy", units, "energy"))
         upper.legend(ncols=2)
-        lower.set_ylabel(labelled("balance", units, "energy"))
-        lower.set_xlabel(labelled("time", units))
+        lower.set_ylabel(labeled("balance", units, "energy"))
+        lower.set_xlabel(labeled("time", units))
         for ax in (upper, lower):
             ax.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
             ax.grid(True, color="#e6e9ee", linewidth=0.6)

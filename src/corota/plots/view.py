@@ -78,7 +78,7 @@ class Viewer:
         self._grid.points = moved
         self._grid.point_data["shown"] = self.results.nodal(self.name, self.frame)
         units = self.results.model.unit_system
-        title = vf.labelled(self.name, units) + " (nodal)" * (self.name not in NODAL)
+        title = vf.labeled(self.name, units) + " (nodal)" * (self.name not in NODAL)
         low, high = self.limits()
         colors = palette.map_of(low, high, self.name not in POSITIVE)
         size = max(abs(low), abs(high))

@@ -33,14 +33,14 @@ def rigid_lines(curve: RigidCurve) -> list[Floats]:
     """Each segment of a curve as points, shape (k, 2); arcs by pieces of 4 degrees."""
     lines = []
     for row in curve.segments:
-        start, end, centre, sweep = row[:2], row[2:4], row[4:6], float(row[6])
+        start, end, center, sweep = row[:2], row[2:4], row[4:6], float(row[6])
         if sweep == 0.0:
             lines.append(np.array([start, end]))
             continue
         angle = np.linspace(0.0, sweep, 2 + math.ceil(abs(sweep) / math.radians(4.0)))
         c, s = np.cos(angle), np.sin(angle)
-        x, y = start - centre
-        lines.append(centre + np.column_stack([c * x - s * y, s * x + c * y]))
+        x, y = start - center
+        lines.append(center + np.column_stack([c * x - s * y, s * x + c * y]))
     return lines
 
 

@@ -55,7 +55,7 @@ SCALARS: dict[str, tuple[str, str]] = {
     "damping energy": ("ALLVD", "energy"),
     "friction energy": ("ALLFD", "energy"),
     "contact energy": ("ALLCL", "energy"),
-    "stabilisation energy": ("ALLSD", "energy"),
+    "stabilization energy": ("ALLSD", "energy"),
     "modal strain energy": ("strain energy of the modes that are superposed", "energy"),
     "between increments": ("1 at a requested time within an explicit increment", ""),
     **{

@@ -140,7 +140,7 @@ def averaged_value(averages: Mapping[str, Floats], name: str) -> Floats:
     return np.asarray(values if column < 0 else values[:, column], dtype=np.float64)
 
 
-def labelled(name: str, units: Units, of: str = "") -> str:
+def labeled(name: str, units: Units, of: str = "") -> str:
     """A name with its unit in brackets, where both are known: ``time [s]``.
 
     Parameters

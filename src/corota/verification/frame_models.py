@@ -13,7 +13,7 @@ from corota.verification.models import cell, nearest
 
 
 def lee_frame(element: str = "Q8", load: float = 1.0, scale: float = 1.0) -> tuple[Model, int]:
-    """Lee's frame as a solid: two legs of 120, 2 deep and 3 wide, hinged on their centrelines.
+    """Lee's frame as a solid: two legs of 120, 2 deep and 3 wide, hinged on their centerlines.
 
     `scale` changes the unit of length; forces stay. The node under the load comes with it.
     """

@@ -36,7 +36,7 @@ class Impact:
     contacts : int
         Number of contacts of the bar with the wall.
     duration, force, rebound, energy : float
-        Time in contact, largest force, velocity of the centre of mass and energy at the end.
+        Time in contact, largest force, velocity of the center of mass and energy at the end.
     mean_force, shortening : float
         Impulse over the exact duration, and how much shorter the bar gets.
     iterations : float
@@ -134,7 +134,7 @@ class Flight:
     Parameters
     ----------
     rebound : float
-        Velocity of the centre of mass at the end over that of the start.
+        Velocity of the center of mass at the end over that of the start.
     kinetic, strain, plastic, energy_error : float
         Energies at the end, and the largest energy-balance error at any time.
     sideways : float
@@ -179,7 +179,7 @@ def ring(
     """Build the ring, or a bar upright, nearly touching the wall y = 0.
 
     `around` counts the elements along the ring or bar; `sideways` and `spin` are velocities along
-    the wall and about the centre, `contact` goes to the pair; `unit` is one meter in the unit of
+    the wall and about the center, `contact` goes to the pair; `unit` is one meter in the unit of
     length. Masses stay, so stresses scale with 1 / unit (force = mass length / time^2).
     """
     if body == "bar":
@@ -195,7 +195,7 @@ def ring(
             n_radial=through,
             n_around=around,
             cell=cell(element),
-            centre=(0.0, 1.001 * RADIUS * unit),
+            center=(0.0, 1.001 * RADIUS * unit),
         )
     model = Model(mesh, name=body)
     stress, density = 1.0 / unit, DENSITY / unit**3
@@ -211,8 +211,8 @@ def ring(
     model.section(
         "all", element=element, material=material, thickness=unit, local_strain=local_strain
     )
-    centre = (0.0, 1.001 * RADIUS * unit)
-    model.velocity(x=sideways * unit, y=-speed * unit, spin=spin, about=centre)
+    center = (0.0, 1.001 * RADIUS * unit)
+    model.velocity(x=sideways * unit, y=-speed * unit, spin=spin, about=center)
     # The body lies to the left of the line, above it.
     wall = RigidCurve.line((-3.0 * unit, 0.0), (3.0 * unit, 0.0))
     model.contact("outer" if body == "ring" else "bottom", wall, name="wall", **contact)
@@ -322,7 +322,7 @@ class Budget:
         Momentum along and across the wall and about the origin at both ends, and what the wall
         gave: its force and moment, summed over the increments.
     travel, spin, vibration : float
-        Energy at the end of the motion of the centre of mass, of the mean spin about it, and the
+        Energy at the end of the motion of the center of mass, of the mean spin about it, and the
         rest, kinetic and elastic.
     friction : float
         Frictional dissipation.
@@ -353,14 +353,14 @@ class Budget:
 
 
 def body_of(results: Results, frame: int) -> tuple[float, np.ndarray, float]:
-    """Mass, centre of mass and inertia about it in a frame."""
+    """Mass, center of mass and inertia about it in a frame."""
     rho = results.model.sections[0].material.rho
     fields = results.frames[frame].fields
     weight = rho * np.concatenate([f.volume.ravel() for f in fields])
     x = np.concatenate([f.points.reshape(-1, 2) for f in fields])
     mass = float(weight.sum())
-    centre = weight @ x / mass
-    return mass, centre, float(weight @ ((x - centre) ** 2).sum(axis=1))
+    center = weight @ x / mass
+    return mass, center, float(weight @ ((x - center) ** 2).sum(axis=1))
 
 
 def budget(results: Results) -> Budget:
@@ -375,8 +375,8 @@ def budget(results: Results) -> Budget:
     names = ("momentum x", "momentum y", "angular momentum")
     after = np.array([value[n][-1] for n in names])
     force = {n: value[f"wall: {n}"] for n in ("force x", "force y", "moment")}
-    _, centre, spread = body_of(results, -1)
-    own = after[2] - (centre[0] * after[1] - centre[1] * after[0])
+    _, center, spread = body_of(results, -1)
+    own = after[2] - (center[0] * after[1] - center[1] * after[0])
     energy = value["kinetic energy"] + value["strain energy"]
     travel = 0.5 * float(after[:2] @ after[:2]) / mass
     rotary = 0.5 * own**2 / spread

@@ -12,7 +12,7 @@ fn signs(a: &Symmetric) -> (Inertia, f64) {
     (Inertia { positive, negative: values.len() - positive, zero: 0 }, least / size)
 }
 
-fn factorised(upper: &Upper) -> Inertia {
+fn factorized(upper: &Upper) -> Inertia {
     let mut solver = Ldlt::default();
     solver.analyze(&upper.pattern()).unwrap();
     solver.factorize(&upper.values).unwrap().unwrap()
@@ -27,7 +27,7 @@ fn random_indefinite() {
         let a = Symmetric::random(n, 0.25, shift, &mut random);
         let (expected, least) = signs(&a);
         assert!(least > 1e-13, "case {case} is singular by chance");
-        assert_eq!(factorised(&a.upper(1 + case % 3)), expected, "case {case}, n = {n}");
+        assert_eq!(factorized(&a.upper(1 + case % 3)), expected, "case {case}, n = {n}");
     }
 }
 
@@ -48,7 +48,7 @@ fn nearly_singular() {
         }
         let (expected, least) = signs(&a);
         assert!(least < 1e-8, "case {case} is not nearly singular");
-        assert_eq!(factorised(&a.upper(1)), expected, "case {case}");
+        assert_eq!(factorized(&a.upper(1)), expected, "case {case}");
     }
 }
 
@@ -84,9 +84,9 @@ fn zero_diagonal() {
             continue;
         }
         let mut upper = a.upper(1);
-        assert_eq!(factorised(&upper), expected, "case {case}");
+        assert_eq!(factorized(&upper), expected, "case {case}");
         upper.after = (n as u32..(n + m) as u32).collect();
-        assert_eq!(factorised(&upper), expected, "case {case}, multipliers named");
+        assert_eq!(factorized(&upper), expected, "case {case}, multipliers named");
     }
 }
 
@@ -104,6 +104,6 @@ fn units_do_not_matter() {
                 upper.values[k] *= units[c] * units[upper.row_idx[k] as usize];
             }
         }
-        assert_eq!(factorised(&upper), expected, "case {case}");
+        assert_eq!(factorized(&upper), expected, "case {case}");
     }
 }

@@ -42,8 +42,8 @@ def local_axes(model: Model) -> dict[int, Floats]:
         )
         for node in nodes.tolist():
             angle = item.angle
-            if item.centre is not None:
-                arm = model.mesh.points[node] - np.asarray(item.centre)
+            if item.center is not None:
+                arm = model.mesh.points[node] - np.asarray(item.center)
                 if not np.any(arm):
                     label = model.mesh.node_labels[node]
                     raise ModelError(
@@ -303,14 +303,14 @@ class Constraints:
         """Let rotations be finite, or infinitesimal.
 
         With `about_reference` displacements are those of the linear theory, dependent dofs among
-        them, and relations are linearised about the reference, their second derivatives there too.
+        them, and relations are linearized about the reference, their second derivatives there too.
         """
         self._about_reference = about_reference
         for relation in self.relations:
             relation.nlgeom = nlgeom
 
     def _shape(self, u: Floats) -> Floats:
-        """The displacement about which relations are linearised."""
+        """The displacement about which relations are linearized."""
         return np.zeros_like(u) if self._about_reference else u
 
     def complete(self, u: Floats) -> None:

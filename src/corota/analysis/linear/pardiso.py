@@ -112,7 +112,7 @@ class Pardiso:
         self._call(_ANALYZE)
 
     def factorize(self, data: Floats) -> Inertia | None:
-        """Factorise values of shape (nnz,); returns the inertia if symmetric.
+        """Factorize values of shape (nnz,); returns the inertia if symmetric.
 
         Raises
         ------

@@ -57,7 +57,7 @@ class LinearSolver(Protocol):
         ...
 
     def factorize(self, data: Floats) -> Inertia | None:
-        """Factorise values of shape (nnz,).
+        """Factorize values of shape (nnz,).
 
         Returns
         -------
@@ -129,7 +129,7 @@ class Multifrontal:
             self._core.analyze(*pattern)
 
     def factorize(self, data: Floats) -> Inertia | None:
-        """Factorise values of shape (nnz,); returns the inertia if symmetric."""
+        """Factorize values of shape (nnz,); returns the inertia if symmetric."""
         inertia: Inertia | None = self._core.factorize(np.ascontiguousarray(data, dtype=float))
         return inertia
 
@@ -167,7 +167,7 @@ class SuperLU:
         self._indices = np.asarray(indices, dtype=np.int32)
 
     def factorize(self, data: Floats) -> Inertia | None:
-        """Factorise values of shape (nnz,); the inertia is not known."""
+        """Factorize values of shape (nnz,); the inertia is not known."""
         import scipy.sparse as sp  # takes longer to import than a small job to solve
         import scipy.sparse.linalg as spla
 

@@ -227,7 +227,7 @@ def _derivative(
     # Thermal strain is in the internal force of a neighbor already.
     mechanical = loads.external(loads.factors.period, u)[0] - loads.external(0.0, u)[0]
 
-    def neighbour(h: float) -> Floats:
+    def neighbor(h: float) -> Floats:
         system.free.offset = None if heating is None else h * heating
         try:
             at = _symmetric(system, system.evaluate(u + h * response, 0.0))
@@ -235,7 +235,7 @@ def _derivative(
             system.free.offset = None
         return _unknowns(system, at, at.residual - h * mechanical)
 
-    ahead, behind = neighbour(size), neighbour(-size)
+    ahead, behind = neighbor(size), neighbor(-size)
     change: Floats = ahead - behind
     # A smooth tangent is nearly linear over such a distance; one that jumps has a corner.
     ahead += behind

@@ -1,4 +1,4 @@
-"""Flow that localises because of an element or a strain: found in the results, and said."""
+"""Flow that localizes because of an element or a strain: found in the results, and said."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -20,7 +20,7 @@ SPREAD = 0.1
 SHARE = 0.3
 
 
-def localised(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
+def localized(block: BlockOfCells, own: PointFields) -> tuple[int, str] | None:
     """Global index of the worst cell that has localized, and what to say of it.
 
     A quadrilateral with incompatible modes is stable in a uniform state only while the nominal

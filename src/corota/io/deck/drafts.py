@@ -247,14 +247,14 @@ class StepDraft:
 
 @dataclass(eq=False, repr=False)
 class Instance:
-    """A part placed in the plane: shift, then turn by ``angle`` about ``centre``."""
+    """A part placed in the plane: shift, then turn by ``angle`` about ``center``."""
 
     name: str
     part: str
     card: Card
     shift: tuple[float, float] = (0.0, 0.0)
     angle: float = 0.0
-    centre: tuple[float, float] = (0.0, 0.0)
+    center: tuple[float, float] = (0.0, 0.0)
     scope: Scope = field(default_factory=lambda: Scope())
 
 
@@ -345,7 +345,7 @@ class PairDraft:
     adjust_set: str = ""
     clearance: float | None = None
     #: First step that is damped, 0 for none.
-    stabilise: int = 0
+    stabilize: int = 0
     smooth: bool = False
     name: str = ""
 
@@ -362,7 +362,7 @@ class GeneralDraft:
     every: bool = False
     pairs: list[tuple[Card, Row]] = field(default_factory=list)
     interaction: str = ""
-    stabilise: int = 0
+    stabilize: int = 0
     where: Location | None = None
 
 
@@ -414,7 +414,7 @@ class TieDraft:
     #: Distance from the reference node within which nodes of a surface take part.
     radius: float = math.inf
     angle: float = 0.0
-    centre: tuple[float, float] | None = None
+    center: tuple[float, float] | None = None
     ready: bool = False
 
 

@@ -17,7 +17,7 @@ from corota.results.extremes import WIDTH, row_of
 from corota.results.results import Results
 from corota.results.scalars import where_missing
 from corota.results.table import DIMENSIONS, NODAL
-from corota.results.variables import labelled, nodal_value
+from corota.results.variables import labeled, nodal_value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -206,7 +206,7 @@ def csv_text(rows: Sequence[dict[str, float]], units: Units | None = None) -> st
 def headings(names: Sequence[str], units: Units | None) -> list[str]:
     """Names of columns with their units, without quotes."""
     told = units or Units()
-    return [labelled(name, told).replace('"', "'") for name in names]
+    return [labeled(name, told).replace('"', "'") for name in names]
 
 
 def _line(names: Sequence[str]) -> str:

@@ -83,8 +83,8 @@ def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str
     force = _resultant(frame, pair, plus)
     if minus is not None:
         force = force - _resultant(frame, pair, minus)
-    area, centre, normal = _closed_part(model, pair, frame)
-    moment = force[2] - (centre[0] * force[1] - centre[1] * force[0])
+    area, center, normal = _closed_part(model, pair, frame)
+    moment = force[2] - (center[0] * force[1] - center[1] * force[0])
     along = float(force[:2] @ normal)
     across = math.hypot(*(force[:2] - along * normal))
 
@@ -99,7 +99,7 @@ def _statistics(model: Model, pair: ContactPair, frame: Frame, name: str) -> str
         "   total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)\n\n"
         + line(force[0], force[1], 0.0, 0.0, 0.0, force[2])
         + "\n   center of gravity and mean normal\n\n"
-        + line(*centre, 0.0, *normal, 0.0)
+        + line(*center, 0.0, *normal, 0.0)
         + "\n   moment about the center of gravity(mx,my,mz)\n\n"
         + line(0.0, 0.0, moment)
         + "\n   area,  normal force (+ = tension) and shear force (size)\n\n"
@@ -152,9 +152,9 @@ def _closed_part(model: Model, pair: ContactPair, frame: Frame) -> tuple[float, 
     area = float(weight.sum())
     if area == 0.0:
         return 0.0, np.zeros(2), np.zeros(2)
-    centre = np.einsum("ij,ijk->k", weight, x[ends]) / area
+    center = np.einsum("ij,ijk->k", weight, x[ends]) / area
     normal = np.array([chord[:, 1], -chord[:, 0]]) @ closed.sum(axis=1)
-    return area, centre, normal / (math.hypot(*normal) or 1.0)
+    return area, center, normal / (math.hypot(*normal) or 1.0)
 
 
 __all__ = ["VARIABLES", "contact_tables"]

@@ -407,7 +407,7 @@ export class Player {
   #gestures() {
     const canvas = this.overlayCanvas;
     const pointers = new Map();
-    let travelled = 0;
+    let traveled = 0;
     const place = (event) => {
       const box = canvas.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
@@ -415,26 +415,26 @@ export class Player {
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, place(event));
-      travelled = 0;
+      traveled = 0;
     });
     canvas.addEventListener("pointermove", (event) => {
       const known = pointers.get(event.pointerId);
       const [x, y] = place(event);
       if (!known) return this.#hover(x, y);
       const others = [...pointers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
-      travelled += Math.hypot(x - known[0], y - known[1]);
+      traveled += Math.hypot(x - known[0], y - known[1]);
       if (others.length) {
         const [ox, oy] = others[0];
         this.camera.zoom(Math.hypot(x - ox, y - oy) / (Math.hypot(known[0] - ox, known[1] - oy) || 1), ox, oy);
         this.moved = true;
         this.draw();
-      } else if (travelled > 3) {
+      } else if (traveled > 3) {
         this.pan(x - known[0], y - known[1]);
       }
       pointers.set(event.pointerId, [x, y]);
     });
     const end = (event) => {
-      if (pointers.delete(event.pointerId) && travelled <= 3 && event.type === "pointerup") this.probeAt(...place(event));
+      if (pointers.delete(event.pointerId) && traveled <= 3 && event.type === "pointerup") this.probeAt(...place(event));
     };
     canvas.addEventListener("pointerup", end);
     canvas.addEventListener("pointercancel", end);

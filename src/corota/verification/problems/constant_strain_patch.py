@@ -40,7 +40,7 @@ def patch(element: str) -> Mesh:
     if kind.startswith("tri"):
         mesh = meshes.to_triangles(mesh)
     if kind in ("tri6", "quad8", "quad9"):
-        mesh = meshes.to_quadratic(mesh, centre=kind == "quad9")
+        mesh = meshes.to_quadratic(mesh, center=kind == "quad9")
     return mesh
 
 

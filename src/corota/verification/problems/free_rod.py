@@ -67,8 +67,8 @@ def flown(element: str, **keys: Any) -> Results:
     return run(model, [push, free], **keys)
 
 
-def centre(results: Results) -> np.ndarray:
-    """Time and centre of mass of each frame, shape (n, 3), of lines and of linear cells.
+def center(results: Results) -> np.ndarray:
+    """Time and center of mass of each frame, shape (n, 3), of lines and of linear cells.
 
     Nodes of a regular mesh weigh as the mass that their shape functions carry.
     """
@@ -81,7 +81,7 @@ def centre(results: Results) -> np.ndarray:
 
 
 def measure() -> Iterator[Value]:
-    """Path of the centre, momenta, energy."""
+    """Path of the center, momenta, energy."""
     for element in ("Q4I", "Q4D", "OPT", "BEAM"):
         results = flown(element)
         frames = [f for f in results.frames if f.increment > 0]
@@ -93,17 +93,17 @@ def measure() -> Iterator[Value]:
             change = float(np.ptp([s[name] for s in late])) / size
             yield Value(f"drift of the {name} in flight, {element}", 0.0, change, 1e-9, "absolute")
         if element == "Q4I":
-            time, x, y = centre(results).T
+            time, x, y = center(results).T
             exact = np.where(time < PUSH, 3.0 + 0.4 * time**2, 5.5 + 2.0 * (time - PUSH))
             yield Value(
-                f"error of the centre's path x, {element}",
+                f"error of the center's path x, {element}",
                 0.0,
                 np.abs(x - exact).max(),
                 1e-8,
                 "absolute",
             )
             yield Value(
-                f"error of the centre's path y, {element}",
+                f"error of the center's path y, {element}",
                 0.0,
                 np.abs(y - 4.0).max(),
                 1e-8,
@@ -120,11 +120,11 @@ def picture() -> Picture:
 
 
 def curve() -> Curve:
-    """Path of the centre, and strain energy."""
-    time, x, _ = centre(flown("Q4I")).T
+    """Path of the center, and strain energy."""
+    time, x, _ = center(flown("Q4I")).T
     some = np.linspace(0.0, END, 11)
     exact = np.where(some < PUSH, 3.0 + 0.4 * some**2, 5.5 + 2.0 * (some - PUSH))
-    return Curve("time", "x of the centre", {"Q4I": (time, x)}, {"exact": (some, exact)})
+    return Curve("time", "x of the center", {"Q4I": (time, x)}, {"exact": (some, exact)})
 
 
 PROBLEM = Problem(

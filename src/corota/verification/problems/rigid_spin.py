@@ -46,10 +46,10 @@ def momenta(element: str, mass: Any = "consistent") -> tuple[float, ...]:
 
 def exact() -> tuple[float, ...]:
     """The same of the rigid block."""
-    mass, centre = DENSITY * THICKNESS * 3.0, np.array([1.5, 0.5])
+    mass, center = DENSITY * THICKNESS * 3.0, np.array([1.5, 0.5])
     polar = mass * (3.0**2 + 1.0) / 12.0
-    v = VELOCITY + SPIN * np.array([-centre[1], centre[0]])
-    angular = mass * (centre[0] * v[1] - centre[1] * v[0]) + polar * SPIN
+    v = VELOCITY + SPIN * np.array([-center[1], center[0]])
+    angular = mass * (center[0] * v[1] - center[1] * v[0]) + polar * SPIN
     energy = 0.5 * mass * float(v @ v) + 0.5 * polar * SPIN**2
     return energy, float(mass * v[0]), float(mass * v[1]), float(angular), mass
 

@@ -69,7 +69,7 @@ class Arc:
         two = product(b, b, counted) + square
         if two == 0.0 or not math.isfinite(two):
             return None
-        # The nearest point of the line to the centre first: close to a critical point `a`
+        # The nearest point of the line to the center first: close to a critical point `a`
         # and `b` are huge and nearly parallel, and the quadratic equation would lose all.
         middle = -(product(b, plane, counted) + square * dfactor) / two
         plane += middle * b

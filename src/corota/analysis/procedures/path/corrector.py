@@ -175,7 +175,7 @@ def tangent_at(
         If the tangent matrix has no inverse there.
     """
     force, move = system.load_rate(point.u)
-    # The matrix is overwritten by the factorisation's preparation: the point keeps its own.
+    # The matrix is overwritten by the factorization's preparation: the point keeps its own.
     x, negative = system.rate(point.at, force, move)
     if metric is None:
         metric = Metric(system.counted, float(np.sqrt(product(x, x, system.counted))))

@@ -42,7 +42,7 @@ make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
 #: Procedures that support contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
 #: Damping of stabilized surfaces per stiffness of their nodes and period.
-STABILISE = 1e-3
+STABILIZE = 1e-3
 
 
 @dataclass
@@ -465,15 +465,15 @@ class ContactTerm(Term):
         self.damped = np.zeros(system.n_dofs)
         for pair in self.pairs:
             item = pair.item
-            if not isinstance(item, ContactPair) or not item.stabilise:
+            if not isinstance(item, ContactPair) or not item.stabilize:
                 continue
-            if self.number >= item.stabilise_from:
+            if self.number >= item.stabilize_from:
                 nodes = pair.slave.node_list
                 if pair.master is not None:
                     nodes = np.union1d(nodes, pair.master.node_list)
                 for component in (0, 1):
                     dofs = system.dofs(nodes, component)
-                    self.damped[dofs] = STABILISE * diagonal[dofs]
+                    self.damped[dofs] = STABILIZE * diagonal[dofs]
 
     def _damping(self, step_time: float) -> Floats | None:
         if not self.damps or not self.damped.any():

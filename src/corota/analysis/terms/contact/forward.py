@@ -261,16 +261,16 @@ class _Increment:
         self.state = np.concatenate(own.state)
         self.sense = np.ones(self.n)
         self.sense[self.two] = np.concatenate(own.sense)
-        travelled, slid = self._travel(ahead)
-        self.travel = travelled
+        traveled, slid = self._travel(ahead)
+        self.travel = traveled
         ramp = np.concatenate([self._ramp(pair, time) for pair in pairs])
         depth = self._depth(gap)
         own.depth = np.split(depth, self.first[1:-1])
-        self.gap = gap + depth * self.area + travelled + ramp * self.area
+        self.gap = gap + depth * self.area + traveled + ramp * self.area
         self.slip = slip + slid
         # A law takes the mean of the last three gaps: a quarter of dt^2 times the acceleration.
         rest = self._travel(before)[0]
-        self.soft = gap + 0.25 / share * (travelled - rest)
+        self.soft = gap + 0.25 / share * (traveled - rest)
 
     def _each(self) -> list[tuple[Pair, Terms]]:
         return list(zip(self.contact.pairs, self.found, strict=True))

@@ -163,7 +163,7 @@ def _close_some(
     if open_pairs:
         raise SingularError(
             f"{error}; contact pair {open_pairs[0]!r} is open: support the body until it is "
-            "in contact, start in contact (start='adjust'), or damp it (stabilise=True, "
+            "in contact, start in contact (start='adjust'), or damp it (stabilize=True, "
             "*CONTACT CONTROLS, STABILIZE)",
             error.equation,
             error.mode,

@@ -86,7 +86,7 @@ def output(
         law += pair.law_energy(terms)
     sums["friction energy"] = friction
     sums["contact energy"] = law
-    sums["stabilisation energy"] = contact_term.damping_work
+    sums["stabilization energy"] = contact_term.damping_work
     return values, sums, each
 
 

@@ -254,7 +254,7 @@ class Pair:
         )
 
     def _owners(self, area: Floats) -> Ints:
-        """Constraint that each node's part belongs to: its own, or a neighbour's.
+        """Constraint that each node's part belongs to: its own, or a neighbor's.
 
         At the end of the opposite surface a slave edge is partly covered. The node beyond would
         have

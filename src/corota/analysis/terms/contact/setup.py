@@ -320,8 +320,8 @@ def _normals(x: Floats, found: Surface) -> Floats:
 def _towards(x: Floats, slave: Surface, master: Surface, out: Floats) -> bool:
     """Whether any slave edge faces the master or overlaps it."""
     at = x[slave.nodes[:, :2]].mean(axis=1)
-    centre = x[master.node_list]
-    low, high = centre.min(axis=0), centre.max(axis=0)
+    center = x[master.node_list]
+    low, high = center.min(axis=0), center.max(axis=0)
     # The corner of the master's box farthest along each normal.
     corner = np.where(out > 0.0, high, low)
     return bool((((corner - at) * out).sum(axis=1) > -0.5 * slave.length.max()).any())

@@ -56,7 +56,7 @@ def add_general(deck: Deck, model: Model, sets: Sets) -> None:
         )
     for slave, master, of, row in names:
         pair = PairDraft(of, row, slave, master, interaction=interaction)
-        pair.start, pair.stabilise = "adjust", draft.stabilise
+        pair.start, pair.stabilize = "adjust", draft.stabilize
         deck.pairs.append(pair)
 
 

@@ -571,8 +571,8 @@ def placed(points: Floats, instance: Instance | None) -> Floats:
         return points
     moved = points + np.array(instance.shift)
     c, s = math.cos(instance.angle), math.sin(instance.angle)
-    centre = np.array(instance.centre)
-    return np.asarray((moved - centre) @ np.array([[c, s], [-s, c]]) + centre)
+    center = np.array(instance.center)
+    return np.asarray((moved - center) @ np.array([[c, s], [-s, c]]) + center)
 
 
 def _where(blocks: list[NodeBlock] | list[ElementBlock], row: int) -> Location:

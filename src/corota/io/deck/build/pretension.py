@@ -144,8 +144,8 @@ class PretensionBuilder:
             chosen = np.isin(far, self._nodes(axes.nodes))
             for a, b in zip(near[chosen].tolist(), far[chosen].tolist(), strict=True):
                 angle = axes.angle
-                if axes.centre is not None:
-                    arm = self.model.mesh.points[b] - np.asarray(axes.centre)
+                if axes.center is not None:
+                    arm = self.model.mesh.points[b] - np.asarray(axes.center)
                     angle += math.atan2(arm[1], arm[0])
                 angles[b] = angle
                 self.model.axes.append(LocalAxes(np.array([a]), angle, None, axes.where))

@@ -63,7 +63,7 @@ def _build(
         assert tie.target is not None
         nodes = find(tie.target)
         if nodes is not None:
-            model.axes.append(LocalAxes(nodes, tie.angle, tie.centre, tie.where))
+            model.axes.append(LocalAxes(nodes, tie.angle, tie.center, tie.where))
         return
     if tie.kind == "straight":
         _straight(deck, model, find, tie)

@@ -106,7 +106,7 @@ def instance(deck: Deck, card: Card) -> None:
         if bz == az or abs(bx - ax) + abs(by - ay) > 1e-9 * abs(bz - az):
             deck.row_error(card, rows[1], 0, "the axis of rotation must be normal to the plane")
             return
-        found.centre, found.angle = (ax, ay), math.radians(degrees) * (1 if bz > az else -1)
+        found.center, found.angle = (ax, ay), math.radians(degrees) * (1 if bz > az else -1)
     for row in rows[2:]:
         deck.row_error(card, row, 0, "at most two data lines are expected")
         break

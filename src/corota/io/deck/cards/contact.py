@@ -50,7 +50,7 @@ def profile(deck: Deck, card: Card, found: Surface) -> None:
         numbers = [deck.real(card, row, 1 + i, names[i]) for i in range(count)]
         if any(v is None for v in numbers):
             return
-        x, y, *centre = (float(v or 0.0) for v in numbers)
+        x, y, *center = (float(v or 0.0) for v in numbers)
         if (at is None) != (kind == "START"):
             text = "START, x, y comes first" if at is None else "START comes only once"
             deck.row_error(card, row, 0, text)
@@ -60,12 +60,12 @@ def profile(deck: Deck, card: Card, found: Surface) -> None:
                 deck.row_error(card, row, 1, "the segment has no length")
                 return
             sweep = 0.0
-            if centre:
-                turn = _sweep(deck, card, row, at, (x, y), (centre[0], centre[1]))
+            if center:
+                turn = _sweep(deck, card, row, at, (x, y), (center[0], center[1]))
                 if turn is None:
                     return
                 sweep = turn
-            rows.append((*at, x, y, *(centre or (0.0, 0.0)), sweep))
+            rows.append((*at, x, y, *(center or (0.0, 0.0)), sweep))
         at = (x, y)
     if not rows:
         deck.error(card, card.where, f"surface {found.name} needs START and one segment at least")
@@ -84,10 +84,10 @@ def _sweep(
     row: Row,
     start: tuple[float, float],
     end: tuple[float, float],
-    centre: tuple[float, float],
+    center: tuple[float, float],
 ) -> float | None:
     """Angle of an arc of less than half a turn; ``None`` after an error."""
-    a, b = (complex(*p) - complex(*centre) for p in (start, end))
+    a, b = (complex(*p) - complex(*center) for p in (start, end))
     if abs(abs(a) - abs(b)) > 1e-4 * max(abs(a), abs(b)) or abs(a) == 0.0:
         text = (
             f"the ends of the arc are {abs(a):g} and {abs(b):g} away from its center; they must "
@@ -328,11 +328,11 @@ def contact_controls(deck: Deck, card: Card) -> None:
     # Like other controls it applies to later steps, too.
     first = max(len(deck.steps), 1)
     if deck.general is not None and not named:
-        deck.general.stabilise = deck.general.stabilise or first
+        deck.general.stabilize = deck.general.stabilize or first
         if not any(not pair.tied for pair in deck.pairs):
             return
     for pair in _named_pairs(deck, card, card.value("SLAVE"), card.value("MASTER"), named):
-        pair.stabilise = pair.stabilise or first
+        pair.stabilize = pair.stabilize or first
 
 
 def contact_interference(deck: Deck, card: Card) -> None:

@@ -62,9 +62,9 @@ def ngen(deck: Deck, card: Card) -> None:
         _extend(deck, card, "NSET", np.concatenate([[first], labels, [last]]), row)
 
 
-def _on_arc(first: Floats, last: Floats, centre: Floats, share: Floats, normal: float) -> Floats:
-    """Points between two ends about a centre: the shorter way, or counter-clockwise about +z."""
-    a, b = first[:2] - centre[:2], last[:2] - centre[:2]
+def _on_arc(first: Floats, last: Floats, center: Floats, share: Floats, normal: float) -> Floats:
+    """Points between two ends about a center: the shorter way, or counter-clockwise about +z."""
+    a, b = first[:2] - center[:2], last[:2] - center[:2]
     turn = math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))
     if normal != 0.0 and turn * normal < 0.0:
         turn += math.copysign(2.0 * math.pi, normal)
@@ -72,7 +72,7 @@ def _on_arc(first: Floats, last: Floats, centre: Floats, share: Floats, normal: 
     radius = np.hypot(*a) + share * (np.hypot(*b) - np.hypot(*a))
     z = first[2] + share * (last[2] - first[2])
     return np.stack(
-        [centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle), z], axis=1
+        [center[0] + radius * np.cos(angle), center[1] + radius * np.sin(angle), z], axis=1
     )
 
 

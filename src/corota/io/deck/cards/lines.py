@@ -174,14 +174,14 @@ def beam_section(deck: Deck, card: Card) -> None:
             (high, t_high, 0.0, tall - 0.5 * t_high),
             (web, mid, 0.0, t_low + 0.5 * mid),
         ]
-        centre = sum(w * h * y for w, h, _, y in walls) / sum(w * h for w, h, _, _ in walls)
-        if abs(at - centre) > 1e-6 * tall:
+        center = sum(w * h * y for w, h, _, y in walls) / sum(w * h for w, h, _, _ in walls)
+        if abs(at - center) > 1e-6 * tall:
             deck.row_error(
                 card,
                 row,
                 0,
                 "the axis of a beam passes through its nodes: the node must be at the center, "
-                f"{centre:g}",
+                f"{center:g}",
             )
             return
         profile = _of_walls(walls, normal)
@@ -213,8 +213,8 @@ def _of_walls(
     if not normal:
         walls = [(h, w, y, x) for w, h, x, y in walls]
     area = sum(w * h for w, h, _, _ in walls)
-    centre = sum(w * h * y for w, h, _, y in walls) / area
-    inertia = sum(w * h**3 / 12.0 + w * h * (y - centre) ** 2 for w, h, _, y in walls)
+    center = sum(w * h * y for w, h, _, y in walls) / area
+    inertia = sum(w * h**3 / 12.0 + w * h * (y - center) ** 2 for w, h, _, y in walls)
     # The walls that are higher than wide carry the shear force.
     shear = sum(w * h for w, h, _, _ in walls if h > w) or RECTANGLE * area
     return area, inertia, shear

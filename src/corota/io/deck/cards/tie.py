@@ -289,7 +289,7 @@ def transform(deck: Deck, card: Card) -> None:
                 card, row, 0, "the axis from a to b must be normal to the plane and point to +z"
             )
             return
-        tie.centre = (ax, ay)
+        tie.center = (ax, ay)
     else:
         cross = ax * by - ay * bx
         if math.hypot(ax, ay) == 0.0 or az != 0.0 or bz != 0.0 or cross <= 0.0:

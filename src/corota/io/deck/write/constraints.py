@@ -32,13 +32,13 @@ def constraint_cards(writer: Writer) -> Iterator[str]:
     label = int(writer.mesh.cell_labels.max(initial=0)) + 1_000_000
     for axes in writer.model.axes:
         nodes = writer.node_set(axes.nodes)
-        if axes.centre is not None:
+        if axes.center is not None:
             if axes.angle:
                 raise UnsupportedError(
                     "local axes about a point that are turned by an angle besides cannot be "
                     "written to a deck: keep the model in Python"
                 )
-            x, y = axes.centre
+            x, y = axes.center
             points = numbers((x, y, 0.0, x, y, 1.0))
             yield f"*TRANSFORM, NSET={nodes}, TYPE=C\n{points}\n"
             continue

@@ -79,7 +79,7 @@ def step_cards(writer: Writer, number: int) -> Iterator[str]:
         slave, master = surfaces(writer, pair)
         if pair.start == "ramp" and number == 1:
             yield f"*CONTACT INTERFERENCE, SHRINK\n{slave}, {master}\n"
-        if pair.stabilise and pair.stabilise_from == number:
+        if pair.stabilize and pair.stabilize_from == number:
             yield f"*CONTACT CONTROLS, STABILIZE, SLAVE={slave}, MASTER={master}\n"
 
 
@@ -137,7 +137,7 @@ def _profile(model: Model, curve: RigidCurve, name: str) -> str:
     """A rigid curve as profile; in both the outward normal is on the left."""
     text, last = "", None
     for row in curve.segments:
-        points, centre = _pieces(row)
+        points, center = _pieces(row)
         if last is None:
             text += f"START, {_point(points[0])}\n"
         elif math.dist(last, points[0]) > 1e-9 * float(np.ptp(curve.segments[:, :4])):
@@ -146,7 +146,7 @@ def _profile(model: Model, curve: RigidCurve, name: str) -> str:
                 "curve with a contact pair of its own"
             )
         for point in points[1:]:
-            tail = f", {_point(centre)}" if centre is not None else ""
+            tail = f", {_point(center)}" if center is not None else ""
             text += f"{'CIRCL' if tail else 'LINE'}, {_point(point)}{tail}\n"
         last = points[-1]
     text = f"*SURFACE, TYPE=SEGMENTS, NAME={name}\n{text}"
@@ -158,14 +158,14 @@ def _profile(model: Model, curve: RigidCurve, name: str) -> str:
 
 def _pieces(row: Floats) -> tuple[Floats, Floats | None]:
     """Points along a segment from its start to its end, and the center of an arc."""
-    start, end, centre, sweep = row[:2], row[2:4], row[4:6], float(row[6])
+    start, end, center, sweep = row[:2], row[2:4], row[4:6], float(row[6])
     if sweep == 0.0:
         return np.array([start, end]), None
     count = math.ceil(abs(sweep) / PIECE)
     angle = sweep * np.arange(count + 1) / count
     c, s = np.cos(angle), np.sin(angle)
-    x, y = start - centre
-    return centre + np.column_stack([c * x - s * y, s * x + c * y]), centre
+    x, y = start - center
+    return center + np.column_stack([c * x - s * y, s * x + c * y]), center
 
 
 def _point(at: Floats) -> str:
