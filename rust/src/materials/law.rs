@@ -6,18 +6,54 @@ use super::material::{Material, Plane, PointState, Response, SolidResponse, Tens
 use crate::base::small::Mat;
 use crate::base::{Job, Real};
 
-/// [`Law::update`] as a job.
-struct Update<'a, 'b, T> {
-    law: &'a Law,
+/// [`Material::update`] as a job.
+struct Update<'a, 'b, M, T> {
+    law: &'a M,
     e: [T; 3],
     state: &'a mut PointState<'b>,
 }
 
-/// [`Law::update_solid`] as a job.
-struct UpdateSolid<'a, 'b, T> {
-    law: &'a Law,
+impl<M: Material, T: Real> Job for Update<'_, '_, M, T> {
+    type Output = Response<T>;
+    #[inline(always)]
+    fn run(self) -> Response<T> {
+        self.law.update(self.e, self.state)
+    }
+}
+
+/// [`Material::update_solid`] as a job.
+struct UpdateSolid<'a, 'b, M, T> {
+    law: &'a M,
     e: [T; 4],
     state: &'a mut PointState<'b>,
+}
+
+impl<M: Material, T: Real> Job for UpdateSolid<'_, '_, M, T> {
+    type Output = SolidResponse<T>;
+    #[inline(always)]
+    fn run(self) -> SolidResponse<T> {
+        self.law.update_solid(self.e, self.state)
+    }
+}
+
+/// One instance for each law and number type, whatever the elements that call it; batches of
+/// elements have short laws inlined.
+#[inline(always)]
+fn update<M: Material, T: Real>(law: &M, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
+    if M::SHORT && T::LANES > 1 { law.update(e, state) } else { T::apart(Update { law, e, state }) }
+}
+
+#[inline(always)]
+fn update_solid<M: Material, T: Real>(
+    law: &M,
+    e: [T; 4],
+    state: &mut PointState<'_>,
+) -> SolidResponse<T> {
+    if M::SHORT && T::LANES > 1 {
+        law.update_solid(e, state)
+    } else {
+        T::apart(UpdateSolid { law, e, state })
+    }
 }
 
 macro_rules! law {
@@ -27,22 +63,6 @@ macro_rules! law {
         /// Any registered material.
         #[derive(Clone, Debug)]
         pub enum Law { $($name($name)),+ }
-
-        impl<T: Real> Job for Update<'_, '_, T> {
-            type Output = Response<T>;
-            #[inline(always)]
-            fn run(self) -> Response<T> {
-                match self.law { $(Law::$name(m) => m.update(self.e, self.state)),+ }
-            }
-        }
-
-        impl<T: Real> Job for UpdateSolid<'_, '_, T> {
-            type Output = SolidResponse<T>;
-            #[inline(always)]
-            fn run(self) -> SolidResponse<T> {
-                match self.law { $(Law::$name(m) => m.update_solid(self.e, self.state)),+ }
-            }
-        }
 
         impl Law {
             /// Names of all materials.
@@ -72,26 +92,17 @@ macro_rules! law {
             pub fn moduli(&self) -> Mat<f64, 3> {
                 match self { $(Law::$name(m) => m.moduli()),+ }
             }
-            /// [`Material::update`]. Long laws have one instance for each number type, whatever
-            /// the elements that call it.
             #[inline(always)]
             pub fn update<T: Real>(&self, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
-                $(if $name::SHORT && T::LANES > 1 && let Law::$name(m) = self {
-                    return m.update(e, state);
-                })+
-                T::apart(Update { law: self, e, state })
+                match self { $(Law::$name(m) => update(m, e, state)),+ }
             }
-            /// [`Material::update_solid`], likewise.
             #[inline(always)]
             pub fn update_solid<T: Real>(
                 &self,
                 e: [T; 4],
                 state: &mut PointState<'_>,
             ) -> SolidResponse<T> {
-                $(if $name::SHORT && T::LANES > 1 && let Law::$name(m) = self {
-                    return m.update_solid(e, state);
-                })+
-                T::apart(UpdateSolid { law: self, e, state })
+                match self { $(Law::$name(m) => update_solid(m, e, state)),+ }
             }
             pub fn out_of_plane(&self, e: [f64; 3], s: [f64; 3], state: &[f64]) -> (f64, f64) {
                 match self { $(Law::$name(m) => m.out_of_plane(e, s, state)),+ }

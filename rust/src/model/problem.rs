@@ -339,7 +339,7 @@ impl Problem {
 
     /// Largest error of the creep strain of the last evaluation.
     pub fn creep_error(&self) -> f64 {
-        let chunks = self.colours.iter().flatten();
+        let chunks = self.colors.iter().flatten();
         chunks.map(|c| c.creep_error()).fold(0.0, f64::max)
     }
 
