@@ -387,7 +387,29 @@ def _pushed(friction: float, **pair: Any) -> ct.Model:
     return model
 
 
+def _ring(*steps: Step, rho: float = 1.0) -> ct.Model:
+    """A tube in two tied parts, of steel that flows, in a rigid bore with friction."""
+    inside = ct.mesh.rectangle(2.0, 6.0, 2, 6)
+    outside = ct.mesh.rectangle(2.0, 6.0, 2, 5)
+    inside.points[:, 0] += 8.0
+    outside.points[:, 0] += 10.0
+    model = ct.Model(ct.mesh.assembly(inside=inside, outside=outside), name="job")
+    steel = ct.Mises(E=1000.0, nu=0.3, yield_stress=5.0, isotropic=50.0, rho=rho)
+    model.section("all", element="Q4I", material=steel, plane="axisymmetric")
+    model.tie("inside.right", "outside.left")
+    bore = ct.RigidCurve.line((12.01, -20.0), (12.01, 20.0))
+    model.contact("outside.right", bore, friction=0.2)
+    model.fix("inside.bottom", x=None)
+    model.fix("outside.bottom", x=None)
+    model.pressure("inside.left", 4.0)
+    model.traction("outside.top", y=-1.0)
+    model.steps = list(steps)
+    return model
+
+
 MODELS: dict[str, Callable[[], ct.Model]] = {
+    "ring": lambda: _ring(ct.Static(increments=6), ct.Static(increments=4)),
+    "ring, moving": lambda: _ring(ct.Dynamic(period=1.0, scheme="hht", increments=10)),
     "newmark": lambda: _motion("newmark"),
     "hht": lambda: _motion("hht", alpha=-0.2),
     "generalized alpha": lambda: _motion("generalized_alpha"),

@@ -145,6 +145,29 @@ def test_hill_sphere_in_one_increment(
     assert found == pytest.approx(expected, rel=5e-3)
 
 
+def test_hill_sphere_collapses() -> None:
+    """Plateau at 2 sy ln(b / a); at finite displacements a limit point, with the radii there."""
+    steel = ct.Mises(E=E, nu=NU, yield_stress=240.0)
+    for nlgeom in (False, True):
+        model = sphere("Q8R", 6, steel)
+        model.pressure("inner", 100.0)
+        inside, outside = model.mesh.node_sets["inner"], model.mesh.node_sets["outer"]
+        end = int(inside[np.argmin(model.mesh.points[inside, 1])])
+        path = ct.ArcLength(displacement=(end, "x", 1.5))
+        results = ct.solve(model, ct.Static(nlgeom=nlgeom, path=path, increments=20), threads=1)
+        pressure = 100.0 * max(f.factor for f in results.frames)
+        if not nlgeom:
+            assert pressure == pytest.approx(332.710647, rel=2e-5)
+            assert 100.0 * results.frames[-1].factor == pytest.approx(pressure, rel=1e-6)
+            continue
+        limit = next(p for p in results.critical_points if p.kind == "limit")
+        assert 100.0 * limit.factor == pytest.approx(pressure, rel=1e-9)
+        frame = max(results.frames, key=lambda f: f.factor)
+        a = A + float(frame.U[end, 0])
+        b = B + float(np.hypot(*frame.U[outside, :2].T).mean())
+        assert pressure == pytest.approx(480.0 * np.log(b / a), rel=1e-3)
+
+
 def test_neo_hooke_balloon_through_its_maximum() -> None:
     """A = 1, B = 2, constant volume: pressure over the shear modulus by the stretch inside."""
     rubber = ct.NeoHooke(C10=0.5, D1=2e-5)

@@ -43,3 +43,32 @@ def test_sliders_and_keys_change_what_is_shown(results: ct.Results) -> None:
 def test_a_picture_is_written_without_a_window(results: ct.Results, tmp_path: Path) -> None:
     results.view("MISES", path=tmp_path / "view.png")
     assert (tmp_path / "view.png").stat().st_size > 3000
+
+
+def test_a_section_is_revolved(tmp_path: Path) -> None:
+    """Volume by Pappus, displacements that turn with the section, values that repeat."""
+    mesh = ct.mesh.rectangle(2.0, 1.0, nx=2, ny=1, cell="quad8")
+    mesh.points[:, 0] += 3.0
+    model = ct.Model(mesh, name="ring")
+    model.section("all", element="Q8R", material=ct.Elastic(1000.0, 0.3), plane="axisymmetric")
+    model.fix("bottom", x=None)
+    model.pressure("left", 10.0)
+    results = ct.solve(model, ct.Static(nlgeom=False), threads=1)
+    solid = results.to_pyvista(-1, revolve=270.0)
+    sections = 55
+    assert solid.n_points == sections * mesh.n_nodes
+    exact = 0.75 * np.pi * (25.0 - 9.0) * 1.0
+    assert solid.compute_cell_sizes()["Volume"].sum() == pytest.approx(exact, rel=2e-3)
+    moved = np.asarray(solid.point_data["displacement"])
+    x, z = np.asarray(solid.points)[:, 0], np.asarray(solid.points)[:, 2]
+    radial = (moved[:, 0] * x + moved[:, 2] * z) / np.hypot(x, z)
+    u = results.frames[-1].U[:, 0]
+    np.testing.assert_allclose(radial.reshape(sections, -1), np.tile(u, (sections, 1)), atol=1e-7)
+    assert np.asarray(solid.point_data["Mises"])[-1] == pytest.approx(results.nodal("MISES")[-1])
+    results.view("S33", revolve=270.0, path=tmp_path / "solid.png")
+    assert (tmp_path / "solid.png").stat().st_size > 3000
+
+
+def test_only_rings_are_revolved(results: ct.Results) -> None:
+    with pytest.raises(ct.InputError, match="only axisymmetric models"):
+        results.to_pyvista(-1, revolve=270.0)

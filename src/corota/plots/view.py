@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.io.vtk.revolution import Revolution
 from corota.plots import palette
 from corota.plots.figure import INK
 from corota.results import variables as vf
@@ -34,10 +35,17 @@ class Viewer:
         Factor of the displacements.
     off_screen : bool
         Draw without a window, for pictures.
+    revolve : float
+        Angle [degrees] by which the section of an axisymmetric model is turned; 0 for the section.
     """
 
     def __init__(
-        self, results: Results, name: str = "", scale: float = 1.0, off_screen: bool = False
+        self,
+        results: Results,
+        name: str = "",
+        scale: float = 1.0,
+        off_screen: bool = False,
+        revolve: float = 0.0,
     ) -> None:
         pyvista = require("pyvista", "view")
         self.results, self.scale, self.frame, self.edges = (
@@ -49,15 +57,20 @@ class Viewer:
         self.names = results.variables()
         wanted = name or ("MISES" if "MISES" in self.names else "U")
         self.name = vf.match_name(wanted, self.names)
-        self._grid = results.to_pyvista(self.frame)
-        self._still = np.array(self._grid.points)
+        self._solid = Revolution(results.model, revolve) if revolve else None
+        self._grid = results.to_pyvista(self.frame, revolve=revolve)
+        self._still = np.column_stack([results.mesh.points, np.zeros(results.mesh.n_nodes)])
         self.plotter = pyvista.Plotter(off_screen=off_screen)
         self.plotter.set_background("white")
         self._actor: Any = None
         self._title: Any = None
         self._limits: dict[str, tuple[float, float]] = {}
         self.draw()
-        self.plotter.view_xy()
+        if self._solid is None:
+            self.plotter.view_xy()
+        else:
+            # Into the quarter that is left out, from above.
+            self.plotter.view_vector((1.0, 0.7, -1.0), viewup=(0.0, 1.0, 0.0))
         self.plotter.enable_parallel_projection()
 
     def limits(self) -> tuple[float, float]:
@@ -75,8 +88,11 @@ class Viewer:
         state = self.results.frame(self.frame)
         moved = self._still.copy()
         moved[:, :2] += self.scale * state.U
+        shown = self.results.nodal(self.name, self.frame)
+        if self._solid is not None:
+            moved, shown = self._solid.vectors(moved), self._solid.repeat(shown)
         self._grid.points = moved
-        self._grid.point_data["shown"] = self.results.nodal(self.name, self.frame)
+        self._grid.point_data["shown"] = shown
         units = self.results.model.unit_system
         title = vf.labeled(self.name, units) + " (nodal)" * (self.name not in NODAL)
         low, high = self.limits()
@@ -93,7 +109,7 @@ class Viewer:
             clim=(-size, size) if colors == palette.DIVERGING else (low, high),
             show_edges=self.edges and self._grid.n_cells <= 20_000,
             line_width=1.0,
-            lighting=False,
+            lighting=self._solid is not None,
             scalar_bar_args={"title": title, "color": INK, "vertical": True},
             reset_camera=self._actor is None,
             render=False,
@@ -166,6 +182,7 @@ def view(
     name: str = "",
     *,
     scale: float = 1.0,
+    revolve: float = 0.0,
     path: str | PathLike[str] | None = None,
 ) -> Any:
     """Show results in a window; in a notebook with trame, if it is installed.
@@ -177,6 +194,9 @@ def view(
         Variable; ``MISES``, or ``U`` where nothing is stressed, by default.
     scale : float
         Factor of the displacements.
+    revolve : float
+        Angle [degrees] by which the section of an axisymmetric model is turned, 270 to see its
+        section and its faces; 0 for the section.
     path : path-like, optional
         Write a picture there and open no window.
 
@@ -190,7 +210,7 @@ def view(
     ResourceError
         If PyVista is not installed (``pip install corota[view]``).
     """
-    viewer = Viewer(results, name, scale, off_screen=path is not None)
+    viewer = Viewer(results, name, scale, off_screen=path is not None, revolve=revolve)
     if path is not None:
         viewer.plotter.screenshot(str(path))
         viewer.plotter.close()

@@ -300,7 +300,12 @@ class Results(Brief):
         return draw_contour(self, name, **options)
 
     def view(
-        self, name: str = "", *, scale: float = 1.0, path: str | PathLike[str] | None = None
+        self,
+        name: str = "",
+        *,
+        scale: float = 1.0,
+        revolve: float = 0.0,
+        path: str | PathLike[str] | None = None,
     ) -> Any:
         """Show the results in a PyVista window; see :func:`corota.plots.view`.
 
@@ -310,6 +315,8 @@ class Results(Brief):
             Variable; ``MISES``, or ``U`` where nothing is stressed, by default.
         scale : float
             Factor of the displacements.
+        revolve : float
+            Angle [degrees] by which the section of an axisymmetric model is turned, such as 270.
         path : path-like, optional
             Write a picture there and open no window.
 
@@ -318,7 +325,7 @@ class Results(Brief):
         ResourceError
             If PyVista is not installed (``pip install corota[view]``).
         """
-        return show(self, name, scale=scale, path=path)
+        return show(self, name, scale=scale, revolve=revolve, path=path)
 
     def write(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write to a file; its extension selects the format (:mod:`corota.io.writers`).
@@ -643,7 +650,7 @@ class Results(Brief):
 
         return to_dataframe(self, histories)
 
-    def to_pyvista(self, frame: int = -1, *, scale: float = 0.0) -> Any:
+    def to_pyvista(self, frame: int = -1, *, scale: float = 0.0, revolve: float = 0.0) -> Any:
         """One frame as a ``pyvista.UnstructuredGrid`` with the arrays of result files.
 
         Parameters
@@ -651,13 +658,19 @@ class Results(Brief):
         frame : int
         scale : float
             Factor of the displacements of the points; 0 for the undeformed shape.
+        revolve : float
+            Angle [degrees] by which the section of an axisymmetric model is turned about its axis,
+            270 for a solid that shows its section; 0 for the section alone. Vectors turn with it;
+            tensors keep their radial, axial and hoop components.
 
         Raises
         ------
+        InputError
+            If a model that is not axisymmetric is to be revolved.
         ResourceError
             If PyVista is not installed (``pip install corota[view]``).
         """
-        return results_grid(self, frame, scale)
+        return results_grid(self, frame, scale, revolve)
 
     def close(self) -> None:
         """Close the file that the results are read from, if there is one."""

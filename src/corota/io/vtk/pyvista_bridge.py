@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.io.vtk.frame_arrays import cell_data, point_data
 from corota.io.vtk.grid import topology
+from corota.io.vtk.revolution import Revolution
 from corota.results.arrays import require
 
 if TYPE_CHECKING:
@@ -41,8 +42,11 @@ def mesh_grid(mesh: Mesh) -> Any:
     return grid
 
 
-def results_grid(results: Results, frame: int, scale: float) -> Any:
-    """One frame as a ``pyvista.UnstructuredGrid``, with the arrays of result files."""
+def results_grid(results: Results, frame: int, scale: float, revolve: float = 0.0) -> Any:
+    """One frame as a ``pyvista.UnstructuredGrid``, with the arrays of result files.
+
+    With `revolve` an axisymmetric section is turned about its axis by that angle [degrees].
+    """
     grid = mesh_grid(results.mesh)
     state = results.frame(frame)
     index = topology(results.mesh)[3]
@@ -56,7 +60,7 @@ def results_grid(results: Results, frame: int, scale: float) -> Any:
     if scale:
         grid.points = np.asarray(grid.points) + scale * grid.point_data["displacement"]
     grid.set_active_scalars(None)
-    return grid
+    return Revolution(results.model, revolve).grid(results.mesh, grid) if revolve else grid
 
 
 __all__ = ["mesh_grid", "results_grid"]
