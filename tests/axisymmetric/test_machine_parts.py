@@ -154,7 +154,7 @@ def test_tube_is_expanded_over_a_cone() -> None:
 
 
 @pytest.mark.parametrize("element", ["Q4", "Q8", "Q8R"])
-@pytest.mark.parametrize("inner", [3.0])
+@pytest.mark.parametrize("inner", [0.0, 3.0])
 @pytest.mark.parametrize("coarse_first", [True, False])
 def test_a_tie_passes_uniform_stress(element: str, inner: float, coarse_first: bool) -> None:
     """Three cells on four, whichever side is the slave."""

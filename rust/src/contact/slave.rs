@@ -34,7 +34,8 @@ pub struct Slave {
     pub nodes: Vec<u32>,
     /// Constraints of each edge's nodes.
     pub constraints: Vec<[usize; 3]>,
-    /// Reference area of each constraint over all its edges.
+    /// Reference area of each constraint over all its edges, by the size of its weights: that of the
+    /// corner of a quadratic edge changes its sign, and around the axis its integral vanishes.
     pub area: Vec<f64>,
 }
 
@@ -65,7 +66,7 @@ impl Slave {
                 let da = thickness.area(w * dot(t, t).sqrt(), || curve.at(r)[0]);
                 let psi = weights(n, r);
                 for a in 0..n {
-                    area[mine[a]] += psi[a] * da;
+                    area[mine[a]] += psi[a].abs() * da;
                 }
             }
             constraints.push(mine);

@@ -76,6 +76,14 @@ impl Isotropic {
         }
     }
 
+    /// Whether the yield stress has a limit.
+    pub fn saturates(&self) -> bool {
+        match self {
+            Self::Linear { slope, .. } | Self::Voce { slope, .. } => *slope == 0.0,
+            Self::Table { .. } => true,
+        }
+    }
+
     /// Integral of the yield stress over a step `dp` from `p`: Simpson's rule, exact for linear
     /// hardening and within a piece of a table.
     #[inline(always)]

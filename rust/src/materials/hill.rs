@@ -381,6 +381,9 @@ impl Material for Hill {
         let [xx, yy, xy] = std::array::from_fn(|i| (0..3).map(|k| t[k][i] * p[k]).sum::<f64>());
         [xx, yy, -(state[0] + state[1]), 2.0 * xy]
     }
+    fn ideal(&self) -> bool {
+        self.isotropic.saturates()
+    }
     fn plastic_member(&self) -> Option<usize> {
         Some(EQUIVALENT)
     }

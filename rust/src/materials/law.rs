@@ -140,6 +140,10 @@ macro_rules! law {
             pub fn creep_error_member(&self) -> Option<usize> {
                 match self { $(Law::$name(m) => m.creep_error_member()),+ }
             }
+            #[inline(always)]
+            pub fn ideal(&self) -> bool {
+                match self { $(Law::$name(m) => m.ideal()),+ }
+            }
             pub fn work_member(&self) -> Option<usize> {
                 match self { $(Law::$name(m) => m.work_member()),+ }
             }

@@ -175,6 +175,10 @@ pub trait Material: Sized {
     fn creep_error_member(&self) -> Option<usize> {
         None
     }
+    /// Whether hardening ends, so that the tangent may have no stiffness along the flow.
+    fn ideal(&self) -> bool {
+        false
+    }
     /// Member of the state that is the plastic work: with [`Material::energy`], the work of the
     /// stress.
     fn work_member(&self) -> Option<usize> {

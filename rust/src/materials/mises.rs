@@ -74,6 +74,10 @@ pub trait Flow: Clone + Debug + Sized {
         _first: usize,
     ) {
     }
+    /// Whether the flow stress has a limit, whatever the rate.
+    fn saturates(&self) -> bool {
+        false
+    }
     /// Yield stress without rate; 0 where every stress flows.
     fn yield_stress(&self, p: f64) -> f64;
     /// Energy density that the hardening stores.
@@ -124,6 +128,9 @@ impl Flow for Isotropic {
     fn work<T: Real>(&self, p: &T, dp: T, _: T) -> T {
         Isotropic::work(self, *p, dp)
     }
+    fn saturates(&self) -> bool {
+        Isotropic::saturates(self)
+    }
     fn yield_stress(&self, p: f64) -> f64 {
         self.at(p).0
     }
@@ -142,6 +149,8 @@ pub struct J2<F> {
     moduli: Mat<f64, 3>,
     flow_stress: F,
     back: Vec<BackStress>,
+    /// Whether hardening ends.
+    ideal: bool,
     /// Stress of a unit elastic strain, without the mean stress in plane strain.
     elastic: [f64; 3],
     /// Stress that a unit plastic strain takes away.
@@ -478,13 +487,15 @@ impl<F: Flow> Material for J2<F> {
             Plane::Stress => (sum, sum, 1.0 / 3.0, 1.0 / 6.0, 0.5, 0.0),
             Plane::Strain => (2.0 * g / 3.0, 2.0 * g, 1.0, 1.5, 1.5, 2.0 * bulk),
         };
+        let (flow_stress, back) = (F::new(numbers)?, back?);
         Ok(Self {
             young,
             nu,
             plane,
             moduli: [[c11, c12, 0.0], [c12, c11, 0.0], [0.0, 0.0, g]],
-            flow_stress: F::new(numbers)?,
-            back: back?,
+            ideal: flow_stress.saturates() && back.iter().all(|b| b.recall > 0.0),
+            flow_stress,
+            back,
             elastic: [elastic, 2.0 * g, g],
             relief: [relief, 2.0 * g, g],
             flow: [flow, 1.0, 2.0],
@@ -572,6 +583,10 @@ impl<F: Flow> Material for J2<F> {
     }
     fn creep_error_member(&self) -> Option<usize> {
         self.flow_stress.creep_error().map(|m| self.first() + m)
+    }
+    #[inline(always)]
+    fn ideal(&self) -> bool {
+        self.ideal
     }
     fn work_member(&self) -> Option<usize> {
         Some(WORK)

@@ -85,12 +85,14 @@ pub fn jumps<T: Smooth>(
     sums
 }
 
-/// Reference area of each constraint over the points.
+/// Reference area of each constraint over the points, see [`Slave::area`].
+///
+/// [`Slave::area`]: super::super::slave::Slave::area
 pub fn areas(points: &[Point], n: usize) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for point in points {
         for (sum, psi) in sums.iter_mut().zip(weights(n, point.slave)) {
-            *sum += psi * point.area;
+            *sum += psi.abs() * point.area;
         }
     }
     sums
