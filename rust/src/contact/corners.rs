@@ -6,6 +6,10 @@
 //! Such corners therefore have constraints of their own: the gap to the closest edge of the other
 //! side, and the slip along it, by the kernels of a node against an edge. For corners of the master
 //! their roles are exchanged; the signs are those of the slave's other constraints.
+//!
+//! Where the master is the surface of a body and ends, its last point is such a corner, too: the body
+//! is taken to turn there by a right angle. So a block tips on a slave about its edge, though its sides
+//! belong to no surface, and a slave that lies over the end of its master is supported there.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::boundary::followers;
@@ -34,11 +38,30 @@ const KEPT: f64 = 0.175;
 /// Most variables of an edge and a corner.
 const OWN: usize = 9;
 
-/// A corner: the member of its side that ends there, and the one that begins.
+/// A corner: the member of its side that ends there, and the one that begins; at an end of the side
+/// one of them.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
-    before: usize,
-    behind: usize,
+    before: Option<usize>,
+    behind: Option<usize>,
+}
+
+impl Corner {
+    /// A member at the corner, and which of its ends that is.
+    fn end(&self) -> (usize, usize) {
+        let ends = [self.before.map(|j| (j, 1)), self.behind.map(|j| (j, 0))];
+        ends.into_iter().flatten().next().expect("a corner has a member")
+    }
+
+    /// The same with the parameter there.
+    fn place(&self) -> (usize, f64) {
+        let (member, which) = self.end();
+        (member, 2.0 * which as f64 - 1.0)
+    }
+
+    fn members(&self) -> impl Iterator<Item = usize> {
+        [self.before, self.behind].into_iter().flatten()
+    }
 }
 
 /// Corners of a side, whose constraints follow those of the surfaces.
@@ -69,8 +92,8 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// Corners of the slave or of the master that turn by more than `least`; `first` constraints come
-    /// before, those of the surfaces at nodes if `nodal`.
+    /// Corners of the slave or of the master that turn by more than `least`, and ends of a master; `first`
+    /// constraints come before, those of the surfaces at nodes if `nodal`.
     pub fn new(
         sides: &Sides,
         x: &[[f64; 3]],
@@ -82,7 +105,8 @@ impl Corners {
         let edges = Surface::Edges(slave.edges.clone());
         let (own, faces) =
             if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
-        let list = sharp(&own, x, least);
+        let deformable = matches!(own, Surface::Edges(_));
+        let list = sharp(&own, x, least, !of_slave && deformable && !sides.itself);
         let part = if sides.itself { 1.0 } else { 2.0 };
         let depth = if list.is_empty() {
             Vec::new()
@@ -126,6 +150,11 @@ impl Corners {
         self.list.is_empty()
     }
 
+    /// Whether any is a corner and no end.
+    pub fn turns(&self) -> bool {
+        self.list.iter().any(|c| c.before.is_some() && c.behind.is_some())
+    }
+
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -137,8 +166,8 @@ impl Corners {
 
     /// Mesh node of each corner, -1 for those of a rigid body.
     pub fn nodes(&self) -> Vec<i64> {
-        let node = |c: &Corner| match &self.own {
-            Surface::Edges(edges) => edges[c.before].nodes[1].into(),
+        let node = |c: &Corner| match (&self.own, c.end()) {
+            (Surface::Edges(edges), (j, which)) => edges[j].nodes[which].into(),
             _ => -1,
         };
         self.list.iter().map(node).collect()
@@ -181,21 +210,20 @@ impl Corners {
 
     /// Variables of a corner.
     fn of_corner(&self, c: usize) -> Vec<i64> {
-        let before = self.list[c].before;
+        let (member, which) = self.list[c].end();
         match &self.own {
             Surface::Edges(edges) => {
-                let node = 3 * i64::from(edges[before].nodes[1]);
+                let node = 3 * i64::from(edges[member].nodes[which]);
                 vec![node, node + 1]
             }
-            rigid => rigid.variables(before),
+            rigid => rigid.variables(member),
         }
     }
 
     /// Penetration up to which a corner may be inside a member of the other side.
     fn deepest(&self, c: usize, i: usize) -> f64 {
         if self.of_slave {
-            let Corner { before, behind } = self.list[c];
-            self.depth[before].min(self.depth[behind])
+            self.list[c].members().map(|j| self.depth[j]).fold(f64::INFINITY, f64::min)
         } else {
             self.depth[i]
         }
@@ -255,7 +283,13 @@ impl Corners {
             shapes.iter().map(|s| s.0).find(|&pair| self.search.candidates[pair].1 == i)
         });
         let bounds = Bounds { reach: sides.distances.reach, depth: f64::INFINITY };
-        choose(p, normal, &shapes, last, bounds)
+        let chosen = |last: Option<usize>| choose(p, normal, &shapes, last, bounds);
+        // Beyond a ridge an edge is continued outside of the body: the corner is not there yet.
+        let gap = |pair: usize| {
+            shapes.iter().find(|s| s.0 == pair).map_or(f64::NEG_INFINITY, |s| s.1.closest(p).gap)
+        };
+        let (kept, closest) = (chosen(last)?, chosen(None)?);
+        Some(if gap(closest) > gap(kept) { closest } else { kept })
     }
 
     fn terms(
@@ -274,17 +308,17 @@ impl Corners {
         let [at, from_other] = if self.of_slave { [0, own] } else { [other, 0] };
         let p = match &self.own {
             Surface::Edges(_) => [v[at], v[at + 1]],
-            rigid => rigid.shape(corner.before, &v[at..at + own]).end(1),
+            rigid => {
+                let (member, which) = corner.end();
+                rigid.shape(member, &v[at..at + own]).end(which)
+            }
         };
         let face = self.faces.shape(i, &v[from_other..from_other + other]);
         let (hit, along) = met(p, &face);
         let (constraint, r) = (self.constraint(c), hit.r.v);
         let slip = start.map_or_else(Function::none, |start| {
-            let ends = if self.of_slave {
-                [(corner.before, 1.0), (i, r)]
-            } else {
-                [(i, r), (corner.before, 1.0)]
-            };
+            let ends =
+                if self.of_slave { [corner.place(), (i, r)] } else { [(i, r), corner.place()] };
             let normal = face.normal_at(r);
             let normal = if self.of_slave { normal } else { normal.map(|c| -c) };
             let path = start.slip(ends[0], ends[1], normal, Some(constraint));
@@ -315,7 +349,7 @@ impl Corners {
             let own = self.constraint(c);
             let i = self.search.candidates[self.meets(sides, c, x, self.held[1][c])?].1;
             let hit = self.faces.place(i, x).closest(point(&self.own, corner, x));
-            let corner = (corner.before, 1.0);
+            let corner = corner.place();
             let [(edge, place), (master, r)] =
                 if self.of_slave { [corner, (i, hit.r)] } else { [(i, hit.r), corner] };
             let (gap, closed) = (hit.gap, closed(own));
@@ -397,23 +431,39 @@ impl Corners {
 /// Whether a corner of a boundary that meets itself may meet an edge: one that it shares no node
 /// with, and that its node has no constraint against.
 fn free(sides: &Sides, corner: Corner, i: usize, nodal: bool) -> bool {
-    let own = [corner.before, corner.behind];
+    let own: Vec<usize> = corner.members().collect();
     let edges = &sides.slave.edges;
     let apart = |&j: &usize| !edges[j].nodes().iter().any(|n| edges[i].nodes().contains(n));
     own.iter().all(apart) && !(nodal && sides.slave.apart(&own, i))
 }
 
 fn point(own: &Surface, corner: Corner, x: &[[f64; 3]]) -> Vec2<f64> {
-    own.place(corner.before, x).end(1)
+    let (member, which) = corner.end();
+    own.place(member, x).end(which)
 }
 
-/// Outward normals of the member that ends at a corner and of that which begins.
+/// Outward normals of the member that ends at a corner and of that which begins. Where there is none,
+/// the boundary turns left by a right angle.
 fn normals(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> [Vec2<f64>; 2] {
-    [(corner.before, 1), (corner.behind, 0)].map(|(j, which)| {
-        let member = master.place(j, x);
-        let r = if which == 0 { -1.0 } else { 1.0 };
-        member.normal(&Hit { gap: 0.0, r, point: member.end(which) })
-    })
+    let normal = |j: usize, which: usize| normal_at(&master.place(j, x), which);
+    let (before, behind) =
+        (corner.before.map(|j| normal(j, 1)), corner.behind.map(|j| normal(j, 0)));
+    match (before, behind) {
+        (Some(a), Some(b)) => [a, b],
+        (Some([a, b]), None) => [[a, b], [-b, a]],
+        (None, Some([a, b])) => [[b, -a], [a, b]],
+        (None, None) => unreachable!("a corner has a member"),
+    }
+}
+
+/// Outward normal at the first or second end.
+fn normal_at(member: &Master<f64>, which: usize) -> Vec2<f64> {
+    member.normal(&Hit { gap: 0.0, r: 2.0 * which as f64 - 1.0, point: member.end(which) })
+}
+
+/// Angle from one normal to the next, counterclockwise.
+fn turn([a, b]: [Vec2<f64>; 2]) -> f64 {
+    (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b))
 }
 
 fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
@@ -421,13 +471,19 @@ fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
     ([p[0], p[1], p[0], p[1]], unit(add(a, b)))
 }
 
-/// Corners at which the boundary, with the body on its left, turns left sharply.
-fn sharp(master: &Surface, x: &[[f64; 3]], least: f64) -> Vec<Corner> {
-    let turns = |&Corner { before, behind }: &Corner| {
-        let [a, b] = normals(master, Corner { before, behind }, x);
-        (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b)) > least
-    };
-    let met =
-        |(before, behind): (usize, Option<usize>)| behind.map(|behind| Corner { before, behind });
-    followers(master, x).into_iter().enumerate().filter_map(met).filter(turns).collect()
+/// Corners at which the boundary, with the body on its left, turns left sharply, and its ends.
+fn sharp(master: &Surface, x: &[[f64; 3]], least: f64, ends: bool) -> Vec<Corner> {
+    let turns = |&corner: &Corner| turn(normals(master, corner, x)) > least;
+    let next = followers(master, x);
+    let mut first = vec![ends; next.len()];
+    next.iter().flatten().for_each(|&j| first[j] = false);
+    let met = |(j, &behind): (usize, &Option<usize>)| Corner { before: Some(j), behind };
+    let begin = |(j, _): (usize, &bool)| Corner { before: None, behind: Some(j) };
+    next.iter()
+        .enumerate()
+        .map(met)
+        .filter(|c| ends || c.behind.is_some())
+        .chain(first.iter().enumerate().filter(|(_, first)| **first).map(begin))
+        .filter(turns)
+        .collect()
 }

@@ -60,8 +60,11 @@ impl Contact {
         };
         let mut found: Vec<Corners> = Vec::new();
         for &of_slave in sides_with_corners {
-            let least =
-                if of_slave && !found.is_empty() { LEAST_TURN_AT_CORNERS } else { LEAST_TURN };
+            let least = if of_slave && found.iter().any(Corners::turns) {
+                LEAST_TURN_AT_CORNERS
+            } else {
+                LEAST_TURN
+            };
             let own = Corners::new(&sides, x, first, !entry.integrates, (of_slave, least));
             first += own.len();
             if !own.is_empty() {
