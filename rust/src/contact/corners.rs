@@ -35,6 +35,11 @@ const DENT: f64 = 0.35;
 /// edge passes `DENT`, the corner may lie inside: in force on one side of this angle and absent on the
 /// other, with no equilibrium on either.
 const KEPT: f64 = 0.175;
+/// Part of the last edge of a slave, from its end on, where the end of a master is no constraint of
+/// its own: the slave's end is there, and both would be one constraint twice.
+const SAME_END: f64 = 0.1;
+/// Turn of a surface from which it is round and not flat.
+const ROUND: f64 = 1e-3;
 /// Most variables of an edge and a corner.
 const OWN: usize = 9;
 
@@ -73,6 +78,8 @@ pub struct Corners {
     own: Surface,
     faces: Surface,
     of_slave: bool,
+    /// Which ends of each member of the other side no member follows.
+    open: Vec<[bool; 2]>,
     /// Penetration of each slave edge that counts.
     depth: Vec<f64>,
     /// Slave node next to each corner in the reference configuration, by its place.
@@ -107,6 +114,7 @@ impl Corners {
             if of_slave { (edges, sides.master.clone()) } else { (sides.master.clone(), edges) };
         let deformable = matches!(own, Surface::Edges(_));
         let list = sharp(&own, x, least, !of_slave && deformable && !sides.itself);
+        let open = open_ends(&faces, x);
         let part = if sides.itself { 1.0 } else { 2.0 };
         let depth = if list.is_empty() {
             Vec::new()
@@ -131,6 +139,7 @@ impl Corners {
             own,
             faces,
             of_slave,
+            open,
             depth,
             held: [vec![None; list.len()], vec![None; list.len()]],
             search: Search::default(),
@@ -289,7 +298,15 @@ impl Corners {
             shapes.iter().find(|s| s.0 == pair).map_or(f64::NEG_INFINITY, |s| s.1.closest(p).gap)
         };
         let (kept, closest) = (chosen(last)?, chosen(None)?);
-        Some(if gap(closest) > gap(kept) { closest } else { kept })
+        let met = if gap(closest) > gap(kept) { closest } else { kept };
+        let at_end = || {
+            let i = self.search.candidates[met].1;
+            let r = self.faces.place(i, x).closest(p).r;
+            let from_end = 1.0 - r.abs();
+            self.open[i][usize::from(r > 0.0)] && from_end < 2.0 * SAME_END
+        };
+        let is_end = corner.members().count() == 1;
+        (!(is_end && at_end())).then_some(met)
     }
 
     fn terms(
@@ -469,6 +486,31 @@ fn turn([a, b]: [Vec2<f64>; 2]) -> f64 {
 fn item(master: &Surface, corner: Corner, x: &[[f64; 3]]) -> Item {
     let (p, [a, b]) = (point(master, corner, x), normals(master, corner, x));
     ([p[0], p[1], p[0], p[1]], unit(add(a, b)))
+}
+
+/// Which ends of the members of a surface no member follows.
+pub fn open_ends(surface: &Surface, x: &[[f64; 3]]) -> Vec<[bool; 2]> {
+    let next = followers(surface, x);
+    let mut open: Vec<[bool; 2]> = next.iter().map(|j| [true, j.is_none()]).collect();
+    next.iter().flatten().for_each(|&j| open[j][0] = false);
+    open
+}
+
+/// Which edges of a surface are convex, or end at a convex vertex that is no sharp corner.
+pub fn round(surface: &Surface, x: &[[f64; 3]]) -> Vec<bool> {
+    let bulges = |j: usize| {
+        let edge = surface.place(j, x);
+        match &edge {
+            Master::Arc(arc) => arc.half > 0.0,
+            Master::Curve(_) => turn([0, 1].map(|which| normal_at(&edge, which))) > ROUND,
+        }
+    };
+    let mut round: Vec<bool> = (0..surface.len()).map(bulges).collect();
+    let vertices = sharp(surface, x, ROUND, false);
+    for vertex in vertices.iter().filter(|v| turn(normals(surface, **v, x)) <= LEAST_TURN) {
+        vertex.members().for_each(|j| round[j] = true);
+    }
+    round
 }
 
 /// Corners at which the boundary, with the body on its left, turns left sharply, and its ends.

@@ -40,6 +40,13 @@ pub fn values<T: Smooth>(a: Vec2<T>) -> Vec2<f64> {
     a.map(Smooth::value)
 }
 
+/// Mean of the points with these coordinates, one after the other.
+pub fn middle_of<T: Smooth>(coordinates: &[T]) -> Vec2<T> {
+    let (points, _) = coordinates.as_chunks::<2>();
+    let sum = points.iter().fold([T::real(0.0); 2], |sum, p| add(sum, *p));
+    sum.map(|c| c.scale(1.0 / points.len() as f64))
+}
+
 /// A parabola `m + d r + b (1 - r^2)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve<T> {
@@ -205,6 +212,17 @@ impl Edge {
             v.extend([dof(0, 2), dof(1, 2)]);
         }
         v
+    }
+
+    /// Variables of the points whose middle is the first or second end.
+    pub fn variables_of_end(&self, which: usize) -> Vec<i64> {
+        let nodes: &[usize] = match (self.shape, which) {
+            (Shape::Element, _) | (Shape::FirstHalf, 0) | (Shape::SecondHalf, 1) => &[which],
+            (Shape::Spline, _) => &[which, 2],
+            (Shape::FirstHalf | Shape::SecondHalf, _) => &[0, 1],
+        };
+        let both = |&a: &usize| [0, 1].map(|c| 3 * i64::from(self.nodes[a]) + c);
+        nodes.iter().flat_map(both).collect()
     }
 
     /// The curve at given values of the variables.

@@ -4,7 +4,9 @@
 use crate::base::{Dual, Hyper, Smooth};
 
 /// Most variables of a pair: two edges of six each.
-pub const WIDTH: usize = 12;
+pub const PAIR: usize = 12;
+/// Most variables of a term: those of a pair, and of four nodes at ends of other masters.
+pub const WIDTH: usize = 20;
 
 /// A gap or a slip: its value, the direction in which its traction acts, and its linearization.
 ///
@@ -40,14 +42,16 @@ impl Function {
         Self { value: 0.0, gradient: [0.0; WIDTH], hessian: Vec::new(), size: 0 }
     }
 
-    /// Adds `factor` times the linearization to a full square.
-    pub fn add_hessian(&self, factor: f64, to: &mut [f64]) {
+    /// Adds `factor` times the linearization to a full square of `width` variables, which are all that
+    /// are in use.
+    pub fn add_hessian(&self, factor: f64, width: usize, to: &mut [f64]) {
         if factor == 0.0 {
             return;
         }
-        for i in 0..self.size {
-            for j in 0..self.size {
-                to[i * WIDTH + j] += factor * self.hessian[i * self.size + j];
+        let size = self.size.min(width);
+        for i in 0..size {
+            for j in 0..size {
+                to[i * width + j] += factor * self.hessian[i * self.size + j];
             }
         }
     }

@@ -323,7 +323,7 @@ impl Contact {
         matrix(py, flat, [list.len(), 2])
     }
 
-    /// Variables (P, 12) and constraints (P, 3) of the candidate pairs, -1 where unused.
+    /// Variables (P, v) and constraints (P, 3) of the candidate pairs, -1 where unused.
     fn pattern<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let n = self.pair.candidates().len();
         let variables = (0..n).flat_map(|p| self.pair.variables(p)).collect();
@@ -356,7 +356,7 @@ impl Contact {
         self.collect(py)
     }
 
-    /// Pairs (h,), variables (h, 12) and derivatives (h, 12, 12) of ``sum_k p_k dG_k + q_k dS_k``, of
+    /// Pairs (h,), variables (h, v) and derivatives (h, v, v) of ``sum_k p_k dG_k + q_k dS_k``, of
     /// the last evaluation; those of slips are not symmetric.
     fn hessian<'py>(
         &self,
@@ -372,20 +372,23 @@ impl Contact {
         let wanted =
             |t: &&Terms| t.shares.iter().any(|s| p[s.constraint] != 0.0 || q[s.constraint] != 0.0);
         let terms: Vec<&Terms> = self.terms.iter().filter(wanted).collect();
-        let mut values = vec![0.0; terms.len() * WIDTH * WIDTH];
-        for (t, square) in terms.iter().zip(values.chunks_mut(WIDTH * WIDTH)) {
+        let used =
+            |t: &&Terms| t.variables.iter().rposition(|&v| v >= 0).map_or(0, |last| last + 1);
+        let width = terms.iter().map(used).max().unwrap_or(1);
+        let mut values = vec![0.0; terms.len() * width * width];
+        for (t, square) in terms.iter().zip(values.chunks_mut(width * width)) {
             for share in &t.shares {
-                share.gap.add_hessian(p[share.constraint], square);
-                share.slip.add_hessian(q[share.constraint], square);
+                share.gap.add_hessian(p[share.constraint], width, square);
+                share.slip.add_hessian(q[share.constraint], width, square);
             }
         }
         let pairs: Vec<i64> = terms.iter().map(|t| t.pair as i64).collect();
-        let variables = terms.iter().flat_map(|t| t.variables).collect();
+        let variables = terms.iter().flat_map(|t| t.variables[..width].to_vec()).collect();
         let h = terms.len();
         Ok((
             pairs.into_pyarray(py),
-            matrix(py, variables, [h, WIDTH])?,
-            matrix(py, values, [h, WIDTH, WIDTH])?,
+            matrix(py, variables, [h, width])?,
+            matrix(py, values, [h, width, width])?,
         ))
     }
 

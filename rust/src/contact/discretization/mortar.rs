@@ -1,19 +1,30 @@
 //! Mortar integrals of gap and slip over the covered part of a slave edge.
 //!
-//! From each slave point a ray along the slave normal meets the master at distance g. Weighted
-//! with the linear shape functions psi of the slave corners and integrated with the reference
-//! area, G = int psi g dA; the limits are the feet of the master's ends on the slave edge and
-//! are differentiated with everything else. Slips are weighted in the same way; their tractions act
-//! along the relative tangential velocity, with weights and limits held.
+//! From each slave point a ray along the slave normal meets the master at distance g. Weighted with
+//! functions phi of the slave corners and integrated with the reference area, G = int phi g dA; the
+//! limits are the feet of the master's ends on the slave edge and are differentiated with everything
+//! else. Slips are weighted in the same way; their tractions act along the relative tangential
+//! velocity, with weights and limits held.
+//!
+//! On flat surfaces the functions are those of the shape, (1 -+ xi) / 2. With them a convex polygon
+//! would sink into a plane by h^2 / 6 R, since the mean gap of its facets counts, and a block would tip
+//! when the resultant is h / 3 inside its edge. Where the undeformed slave is round, and where it ends,
+//! edges have (1 -+ 3 xi) / 2, biorthogonal to the linear shape functions (Wohlmuth 2000): a gap that
+//! is linear on the edge has G = A g at each node. Round quadratic edges, and those that meet a round
+//! master, have (1 -+ 2 xi) / 2, which give the value of a parabola at its vertex there. The sum is
+//! one, so that a uniform pressure passes the patch test. Where the master ends within such an edge,
+//! xi runs over the covered part, as if the edge ended there: the area of a node would be negative
+//! else.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::super::curve::{Curve, GAUSS, dot, lift, outward, times, unit};
-use super::super::master::Master;
+use super::super::corners::{open_ends, round};
+use super::super::curve::{Curve, Edge, GAUSS, dot, lift, middle_of, outward, times, unit};
+use super::super::master::{Master, Surface};
 use super::super::search::each;
 use super::super::sides::Sides;
 use super::super::slave::Depth;
 use super::super::slip::{Along, Point, direction, first, firsts};
-use super::super::terms::{Function, Share, Terms, lifted};
+use super::super::terms::{Function, PAIR, Share, Terms, WIDTH, join, lifted};
 use super::super::travel::{Start, Station, ray};
 use super::{Discretization, Entry};
 use crate::base::{Dual, Hyper, Smooth};
@@ -23,7 +34,7 @@ pub const ENTRY: Entry = Entry {
     joins: false,
     middles: false,
     integrates: true,
-    new: |_, _| Box::new(Mortar),
+    new: |sides, x| Box::new(Mortar::new(sides, x)),
 };
 
 /// Least cosine between the slave normal and the opposite of the master's: the side of a block
@@ -129,15 +140,39 @@ pub fn clip_occluded(overlaps: &mut Vec<Overlap>) {
     *overlaps = seen;
 }
 
+/// Part of a slave edge that its masters cover together, by the overlaps that begin and end it.
+#[derive(Clone, Copy, Debug)]
+struct Covered {
+    ends: [Overlap; 2],
+}
+
+impl Covered {
+    /// The part that some overlaps cover, what lies between them included.
+    fn of(overlaps: &[Overlap]) -> Option<Self> {
+        let first = overlaps.iter().min_by(|a, b| a.values[0].total_cmp(&b.values[0]))?;
+        let last = overlaps.iter().max_by(|a, b| a.values[1].total_cmp(&b.values[1]))?;
+        Some(Self { ends: [*first, *last] })
+    }
+
+    /// Limit at an end, and the overlap that it belongs to.
+    fn limit(&self, end: usize) -> (Limit, usize) {
+        (self.ends[end].limits[end], self.ends[end].pair)
+    }
+}
+
 /// A slave edge and a master that it sees.
 struct Facing<'a, const D: usize> {
     slave: Curve<Hyper<D>>,
     master: Master<Hyper<D>>,
     /// Their numbers.
     members: [usize; 2],
+    /// Ends of the part of the edge that the functions run over, if not all of it.
+    covered: Option<[Hyper<D>; 2]>,
     /// The undeformed slave edge, and its thickness.
     reference: &'a Curve<f64>,
     thickness: Depth,
+    /// Slope of the functions of the corners, times two.
+    slope: f64,
     /// Clearance taken off the gap at the corners of the edge.
     offset: [f64; 2],
 }
@@ -157,19 +192,24 @@ fn integrals<const D: usize>(
     now: &Facing<'_, D>,
     start: Option<&Start>,
 ) -> Integrals<D> {
-    let Facing { slave, master, members, reference, thickness, offset } = now;
-    let [low, high] = overlap.limits.map(|limit| match limit {
+    let Facing { slave, master, members, covered, reference, thickness, slope, offset } = now;
+    let limits = overlap.limits.map(|limit| match limit {
         Limit::Fixed(r) => Hyper::real(r),
         Limit::Foot(end) => slave.foot(master.end(end)),
     });
-    let (middle, half) = ((high + low).scale(0.5), (high - low).scale(0.5));
-    // Integrals with the weights 1 and xi.
+    let centered = |[low, high]: [Hyper<D>; 2]| ((high + low).scale(0.5), (high - low).scale(0.5));
+    let (middle, half) = centered(limits);
+    let covered = covered.map(centered);
+    // Integrals with 1 and the place in the part that the functions run over, from -1 to 1.
     let mut gap = [Hyper::real(0.0); 2];
     let [mut area, mut slip] = [[0.0; 2]; 2];
     let mut along = [[Dual::real(0.0); D]; 2];
     let straight = slave.straight.then(|| (slave.d, unit(outward(slave.d))));
+    // Weighted, these give the clearance of each corner times its area.
+    let shift = [0.5 * (offset[0] + offset[1]), 1.5 / slope * (offset[1] - offset[0])];
     for (r, w) in GAUSS {
         let xi = middle + half.scale(r);
+        let place = covered.map_or(xi, |(middle, half)| (xi - middle) / half);
         let (t, n) = straight.unwrap_or_else(|| {
             let t = slave.slope(xi);
             (t, unit(outward(t)))
@@ -178,21 +218,19 @@ fn integrals<const D: usize>(
         let da =
             thickness.area(half * length(reference, xi).scale(w), || lift(reference).at(xi)[0]);
         area[0] += da.v;
-        area[1] += da.v * xi.v;
-        let shift = xi.scale(0.5 * (offset[1] - offset[0]));
-        let shift = shift + Hyper::real(0.5 * (offset[0] + offset[1]));
-        let part = da * (hit.gap - shift);
+        area[1] += da.v * place.v;
+        let part = da * (hit.gap - place.scale(shift[1]) - Hyper::real(shift[0]));
         gap[0] += part;
-        gap[1] += part * xi;
+        gap[1] += part * place;
         let Some(start) = start else { continue };
-        let (da, place) = (first(&da), first(&xi));
+        let (da, at) = (first(&da), first(&xi));
         let apart = times(firsts(&n), first(&hit.gap));
-        let points = (Point::Curve(slave, place), Point::of(master, &hit));
+        let points = (Point::Curve(slave, at), Point::of(master, &hit));
         let rate = direction(&points.0, &points.1, Along::Slave, apart);
         for (v, rate) in rate.into_iter().enumerate() {
             let part = da * rate;
             along[0][v] += part;
-            along[1][v] += part * place;
+            along[1][v] += part * first(&place);
         }
         let (r, normal) = (hit.r.v, master.normal_at(hit.r.v));
         let path = start.slip((members[0], xi.v), (members[1], r), normal, None);
@@ -201,15 +239,16 @@ fn integrals<const D: usize>(
         let stretch = start.stretch(true, members[1], r, master.speed_at(r)) * facing;
         let part = da.v * stretch * path;
         slip[0] += part;
-        slip[1] += part * xi.v;
+        slip[1] += part * place.v;
     }
-    let corners = |[a, b]: [f64; 2]| [0.5 * (a - b), 0.5 * (a + b)];
+    let corners = |[a, b]: [f64; 2]| [0.5 * (a - slope * b), 0.5 * (a + slope * b)];
+    let sum = |slope: f64| (gap[0] + gap[1].scale(slope)).scale(0.5);
     let [a, b] = along;
-    let side = |sign: f64| std::array::from_fn(|v| (a[v] + b[v].scale(sign)).scale(0.5));
+    let side = |slope: f64| std::array::from_fn(|v| (a[v] + b[v].scale(slope)).scale(0.5));
     Integrals {
-        gap: [(gap[0] - gap[1]).scale(0.5), (gap[0] + gap[1]).scale(0.5)],
+        gap: [sum(-slope), sum(*slope)],
         slip: corners(slip),
-        direction: [side(-1.0), side(1.0)],
+        direction: [side(-slope), side(*slope)],
         area: corners(area),
     }
 }
@@ -225,7 +264,10 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
 }
 
 /// Weighted gaps and slips at the corners of slave edges.
-pub struct Mortar;
+pub struct Mortar {
+    /// Slope of the functions of each edge, times two.
+    slope: Vec<f64>,
+}
 
 impl Discretization for Mortar {
     fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
@@ -269,16 +311,38 @@ impl Discretization for Mortar {
 }
 
 impl Mortar {
+    fn new(sides: &Sides, x: &[[f64; 3]]) -> Self {
+        let slave = Surface::Edges(sides.slave.edges.clone());
+        let ends = open_ends(&slave, x);
+        let curved_master = round(&sides.master, x).contains(&true);
+        let round = round(&slave, x);
+        let slope = |(i, edge): (usize, &Edge)| {
+            // Around an axis nothing tips, and with a slope of 3 a node on it would have no area.
+            if curved_master || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
+                return 1.0;
+            }
+            let last = !sides.itself && ends[i].contains(&true);
+            match (last, round[i], edge.n_nodes) {
+                (true, _, _) | (_, true, 2) => 3.0,
+                (_, true, _) => 2.0,
+                _ => 1.0,
+            }
+        };
+        Self { slope: sides.slave.edges.iter().enumerate().map(slope).collect() }
+    }
+
     fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         let mut overlaps = overlaps(sides, i, x);
         clip_occluded(&mut overlaps);
-        let width = sides.slave.edges[i].variables().len();
+        let whole = self.slope[i] == 1.0;
+        let covered = if whole { None } else { Covered::of(&overlaps) };
         let terms = |o: &Overlap| {
-            let master = sides.candidates()[o.pair].1;
-            if width + sides.master.variables(master).len() <= 8 {
-                self.overlapped::<8>(sides, o, x, start)
-            } else {
-                self.overlapped::<12>(sides, o, x, start)
+            let covered = covered.as_ref();
+            let variables = variables_of(sides, o, covered);
+            match variables.len() {
+                0..=8 => self.overlapped::<8>(sides, (o, covered), &variables, x, start),
+                9..=PAIR => self.overlapped::<PAIR>(sides, (o, covered), &variables, x, start),
+                _ => self.overlapped::<WIDTH>(sides, (o, covered), &variables, x, start),
             }
         };
         overlaps.iter().map(terms).collect()
@@ -287,22 +351,44 @@ impl Mortar {
     fn overlapped<const D: usize>(
         &self,
         sides: &Sides,
-        overlap: &Overlap,
+        (overlap, covered): (&Overlap, Option<&Covered>),
+        variables: &[i64],
         x: &[[f64; 3]],
         start: Option<&Start>,
     ) -> Terms {
         let (i, j) = sides.candidates()[overlap.pair];
         let edge = &sides.slave.edges[i];
-        let variables = self.variables(sides, (i, j));
+        let variables = join(variables, &[]);
         let v = lifted::<D>(&variables, x);
-        let (width, master) = (edge.variables().len(), sides.master.variables(j).len());
+        let (width, of_master) = (edge.variables().len(), sides.master.variables(j).len());
+        let slave = edge.curve(&v[..width]);
+        let master = sides.master.shape(j, &v[width..width + of_master]);
+        let mut used = width + of_master;
+        let mut end = |covered: &Covered, end: usize| match covered.limit(end) {
+            (Limit::Fixed(r), _) => Hyper::real(r),
+            (Limit::Foot(which), pair) if pair == overlap.pair => slave.foot(master.end(which)),
+            (Limit::Foot(which), pair) => {
+                let other = sides.candidates()[pair].1;
+                let point = if let Some(edge) = sides.master.edge(other) {
+                    let first = used;
+                    used += edge.variables_of_end(which).len();
+                    middle_of(&v[first..used])
+                } else {
+                    sides.master.shape(other, &v[width..width + of_master]).end(which)
+                };
+                slave.foot(point)
+            }
+        };
+        let ends = covered.map(|c| [end(c, 0), end(c, 1)]);
         let constraints = sides.slave.constraints[i];
         let facing = Facing {
-            slave: edge.curve(&v[..width]),
-            master: sides.master.shape(j, &v[width..width + master]),
+            slave,
+            master,
             members: [i, j],
+            covered: ends,
             reference: &sides.reference[i],
             thickness: sides.slave.thickness[i],
+            slope: self.slope[i],
             offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
         };
         let sums = integrals(overlap, &facing, start);
@@ -315,6 +401,23 @@ impl Mortar {
         };
         Terms { pair: overlap.pair, variables, shares: vec![share(0), share(1)] }
     }
+}
+
+/// Variables of an overlap: those of its edge and master, and of the ends of other masters that set
+/// the ends of the covered part.
+fn variables_of(sides: &Sides, overlap: &Overlap, covered: Option<&Covered>) -> Vec<i64> {
+    let (i, j) = sides.candidates()[overlap.pair];
+    let mut variables = sides.slave.edges[i].variables();
+    variables.extend(sides.master.variables(j));
+    for end in 0..2 {
+        if let Some((Limit::Foot(which), pair)) = covered.map(|c| c.limit(end))
+            && pair != overlap.pair
+            && let Some(edge) = sides.master.edge(sides.candidates()[pair].1)
+        {
+            variables.extend(edge.variables_of_end(which));
+        }
+    }
+    variables
 }
 
 /// What a slave edge sees of its candidates.

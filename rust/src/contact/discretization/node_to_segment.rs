@@ -17,7 +17,7 @@ use super::super::search::{self, Candidate, Item, each};
 use super::super::sides::Sides;
 use super::super::slave::Slave;
 use super::super::slip::{Along, Point, direction, first, firsts};
-use super::super::terms::{Function, Share, Terms, WIDTH, join, lifted};
+use super::super::terms::{Function, PAIR, Share, Terms, WIDTH, join, lifted};
 use super::super::travel::{Start, Station};
 use super::{Discretization, Entry};
 use crate::base::{Dual, Hyper, Smooth};
@@ -374,7 +374,7 @@ impl NodeToSegment {
     ) -> Terms {
         let (k, j) = sides.candidates()[pair];
         let variables = self.variables(sides, (k, j));
-        let v = lifted::<WIDTH>(&variables, x);
+        let v = lifted::<PAIR>(&variables, x);
         let width = sides.master.variables(j).len();
         let master = sides.master.shape(j, &v[4..4 + width]);
         let (p, q) = ([v[0], v[1]], [v[2], v[3]]);

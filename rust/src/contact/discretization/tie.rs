@@ -9,7 +9,7 @@ use super::super::master::{Master, Surface};
 use super::super::search::each;
 use super::super::sides::Sides;
 use super::super::slave::{Depth, weights};
-use super::super::terms::{Share, Terms, WIDTH, lifted};
+use super::super::terms::{PAIR, Share, Terms, lifted};
 use super::super::travel::Start;
 use super::mortar::{Overlap, clip_occluded, overlaps};
 use super::{Discretization, Entry};
@@ -131,7 +131,7 @@ impl Tie {
         let (i, j) = sides.candidates()[pair];
         let edge = &sides.slave.edges[i];
         let variables = self.variables(sides, (i, j));
-        let v = lifted::<WIDTH>(&variables, x);
+        let v = lifted::<PAIR>(&variables, x);
         let slave = edge.curve(&v[..edge.variables().len()]);
         let Surface::Edges(masters) = &sides.master else { unreachable!("ties join edges") };
         let master = masters[j].curve(&v[edge.variables().len()..]);

@@ -224,8 +224,10 @@ class ContactTerm(Term):
             self._start(scheme == "central_difference")
         if self._stiff:
             self._damp()
+        constrained = self.system.by_node(self.system.constrained.astype(float))
         for pair in self.pairs:
             pair.fixed = pair.start = None
+            pair.hold(constrained)
         if self.persistent:
             x = self.positions(self.u)
             for pair in self.pairs:

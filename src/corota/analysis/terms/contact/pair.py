@@ -96,6 +96,7 @@ class Pair:
         self.owner = np.arange(self.n)  # constraint that owns a node's part
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
+        self.held_ends = np.zeros(self.n, bool)  # nodes at ends of the slave that supports hold
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -165,6 +166,24 @@ class Pair:
             terms = self.evaluate(x, x, term.system.nlgeom)
         return terms.bare or terms
 
+    def hold(self, constrained: Floats) -> None:
+        """Find the ends of the slave whose motion along the normal supports prescribe in a step.
+
+        Parameters
+        ----------
+        constrained : ndarray, shape (n_nodes, 3)
+            1 for dofs that supports prescribe, else 0.
+        """
+        if self.beside is None:
+            return
+        edges = self.slave.nodes[:, :2]
+        along = np.diff(self.reference[edges, :2], axis=1)[:, 0]
+        normal = along[:, ::-1] ** 2 / (along**2).sum(axis=1)[:, None]
+        self.held_ends[:] = False
+        for side, at in zip(self.beside, edges.T, strict=True):
+            supported = (constrained[at, :2] * normal).sum(axis=1) > 0.5
+            self.held_ends[self.place[at]] |= supported & (side[self.place[at]] < 0)
+
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
         seen = terms.area > COVERED * self.full
@@ -227,7 +246,7 @@ class Pair:
             area = raw["total_area"]
             if self.frozen:
                 # An iterate far from the end of the increment may have seen little.
-                ample = area >= AMPLE * self.full
+                ample = (area >= AMPLE * self.full) & ~self.held_ends
                 self.owner = np.where(ample, np.arange(self.n), self.owner)
             else:
                 self.owner = self._owners(area)
@@ -257,13 +276,14 @@ class Pair:
         """Constraint that each node's part belongs to: its own, or a neighbor's.
 
         At the end of the opposite surface a slave edge is partly covered. The node beyond would
-        have
-        a constraint on a negligible area, with any pressure; its neighbor's pressure acts there.
+        have a constraint on a negligible area, with any pressure; its neighbor's pressure acts
+        there. So it does at an end of the slave that supports hold: a traction there would not move
+        the slave, and could take any size.
         """
         own = np.arange(self.n)
         assert self.beside is not None
         cover = area / self.full
-        weak = cover < WEAK
+        weak = (cover < WEAK) | self.held_ends
         if not weak.any():
             return own
         left, right = self.beside
