@@ -10,7 +10,8 @@ through and back.
 
 Almen and Laszlo (1936) turn a section that does not deform and give it the stiffness of plane
 strain, E / (1 - nu^2). But only the hoop is strained, and the section is free to follow: with E
-alone their formula is right within 1 percent for thin springs, and as it stands 9 percent above.
+alone their formula is right within 1 percent for thin springs; as it stands it is 9 percent
+above them.
 """
 
 # SPDX-License-Identifier: BSD-3-Clause

@@ -6,15 +6,17 @@
 //! else. Slips are weighted in the same way; their tractions act along the relative tangential
 //! velocity, with weights and limits held.
 //!
-//! On flat surfaces the functions are those of the shape, (1 -+ xi) / 2. With them a convex polygon
-//! would sink into a plane by h^2 / 6 R, since the mean gap of its facets counts, and a block would tip
-//! when the resultant is h / 3 inside its edge. Where the undeformed slave is round, and where it ends,
-//! edges have (1 -+ 3 xi) / 2, biorthogonal to the linear shape functions (Wohlmuth 2000): a gap that
-//! is linear on the edge has G = A g at each node. Round quadratic edges, and those that meet a round
-//! master, have (1 -+ 2 xi) / 2, which give the value of a parabola at its vertex there. The sum is
-//! one, so that a uniform pressure passes the patch test. Where the master ends within such an edge,
-//! xi runs over the covered part, as if the edge ended there: the area of a node would be negative
-//! else.
+//! The functions are those of the shape, (1 -+ xi) / 2. Against a flat master a convex polygon would
+//! sink with them by h^2 / 6 R, since the mean gap of its facets counts, and a block would tip when the
+//! resultant is h / 3 inside its edge. There, edges that are round in the undeformed slave and those at
+//! its ends have (1 -+ 3 xi) / 2, biorthogonal to the linear shape functions (Wohlmuth 2000): a gap that
+//! is linear on the edge has G = A g at each node. Round quadratic edges have (1 -+ 2 xi) / 2, which
+//! give the value of a parabola at its vertex. The sum is one, so that a uniform pressure passes the
+//! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
+//! ended there: else the area of a node would be negative.
+//!
+//! Against a curved master the gap is curved on the edge, too. Biorthogonal functions take its
+//! curvature with the wrong sign: two arcs that fit would start with an overlap of h^2 / 12 R.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::super::corners::{open_ends, round};
@@ -334,7 +336,7 @@ impl Mortar {
     fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         let mut overlaps = overlaps(sides, i, x);
         clip_occluded(&mut overlaps);
-        let whole = self.slope[i] == 1.0;
+        let whole = self.slope[i] <= 1.0;
         let covered = if whole { None } else { Covered::of(&overlaps) };
         let terms = |o: &Overlap| {
             let covered = covered.as_ref();
