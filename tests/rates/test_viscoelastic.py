@@ -307,3 +307,12 @@ def test_deck_of_rubber_with_a_shift(tmp_path: Path) -> None:
 def test_decks_that_are_refused(cards: str, text: str, tmp_path: Path) -> None:
     with pytest.raises(ct.CorotaError, match=text):
         read(tmp_path, cards)
+
+
+def test_initial_stress_through_the_thickness_is_refused() -> None:
+    model = ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1))
+    model.section(element="Q4", material=LAWS["elastic"], plane="strain")
+    model.initial_stress(xx=1.0)
+    model.fix("all")
+    with pytest.raises(ct.ModelError, match="would not relax"):
+        ct.solve(model, ct.Visco(period=1.0))

@@ -187,6 +187,17 @@ class FreeStrains:
                         "through the thickness (zz)",
                         item.where,
                     )
+                elif (
+                    block.section.plane != "stress"
+                    and block.section.material.law == "viscoelastic"
+                    and stress.any()
+                ):
+                    raise ModelError(
+                        "viscoelastic materials have no initial stress in plane strain or around "
+                        "an axis: its part through the thickness would not relax; use plane "
+                        "stress, or load the body in a step",
+                        item.where,
+                    )
         return found
 
     def require_response(self, where: Any) -> None:
