@@ -305,8 +305,13 @@ def __getattr__(name: str) -> Any:
     home = _HOMES.get(name)
     if home is None:
         raise AttributeError(f"module 'corota' has no attribute {name!r}")
-    module = import_module(f"corota.{home or name}")
-    value = getattr(module, name) if home else module
+    try:
+        module = import_module(f"corota.{home or name}")
+        value = getattr(module, name) if home else module
+    except MemoryError:
+        from corota.errors import SHORT, ResourceError
+
+        raise ResourceError(SHORT) from None
     globals()[name] = value
     return value
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 #: Message where an allocation of Python fails.
 SHORT = "not enough memory for this job; use a coarser mesh or a larger machine"
@@ -186,6 +187,22 @@ class ResourceError(CorotaError):
 
     exit_code = 5
     results: Any = None
+
+
+@contextmanager
+def memory_errors() -> Iterator[None]:
+    """Raise :class:`ResourceError` where Python runs out of memory.
+
+    Modules are imported when they are first used, so any call of the interface may run out.
+
+    Raises
+    ------
+    ResourceError
+    """
+    try:
+        yield
+    except MemoryError:
+        raise ResourceError(SHORT) from None
 
 
 class FileError(CorotaError):

@@ -149,3 +149,19 @@ def test_rigid_walls_are_drawn_with_their_solid_side() -> None:
     pytest.importorskip("matplotlib")
     figure = over_a_floor((-9.0, 0.0), (9.0, 0.0)).plot()
     assert figure.axes[0].collections or figure.axes[0].patches
+
+
+def test_memory_that_ends_while_a_module_is_imported_is_a_resource_error(monkeypatch) -> None:
+    """Modules are imported at their first use: under a limit that may be in any call."""
+
+    def out_of_memory(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    solve, model = ct.solve, ct.Model(ct.mesh.rectangle(1.0, 1.0, nx=1, ny=1))
+    step, error = ct.Static(), ct.ResourceError
+    monkeypatch.setattr("corota.import_module", out_of_memory)
+    with pytest.raises(error, match="not enough memory"):
+        ct.__getattr__("Visco")
+    monkeypatch.setattr("corota.analysis.run.Analysis", out_of_memory)
+    with pytest.raises(error, match="not enough memory"):
+        solve(model, step)

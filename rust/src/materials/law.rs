@@ -39,12 +39,16 @@ impl<M: Material, T: Real> Job for UpdateSolid<'_, '_, M, T> {
 /// One instance for each law and number type, whatever the elements that call it; batches of
 /// elements have short laws inlined.
 #[inline(always)]
-fn update<M: Material, T: Real>(law: &M, e: [T; 3], state: &mut PointState<'_>) -> Response<T> {
+pub(super) fn update<M: Material, T: Real>(
+    law: &M,
+    e: [T; 3],
+    state: &mut PointState<'_>,
+) -> Response<T> {
     if M::SHORT && T::LANES > 1 { law.update(e, state) } else { T::apart(Update { law, e, state }) }
 }
 
 #[inline(always)]
-fn update_solid<M: Material, T: Real>(
+pub(super) fn update_solid<M: Material, T: Real>(
     law: &M,
     e: [T; 4],
     state: &mut PointState<'_>,

@@ -16,11 +16,12 @@
 use super::arruda_boyce::ArrudaBoyce;
 use super::elastic::Elastic;
 use super::hyperfoam::Hyperfoam;
+use super::law::{update, update_solid};
 use super::material::{Material, Plane, PointState, Response, SolidResponse};
 use super::ogden::Ogden;
 use super::polynomial::Polynomial;
+use crate::base::Real;
 use crate::base::small::Mat;
-use crate::base::{Job, Real};
 
 /// Laws that can relax, by their numbers.
 pub const PARENTS: [&str; 5] =
@@ -147,22 +148,14 @@ fn shares<T: Real>(s: &[T; 4], by: f64, of_mean: f64) -> [T; 4] {
     ]
 }
 
-/// The answer of the parent, which is compiled once for each number type.
-struct OfParent<'a, 's, T> {
-    law: &'a Viscoelastic,
-    e: [T; 4],
-    state: &'a mut PointState<'s>,
-}
-
-impl<T: Real> Job for OfParent<'_, '_, T> {
-    type Output = SolidResponse<T>;
+impl Viscoelastic {
+    /// The answer of the parent; in plane stress without the rows through the thickness.
     #[inline(always)]
-    fn run(self) -> SolidResponse<T> {
-        let Self { law, e, state } = self;
-        if !law.flat {
-            return of!(&law.parent, parent => parent.update_solid(e, state));
+    fn of_parent<T: Real>(&self, e: &[T; 4], state: &mut PointState<'_>) -> SolidResponse<T> {
+        if !self.flat {
+            return of!(&self.parent, parent => update_solid(parent, *e, state));
         }
-        let flat = of!(&law.parent, parent => parent.update([e[0], e[1], e[2]], state));
+        let flat = of!(&self.parent, parent => update(parent, [e[0], e[1], e[2]], state));
         let mut tangent = [[T::zero(); 4]; 4];
         for i in 0..3 {
             for j in 0..3 {
@@ -172,9 +165,7 @@ impl<T: Real> Job for OfParent<'_, '_, T> {
         let [x, y, xy] = flat.stress;
         SolidResponse { stress: [x, y, xy, T::zero()], tangent, failed: flat.failed }
     }
-}
 
-impl Viscoelastic {
     /// The relaxations of an increment.
     fn relaxations(&self, state: &PointState<'_>) -> Vec<Relaxation> {
         let clock = state.clock;
@@ -201,7 +192,7 @@ impl Viscoelastic {
         relaxations: &[Relaxation],
     ) -> Relaxed<T> {
         let o = T::zero();
-        let solid = T::apart(OfParent { law: self, e: *e, state });
+        let solid = self.of_parent(e, state);
         let mut change = solid.stress;
         for (i, c) in change.iter_mut().enumerate() {
             *c -= state.get(PARENT + i);

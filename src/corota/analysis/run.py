@@ -35,6 +35,7 @@ from corota.errors import (
     InputError,
     ResourceError,
     UnsupportedError,
+    memory_errors,
 )
 from corota.model.local_strain import ADVICE, LARGE_STRAIN
 from corota.model.steps import in_force
@@ -119,7 +120,8 @@ def solve(
     >>> bool(results.frames[-1].U[:, 1].min() < -0.7)
     True
     """
-    run = Analysis(model, steps, observers, solver, threads, keep, fields, start)
+    with memory_errors():
+        run = Analysis(model, steps, observers, solver, threads, keep, fields, start)
     return run.run()
 
 

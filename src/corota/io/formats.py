@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from corota.errors import InputError, UnsupportedError
+from corota.errors import InputError, UnsupportedError, memory_errors
 from corota.io.deck.read import read_deck
 from corota.lazy import lazy
 
@@ -81,6 +81,8 @@ def read(
         If a file cannot be read.
     UnsupportedError
         If no reader fits the file's name.
+    ResourceError
+        If the memory does not suffice.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in MODEL_READERS:
@@ -88,16 +90,17 @@ def read(
             f"{path}: no reader of models for {suffix or 'a file without an extension'}; "
             f"known: {', '.join(MODEL_READERS)} (meshes: corota.mesh.read)"
         )
-    model: Model = MODEL_READERS[suffix](
-        path,
-        element_map=element_map,
-        lenient=lenient,
-        allow_include=allow_include,
-        as_written=as_written,
-        parameters=parameters,
-    )
-    for text in stages:
-        model.add_stage(text)
+    with memory_errors():
+        model: Model = MODEL_READERS[suffix](
+            path,
+            element_map=element_map,
+            lenient=lenient,
+            allow_include=allow_include,
+            as_written=as_written,
+            parameters=parameters,
+        )
+        for text in stages:
+            model.add_stage(text)
     return model
 
 
