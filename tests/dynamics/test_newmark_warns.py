@@ -26,7 +26,7 @@ def ring() -> ct.Model:
     material = ct.Elastic(E=2e3, nu=0.3, rho=1.0)
     model.section("all", element="Q4I", material=material, local_strain="green_lagrange")
     model.contact("outer", ct.RigidCurve.line((-9.0, 0.0), (9.0, 0.0)))
-    model.velocity(y=-1.0)
+    model.velocity(y=-0.5)
     return model
 
 
@@ -65,7 +65,7 @@ def deck(card: str) -> str:
     rows += ["*SOLID SECTION, ELSET=ring, MATERIAL=m, LOCAL STRAIN=GREEN LAGRANGE", "1."]
     rows += ["*SURFACE INTERACTION, NAME=smooth", "*CONTACT PAIR, INTERACTION=smooth"]
     rows += ["outer, wall", "*BOUNDARY", f"{base}, 1, 2", f"{base}, 6, 6"]
-    rows += ["*INITIAL CONDITIONS, TYPE=VELOCITY", "all, 2, -1."]
+    rows += ["*INITIAL CONDITIONS, TYPE=VELOCITY", "all, 2, -0.5"]
     rows += ["*STEP, NLGEOM, INC=100", card, "0.04, 0.8", "*END STEP"]
     return "\n".join(rows) + "\n"
 

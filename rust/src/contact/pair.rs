@@ -245,6 +245,11 @@ impl Contact {
     }
 
     /// Keeps the masters of the constraints as those to return to.
+    /// Take which constraints belong to ends of the slave that supports hold from now on.
+    pub fn hold(&mut self, held: &[bool]) {
+        self.method.hold(&self.sides, held);
+    }
+
     pub fn commit(&mut self) {
         self.method.commit();
         self.corners.iter_mut().for_each(Corners::commit);

@@ -393,6 +393,14 @@ impl Contact {
     }
 
     /// Remember the masters of the nodes (node_to_segment).
+    /// Take which constraints belong to ends of the slave that supports hold from now on.
+    fn hold(&mut self, held: Vec<bool>) -> PyResult<()> {
+        if held.len() < self.pair.places().len() {
+            return Err(bad(format!("there are {} constraints", self.pair.places().len())));
+        }
+        self.pair.hold(&held);
+        Ok(())
+    }
     fn commit(&mut self) {
         self.pair.commit();
     }

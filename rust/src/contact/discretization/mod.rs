@@ -102,6 +102,9 @@ pub trait Discretization: Send + Sync {
         Vec::new()
     }
 
+    /// Take which constraints belong to ends of the slave that supports hold from now on.
+    fn hold(&mut self, _sides: &Sides, _held: &[bool]) {}
+
     /// Keep what later evaluations depend on as what to return to.
     fn commit(&mut self) {}
 

@@ -269,9 +269,19 @@ fn length<T: Smooth>(c: &Curve<f64>, r: T) -> T {
 pub struct Mortar {
     /// Slope of the functions of each edge, times two.
     slope: Vec<f64>,
+    /// The same where no support guides an end of the slave: about one that is guided nothing tips,
+    /// and a traction along its support would not move the slave, so that it could take any size.
+    free: Vec<f64>,
 }
 
 impl Discretization for Mortar {
+    fn hold(&mut self, sides: &Sides, held: &[bool]) {
+        for (i, slope) in self.slope.iter_mut().enumerate() {
+            let fixed = sides.slave.constraints[i][..2].iter().any(|&c| held[c]);
+            *slope = if fixed { 1.0 } else { self.free[i] };
+        }
+    }
+
     fn evaluate(&mut self, sides: &Sides, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         each(sides.n_items(), |i| self.edge(sides, i, x, start)).into_iter().flatten().collect()
     }
@@ -330,7 +340,8 @@ impl Mortar {
                 _ => 1.0,
             }
         };
-        Self { slope: sides.slave.edges.iter().enumerate().map(slope).collect() }
+        let slope: Vec<f64> = sides.slave.edges.iter().enumerate().map(slope).collect();
+        Self { free: slope.clone(), slope }
     }
 
     fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {

@@ -405,6 +405,7 @@ class StaticStepper(NewtonStepper):
             fixed_increments=False,
         )
         before, here = control.number, state.u
+        last, along_path = (control.time / step.period, here), 0.0
         kept = [control.time / step.period]
         resumed = state.resumption
         if resumed is not None:
@@ -422,6 +423,11 @@ class StaticStepper(NewtonStepper):
                 state.notes.append(f"step {number}: {text}")
                 observers.note(number, text)
             kept.append(factor)
+            nonlocal last, along_path
+            # Displacement per unit of time, as of load control.
+            time = abs(factor - last[0]) * step.period
+            moved = float(np.abs(state.u - last[1]).max(initial=0.0))
+            along_path, last = (moved / time if time > 0.0 else np.inf), (factor, state.u.copy())
             save(state, increment, factor, scalars)
 
         try:
@@ -442,6 +448,7 @@ class StaticStepper(NewtonStepper):
                 fails, rates, stalled = "", self.rates, self.stalled
                 if resumed is not None and state.loop is not None:
                     rates, stalled = state.loop["rates"], state.loop["stalled"]
+                rates = rates[0], max(rates[1], along_path)
                 moves = driven(system, step, state)
                 if not moves:
                     fails = collapse(system, number, factor, rates, said)

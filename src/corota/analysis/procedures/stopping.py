@@ -81,7 +81,9 @@ def collapse(
     grown = rates[1] / rates[0] if rates[0] > 0.0 else 0.0
     if not _yields(system) or not (grown > SOFT or (grown > 0.0 and FREE in why)):
         return ""
-    how = f", with displacements that grow {grown:.0f} times as fast as initially" * (grown > SOFT)
+    # At a load that stays the same it is infinite.
+    finite = SOFT < grown < np.inf
+    how = f", with displacements that grow {grown:.0f} times as fast as initially" * finite
     return (
         f"plastic collapse: the limit load of step {number} is reached at load factor "
         f"{factor:.6g}{how}; yielding makes the structure a mechanism that cannot carry more"

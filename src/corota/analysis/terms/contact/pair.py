@@ -96,7 +96,7 @@ class Pair:
         self.owner = np.arange(self.n)  # constraint that owns a node's part
         self.frozen = False  # whether the owners are final for the increment
         self.beside: tuple[Ints, Ints] | None = None
-        self.held_ends = np.zeros(self.n, bool)  # nodes at ends of the slave that supports hold
+        self.held_ends = np.zeros(self.n, bool)  # fixed ends of the slave
         integrates = isinstance(item, ContactPair) and METHODS[item.method]["integrates"]
         if integrates and not self.slave.pointwise:
             ends = self.place[self.slave.nodes[:, :2]]
@@ -167,22 +167,23 @@ class Pair:
         return terms.bare or terms
 
     def hold(self, constrained: Floats) -> None:
-        """Find the ends of the slave whose motion along the normal supports prescribe in a step.
+        """Find the ends of the slave that supports hold in a step, and tell the core.
+
+        A fixed end gives its part to its neighbor. An end that is guided tips nothing: the core
+        weighs gap and slip there as inside the surface.
 
         Parameters
         ----------
         constrained : ndarray, shape (n_nodes, 3)
-            1 for dofs that supports prescribe, else 0.
+            Sum of the unit vectors along which supports prescribe displacements.
         """
         if self.beside is None:
             return
-        edges = self.slave.nodes[:, :2]
-        along = np.diff(self.reference[edges, :2], axis=1)[:, 0]
-        normal = along[:, ::-1] ** 2 / (along**2).sum(axis=1)[:, None]
-        self.held_ends[:] = False
-        for side, at in zip(self.beside, edges.T, strict=True):
-            supported = (constrained[at, :2] * normal).sum(axis=1) > 0.5
-            self.held_ends[self.place[at]] |= supported & (side[self.place[at]] < 0)
+        left, right = self.beside
+        ends = (left < 0) | (right < 0)
+        count = np.round((constrained[self.nodes, :2] ** 2).sum(axis=1))
+        self.held_ends = ends & (count == 2)
+        self.core.hold((ends & (count == 1)).tolist())
 
     def apart(self, terms: Terms, states: NDArray[np.int8] | None) -> NDArray[np.bool_]:
         """Constraints of slave surfaces on which none is closed at a committed state."""
@@ -277,8 +278,8 @@ class Pair:
 
         At the end of the opposite surface a slave edge is partly covered. The node beyond would
         have a constraint on a negligible area, with any pressure; its neighbor's pressure acts
-        there. So it does at an end of the slave that supports hold: a traction there would not move
-        the slave, and could take any size.
+        there. So it does at a fixed end of the slave: a traction there would not move the slave,
+        and could take any size.
         """
         own = np.arange(self.n)
         assert self.beside is not None
