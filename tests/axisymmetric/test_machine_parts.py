@@ -274,7 +274,7 @@ def test_an_o_ring_is_squeezed_and_pressed_against_its_wall() -> None:
     results = ct.solve(model, [squeeze, fluid], threads=1)
     left = model.mesh.node_sets["left"]
     y = model.mesh.points[left, 1] + results.frames[-1].U[left, 1]
-    touched = 20.0 + 1.765 + 0.3
+    meeting = 20.0 + 1.765 + 0.3
     begin = abs(results.history("wall: force x")[1])
-    found = (abs(results.history("wall: force x")[-1]) - begin) / (2.0 * np.pi * touched)
+    found = (abs(results.history("wall: force x")[-1]) - begin) / (2.0 * np.pi * meeting)
     assert found == pytest.approx(2.0 * (y.max() - y.min()), rel=0.05)

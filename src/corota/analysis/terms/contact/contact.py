@@ -224,7 +224,8 @@ class ContactTerm(Term):
             self._start(scheme == "central_difference")
         if self._stiff:
             self._damp()
-        constrained = self.system.by_node(self.system.constrained.astype(float))
+        system: Any = self.system  # the equations, with their supports
+        constrained = system.by_node(system.constrained.astype(float))
         for pair in self.pairs:
             pair.fixed = pair.start = None
             pair.hold(constrained)
