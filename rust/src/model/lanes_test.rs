@@ -184,7 +184,8 @@ fn packs_give_what_plain_numbers_give() {
                     let d = case.dofs_per_element;
                     // A history may be too much for an element; then it is for every lane.
                     let (plain, failed) = case.run(Lanes::Scalar, kinematics);
-                    assert!(failed.len() <= ELEMENTS / 4, "{} {law} {strain}", facts.name);
+                    let count = failed.len();
+                    assert!(count <= ELEMENTS / 4, "{} {law} {strain}: {count} fail", facts.name);
                     for lanes in [Lanes::Best, Lanes::Four, Lanes::Eight] {
                         let what = format!(
                             "{} {law} {strain} {kinematics:?} {} lanes",
