@@ -392,7 +392,6 @@ impl Contact {
         ))
     }
 
-    /// Remember the masters of the nodes (node_to_segment).
     /// Take which constraints belong to ends of the slave that supports hold from now on.
     fn hold(&mut self, held: Vec<bool>) -> PyResult<()> {
         if held.len() < self.pair.places().len() {
@@ -401,6 +400,8 @@ impl Contact {
         self.pair.hold(&held);
         Ok(())
     }
+
+    /// Remember the masters of the nodes (node_to_segment).
     fn commit(&mut self) {
         self.pair.commit();
     }

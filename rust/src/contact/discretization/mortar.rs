@@ -6,7 +6,7 @@
 //! else. Slips are weighted in the same way; their tractions act along the relative tangential
 //! velocity, with weights and limits held.
 //!
-//! The functions are those of the shape, (1 -+ xi) / 2. Against a flat master a convex polygon would
+//! The functions are those of the shape, (1 -+ xi) / 2. Against a flat or hollow master a convex polygon would
 //! sink with them by h^2 / 6 R, since the mean gap of its facets counts, and a block would tip when the
 //! resultant is h / 3 inside its edge. There, edges that are round in the undeformed slave and those at
 //! its ends have (1 -+ 3 xi) / 2, biorthogonal to the linear shape functions (Wohlmuth 2000): a gap that
@@ -15,7 +15,7 @@
 //! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
 //! ended there: else the area of a node would be negative.
 //!
-//! Against a curved master the gap is curved on the edge, too. Biorthogonal functions take its
+//! Against a convex master the gap is curved on the edge, too. Biorthogonal functions take its
 //! curvature with the wrong sign: two arcs that fit would start with an overlap of h^2 / 12 R.
 // SPDX-License-Identifier: BSD-3-Clause
 
@@ -326,11 +326,11 @@ impl Mortar {
     fn new(sides: &Sides, x: &[[f64; 3]]) -> Self {
         let slave = Surface::Edges(sides.slave.edges.clone());
         let ends = open_ends(&slave, x);
-        let curved_master = round(&sides.master, x).contains(&true);
+        let convex_master = round(&sides.master, x).contains(&true);
         let round = round(&slave, x);
         let slope = |(i, edge): (usize, &Edge)| {
             // Around an axis nothing tips, and with a slope of 3 a node on it would have no area.
-            if curved_master || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
+            if convex_master || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
                 return 1.0;
             }
             let last = !sides.itself && ends[i].contains(&true);
