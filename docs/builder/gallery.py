@@ -69,6 +69,7 @@ ENTRIES = {
     "frames/frames": Entry("Beams"),
     "gripper/gripper": Entry("Flexures", model="gripper"),
     "guide/guide": Entry("Flexures"),
+    "imperfections/imperfections": Entry("Buckling and snap-through"),
     "impact/bar": Entry("Motion and impact"),
     "impact/ring": Entry("Motion and impact"),
     "limit_load/limit_load": Entry("Plasticity"),

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from corota.mesh.data import EDGES, N_NODES, Cells, Mesh
     from corota.mesh.files import read
     from corota.mesh.generate import annulus, distort, mapped, rectangle
+    from corota.mesh.random_fields import random_field
 
 # A convenience: a function of a higher layer, which loads at its first call.
 outline = lazy("corota.outline.mesher:outline")
@@ -30,6 +31,7 @@ _HOMES = {
     "mapped": "generate",
     "merge": "change",
     "move": "change",
+    "random_field": "random_fields",
     "read": "files",
     "rectangle": "generate",
     "renumber": "change",
@@ -50,6 +52,7 @@ __all__ = [
     "merge",
     "move",
     "outline",
+    "random_field",
     "read",
     "rectangle",
     "renumber",

@@ -371,16 +371,20 @@ class Model(Loading, LineSections, InitialFields, Stages):
         """
         self.axes.append(LocalAxes(self._nodes(nodes), angle, center))
 
-    def imperfection(self, modes: Modes, scales: Sequence[float] | Mapping[int, float]) -> None:
+    def imperfection(
+        self, modes: Modes | ArrayLike, scales: Sequence[float] | Mapping[int, float]
+    ) -> None:
         """Move the nodes by shapes, such as buckling modes: a real part is not perfect.
 
         Beams between moved nodes stay straight. Call it before sets by geometry are used.
 
         Parameters
         ----------
-        modes : Modes
+        modes : Modes or array_like, shape (m, n_nodes, 2 or 3) or (n_nodes, 2 or 3)
             Of a buckling or frequency step of a model with the same nodes: ``results.modes[0]``.
-            The largest displacement of a buckling mode is 1.
+            The largest displacement of a buckling mode is 1. Or displacements of all nodes:
+            those of a frame (``frame.U``), or of :func:`corota.mesh.random_field`; a third
+            component is a rotation and has no effect.
         scales : sequence of float or mapping of int to float
             Size of each mode from the first on, or by the number of the mode from 1 [length].
 
@@ -400,8 +404,17 @@ class Model(Loading, LineSections, InitialFields, Stages):
         >>> model.imperfection(mode, [0.05])
         >>> round(float(abs(model.mesh.points[:, 1] - 0.25).max()), 3) > 0.25
         True
+        >>> rough = ct.mesh.random_field(model.mesh, 2.0, seed=1)
+        >>> model.imperfection(rough, [0.001])
         """
-        shapes = np.asarray(modes.shapes)
+        shapes = np.asarray(getattr(modes, "shapes", modes), dtype=np.float64)
+        if shapes.ndim == 2:
+            shapes = shapes[None]
+        if shapes.ndim != 3 or shapes.shape[2] not in (2, 3) or not np.isfinite(shapes).all():
+            raise InputError(
+                "the shapes of an imperfection are finite displacements of all nodes, (m, n_nodes, "
+                f"2 or 3), not an array of shape {shapes.shape}"
+            )
         if shapes.shape[1] != self.mesh.n_nodes:
             raise InputError(
                 f"the modes have {shapes.shape[1]} nodes, the mesh {self.mesh.n_nodes}"

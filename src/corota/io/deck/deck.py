@@ -15,6 +15,7 @@ from corota.io.deck.drafts import (
     AttachedDraft,
     Draft,
     GeneralDraft,
+    ImperfectionDraft,
     InitialDraft,
     Instance,
     InteractionDraft,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from corota.io.deck.amplitudes import Curve
+    from corota.io.deck.lexer import Lexer
     from corota.mesh.data import Floats, Ints
     from corota.model.loads import Amplitude
 
@@ -55,6 +57,8 @@ class Deck:
     #: Element and plane (or "") by the deck's name of an element.
     element_map: dict[str, tuple[str, str]] = field(default_factory=dict)
     literal: bool = False
+    #: Says which files the deck may read.
+    lexer: Lexer | None = None
     root: Scope = field(default_factory=Scope)
     parts: dict[str, Scope] = field(default_factory=dict)
     instances: dict[str, Instance] = field(default_factory=dict)
@@ -78,6 +82,7 @@ class Deck:
     system: tuple[Floats, Floats] | None = None
     #: Lines of ``*NODAL THICKNESS``.
     thicknesses: list[Draft] = field(default_factory=list)
+    imperfections: list[ImperfectionDraft] = field(default_factory=list)
     velocities: list[Draft] = field(default_factory=list)
     initial: list[InitialDraft] = field(default_factory=list)
     ties: list[TieDraft] = field(default_factory=list)

@@ -217,6 +217,19 @@ class InitialDraft:
 
 
 @dataclass(eq=False, repr=False)
+class ImperfectionDraft:
+    """One ``*IMPERFECTION``: modes of a result file with their factors, or moves of nodes."""
+
+    card: Card
+    file: str = ""
+    step: int = 1
+    #: Increment of a static step, 0 for the last.
+    increment: int = 0
+    modes: list[tuple[Row, int, float]] = field(default_factory=list)
+    moves: list[Draft] = field(default_factory=list)
+
+
+@dataclass(eq=False, repr=False)
 class StepDraft:
     """One step as written."""
 
@@ -424,6 +437,7 @@ __all__ = [
     "ElementBlock",
     "Entry",
     "GeneralDraft",
+    "ImperfectionDraft",
     "InitialDraft",
     "Instance",
     "InteractionDraft",

@@ -143,6 +143,9 @@ _TABLE: dict[str, Keyword] = {
         place="model",
     ),
     "NODAL THICKNESS": Keyword(card("material.nodal_thickness"), place="model"),
+    "IMPERFECTION": Keyword(
+        card("imperfection.imperfection"), "FILE STEP INC NSET SYSTEM", place="model"
+    ),
     "MEMBRANE SECTION": Keyword(
         card("material.shell_section"),
         "ELSET MATERIAL ORIENTATION LOCALSTRAIN NODALTHICKNESS",

@@ -67,7 +67,7 @@ def read_deck(
     lexer = Lexer(Path(path), allow_include, parameters)
     cards = lexer.read()
     deck = Deck(lenient=lenient, element_map=_checked_map(element_map or {}), literal=as_written)
-    deck.diagnostics = lexer.diagnostics
+    deck.diagnostics, deck.lexer = lexer.diagnostics, lexer
     saved = None
     if (reads := card_that_reads(cards)) is not None:
         cards, saved = with_earlier_steps(deck, lexer, cards, reads)

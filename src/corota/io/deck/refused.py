@@ -158,7 +158,6 @@ UNSUPPORTED: dict[str, str] = {
     "SOILS": "pore pressure is not part of this version; use *STATIC",
     "FIXEDMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
     "VARIABLEMASSSCALING": "there is no mass scaling: the stable increment is found automatically",
-    "IMPERFECTION": "give the imperfect coordinates by *NODE",
     "FIELD": "fields are not part of this version; give temperatures by *TEMPERATURE",
     "INERTIARELIEF": "fix the body by *BOUNDARY in three dofs",
     "BEAMSECTIONGENERATE": "give the numbers by *BEAM GENERAL SECTION",

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 base_supports = lazy("corota.io.deck.build.base_motion:base_supports")
 build_attachments = lazy("corota.io.deck.cards.attachments:build_attachments")
 build_contacts = lazy("corota.io.deck.build.contact:build_contacts")
+build_imperfections = lazy("corota.io.deck.cards.imperfection:build_imperfections")
 build_initial = lazy("corota.io.deck.cards.thermal:build_initial")
 build_tie = lazy("corota.io.deck.build.ties:build_tie")
 pretension_builder = lazy("corota.io.deck.build.pretension:PretensionBuilder")
@@ -52,6 +53,8 @@ class ModelBuilder:
         """Everything."""
         targets = self.targets
         self.sets.fill()
+        if self.deck.imperfections:
+            build_imperfections(self.deck, self.mesh, targets.nodes)
         pretension = None
         if self.deck.pretensions:
             pretension = pretension_builder(self.deck, self.model, self.sets)
