@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.mesh.data import Floats, Ints
 
 #: Order in which the nodes of a clockwise cell become counter-clockwise; the first stays.
@@ -63,9 +65,9 @@ def _sides(kind: str, points: Floats) -> tuple[Floats, Floats, Floats]:
 def classify(kind: str, points: Floats) -> Ints:
     """Say of each cell whether it is ``GOOD``, ``CLOCKWISE``, ``FOLDED`` or ``FLAT``.
 
-    A flat cell has no area, or a side of no length; a folded one has corner angles of both signs at
-    its
-    corners, or its Jacobian changes sign at integration points.
+    A flat cell has no area, is a triangle with a side of no length, or a quadrilateral with two; one
+    such side makes a triangle of a quadrilateral. A folded cell has corner angles of both signs at
+    its corners, or its Jacobian changes sign at integration points.
 
     Parameters
     ----------
@@ -83,13 +85,18 @@ def classify(kind: str, points: Floats) -> Ints:
     found[left & right] = FOLDED
     found[~left & ~right] = FLAT
     sides = _sides(kind, points)[2]
-    found[sides.min(axis=1, initial=np.inf) <= STRAIGHT * sides.max(axis=1, initial=0.0)] = FLAT
-    if kind in ("tri6", "quad8", "quad9"):
+    found[_closed(sides).sum(axis=1) > n_corners(kind) - 3] = FLAT
+    if kind != "tri3":
         jacobian = jacobians(kind, points)
         sign = np.where(found == CLOCKWISE, -1.0, 1.0)[:, None]
         bad = (jacobian * sign <= 0.0).any(axis=1)
         found[bad & (found != FLAT)] = FOLDED
     return found
+
+
+def _closed(sides: Floats) -> NDArray[np.bool_]:
+    """Whether a side has no length, shape (n_cells, n_corners)."""
+    return np.asarray(sides <= STRAIGHT * sides.max(axis=1, initial=0.0)[:, None])
 
 
 def jacobians(kind: str, points: Floats) -> Floats:
@@ -110,9 +117,10 @@ def jacobians(kind: str, points: Floats) -> Floats:
 
 
 def aspect_ratio(kind: str, points: Floats) -> Floats:
-    """Longest over shortest side of each cell, shape (n_cells,)."""
+    """Longest over shortest side of each cell, but for sides of no length; shape (n_cells,)."""
     sides = _sides(kind, points)[2]
-    return np.asarray(sides.max(axis=1) / sides.min(axis=1))
+    shortest = np.where(_closed(sides), np.inf, sides).min(axis=1)
+    return np.asarray(sides.max(axis=1) / shortest)
 
 
 def _gradients(kind: str) -> Floats:
