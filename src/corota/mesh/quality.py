@@ -65,9 +65,9 @@ def _sides(kind: str, points: Floats) -> tuple[Floats, Floats, Floats]:
 def classify(kind: str, points: Floats) -> Ints:
     """Say of each cell whether it is ``GOOD``, ``CLOCKWISE``, ``FOLDED`` or ``FLAT``.
 
-    A flat cell has no area, is a triangle with a side of no length, or a quadrilateral with two; one
-    such side makes a triangle of a quadrilateral. A folded cell has corner angles of both signs at
-    its corners, or its Jacobian changes sign at integration points.
+    A flat cell has no area, is a triangle with a side of no length, or a quadrilateral with two;
+    one such side makes a triangle of a quadrilateral. A folded cell has angles of both signs at its
+    corners, or its Jacobian changes sign at integration points.
 
     Parameters
     ----------

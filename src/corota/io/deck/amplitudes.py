@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 #: Samples of a smooth step, and of the shortest period: straight lines miss a sine by 4e-6.
 PER_STEP, PER_PERIOD = 200, 1024
+#: A frequency that is none.
+EPS = float(np.finfo(float).eps)
 #: Samples of one curve.
 MOST = 1_000_000
 
@@ -33,10 +35,11 @@ def smooth_steps(time: Floats, value: Floats) -> tuple[Floats, Floats]:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Curve:
-    """A curve without an end: ``PERIODIC`` or ``DECAY``, sampled when the steps are known.
+    """A curve without an end, sampled when the steps are known.
 
-    ``numbers`` are omega, start, initial value and pairs A, B of a Fourier series; or the
-    initial value, size, start and decay time.
+    ``numbers`` of ``PERIODIC`` are omega, start, initial value and pairs A, B of a Fourier series;
+    of ``DECAY`` the initial value, size, start and decay time; of ``MODULATED`` the initial value,
+    size, start and two angular frequencies, whose sines are multiplied.
     """
 
     kind: str
@@ -52,6 +55,9 @@ class Curve:
             a, b = np.array(pairs[::2]), np.array(pairs[1::2])
             n = np.arange(1, len(a) + 1)
             shortest = 2.0 * np.pi / (abs(omega) * len(a))
+        elif self.kind == "MODULATED":
+            first, size, start, *both = self.numbers
+            shortest = 2.0 * np.pi / max(sum(map(abs, both)), EPS)
         else:
             first, size, start, decay = self.numbers
             shortest = 4.0 * abs(decay)
@@ -61,6 +67,8 @@ class Curve:
         if self.kind == "PERIODIC":
             phase = omega * later[:, None] * n
             value = first + np.cos(phase) @ a + np.sin(phase) @ b
+        elif self.kind == "MODULATED":
+            value = first + size * np.sin(both[0] * later) * np.sin(both[1] * later)
         else:
             value = first + size * np.exp(-later / decay)
         time = start + later

@@ -131,8 +131,8 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 #: Sides of a rigid body (R2D2) name its nodes and its boundary.
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
-#: Point masses and dashpots, with their number of nodes.
-ATTACHED = {"MASS": 1, "DASHPOTA": 2}
+#: Point masses, rotary inertias and dashpots, with their number of nodes.
+ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2}
 
 
 @dataclass(frozen=True)
@@ -159,8 +159,8 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
     **dict.fromkeys(
-        ("DASHPOT1", "DASHPOT2", "GAPUNI", "ROTARYI"),
-        "of dashpots this version has DASHPOTA, of masses MASS, and no gaps",
+        ("DASHPOT1", "DASHPOT2", "GAPUNI"),
+        "of dashpots this version has DASHPOTA, and no gaps",
     ),
 }
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from corota.io.deck.deck import nearest
 from corota.io.deck.keywords import KEYWORDS, SPELLED
+from corota.io.deck.lexer import key
 from corota.io.deck.refused import (
     HEAT,
     IGNORED,
@@ -14,6 +15,7 @@ from corota.io.deck.refused import (
     PROCEDURE,
     REFUSED_PARAMETERS,
     UNSUPPORTED,
+    WITHOUT_EFFECT,
 )
 
 if TYPE_CHECKING:
@@ -29,13 +31,15 @@ def interpret(deck: Deck, card: Card) -> None:
         return
     known = set(entry.parameters.split())
     ignored = set(entry.ignored.split())
-    refused = {name for keyword, name in REFUSED_PARAMETERS if keyword == card.keyword}
+    refused = {
+        name for keyword, name in (*REFUSED_PARAMETERS, *WITHOUT_EFFECT) if keyword == card.keyword
+    }
     card.scope = deck.scope
     _spell_out(card, known | ignored | refused)
     for name, parameter in card.parameters.items():
         if name in known:
             continue
-        if name in ignored:
+        if name in ignored or _same(parameter.value, WITHOUT_EFFECT.get((card.keyword, name))):
             deck.note(f"{card.where}: {card.spelled}: {parameter.name} is ignored")
             continue
         place = type(card.where)(card.where.file, card.where.line, parameter.column)
@@ -56,6 +60,16 @@ def interpret(deck: Deck, card: Card) -> None:
         )
         return
     entry.function(deck, card)
+
+
+def _same(given: str, value: str | None) -> bool:
+    """Whether a value of a parameter is `value`, as a number or a name."""
+    if value is None:
+        return False
+    try:
+        return float(given) == float(value)
+    except ValueError:
+        return key(given) == value
 
 
 def _spell_out(card: Card, words: set[str]) -> None:

@@ -187,10 +187,11 @@ _TABLE: dict[str, Keyword] = {
     ),
     "VISCO": Keyword(card("rates.visco"), "DIRECT CETOL", "SOLVER"),
     "BUCKLE": Keyword(card("path.buckle"), "", "SOLVER EIGENSOLVER"),
-    "CONTROLS": Keyword(card("path.controls"), "PARAMETERS RESET", "ANALYSIS TYPE"),
+    "CONTROLS": Keyword(card("path.controls"), "PARAMETERS RESET", "ANALYSIS TYPE FIELD"),
     "DYNAMIC": Keyword(
         card("dynamic.dynamic"),
-        "ALPHA BETA GAMMA DIRECT EXPLICIT APPLICATION SCHEME NOHAF",
+        "ALPHA BETA GAMMA DIRECT DIRECTUSERCONTROL EXPLICIT APPLICATION TIMEINTEGRATOR SCHEME "
+        "NOHAF",
         "SOLVER RELATIVETOABSOLUTE HAFTOL HALFINCSCALEFACTOR INITIAL IMPACT SCALEFACTOR "
         "ELEMENTBYELEMENT INCREMENTATION ADIABATIC IMPROVEDDTMETHOD",
     ),
@@ -208,6 +209,7 @@ _TABLE: dict[str, Keyword] = {
     "MODAL DAMPING": Keyword(card("dynamic.modal_damping"), "RAYLEIGH", "MODAL"),
     "DAMPING": Keyword(card("dynamic.damping"), "ALPHA BETA", place="model"),
     "MASS": Keyword(card("attachments.mass"), "ELSET", place="model"),
+    "ROTARY INERTIA": Keyword(card("attachments.rotary_inertia"), "ELSET", place="model"),
     "DASHPOT": Keyword(card("attachments.dashpot"), "ELSET", place="model"),
     "INITIAL CONDITIONS": Keyword(card("dynamic.initial_conditions"), "TYPE", place="model"),
     "EQUATION": Keyword(card("tie.equation"), place="model"),
@@ -304,7 +306,7 @@ _TABLE: dict[str, Keyword] = {
     ),
     "DSLOAD": Keyword(
         card("loads.dsload"),
-        "OP AMPLITUDE FOLLOWER LOADCASE REAL IMAGINARY",
+        "OP AMPLITUDE FOLLOWER LOADCASE ORIENTATION REAL IMAGINARY",
         "REGIONTYPE CONSTANTRESULTANT",
     ),
     "TEMPERATURE": Keyword(card("thermal.temperature"), "OP AMPLITUDE", "LOADCASE"),

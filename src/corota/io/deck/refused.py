@@ -17,6 +17,7 @@ IGNORED: dict[str, str] = {
     "NOANALYSIS": "use the command check",
     "PRINT": "it controls the message file",
     "FILEFORMAT": "it controls the result file of another program",
+    "DEPVAR": "laws know their own state variables",
     "USERSUBROUTINE": "no user subroutine is called",
     **dict.fromkeys(
         (
@@ -108,7 +109,6 @@ UNSUPPORTED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "DEPVAR",
             "USERMATERIAL",
             "MOHRCOULOMB",
             "CHANGEPLASTIC",
@@ -140,7 +140,6 @@ UNSUPPORTED: dict[str, str] = {
             "FLUIDSECTION",
             "USERELEMENT",
             "USERSECTION",
-            "ROTARYINERTIA",
             "TRUSSSECTION",
         ),
         _LINE,
@@ -197,6 +196,10 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     ("FRICTION", "EXPONENTIALDECAY"): "friction has one coefficient",
     ("FRICTION", "TAUMAX"): "there is no separate limit of the shear traction",
     ("FRICTION", "USER"): "no user subroutine is called",
+    ("DAMPING", "COMPOSITE"): "damping of modes is given by *MODAL DAMPING",
+    ("DAMPING", "STRUCTURAL"): "damping is by ALPHA and BETA, and *MODAL DAMPING",
+    ("MASS", "ALPHA"): "damping is by ALPHA of *DAMPING of materials, and *DASHPOT",
+    ("PLASTIC", "EXTRAPOLATION"): "the last yield stress of a table holds beyond it; add a row",
     ("CLEARANCE", "TABULAR"): "give one VALUE",
     ("TIE", "CYCLICSYMMETRY"): "cyclic symmetry is not part of this version",
     ("TIE", "MULTISTAGE"): "cyclic symmetry is not part of this version",
@@ -214,6 +217,17 @@ REFUSED_PARAMETERS: dict[tuple[str, str], str] = {
     },
 }
 
+#: Values of parameters without effect; others of the same parameter are refused.
+WITHOUT_EFFECT: dict[tuple[str, str], str] = {
+    ("DAMPING", "COMPOSITE"): "0",
+    ("DAMPING", "STRUCTURAL"): "0",
+    ("MASS", "ALPHA"): "0",
+    ("MASS", "COMPOSITE"): "0",
+    ("ROTARYINERTIA", "ALPHA"): "0",
+    ("PLASTIC", "EXTRAPOLATION"): "CONSTANT",
+    ("RATEDEPENDENT", "EXTRAPOLATION"): "CONSTANT",
+}
+
 __all__ = [
     "HEAT",
     "IGNORED",
@@ -221,4 +235,5 @@ __all__ = [
     "PROCEDURE",
     "REFUSED_PARAMETERS",
     "UNSUPPORTED",
+    "WITHOUT_EFFECT",
 ]

@@ -21,11 +21,19 @@ if TYPE_CHECKING:
     from corota.io.deck.lexer import Card
 
 
+#: Curves without an end, and their numbers after the initial value, size and start.
+ENDLESS = {
+    "PERIODIC": (),
+    "DECAY": ("the decay time",),
+    "MODULATED": ("the first frequency", "the second frequency"),
+}
+
+
 def amplitude(deck: Deck, card: Card) -> None:
     """``*AMPLITUDE, NAME=[, DEFINITION=]``: pairs of time and factor, or the curve's numbers."""
     name = deck.required(card, "NAME")
     total = deck.choice(card, "TIME", ("STEPTIME", "TOTALTIME"), "STEPTIME") == "TOTALTIME"
-    kinds = ("TABULAR", "EQUALLYSPACED", "SMOOTHSTEP", "PERIODIC", "DECAY")
+    kinds = ("TABULAR", "EQUALLYSPACED", "SMOOTHSTEP", *ENDLESS)
     kind = deck.choice(card, "DEFINITION", kinds, "TABULAR")
     if deck.choice(card, "VALUE", ("RELATIVE", "ABSOLUTE"), "RELATIVE") == "ABSOLUTE":
         deck.error(
@@ -35,7 +43,7 @@ def amplitude(deck: Deck, card: Card) -> None:
             hint="give the loads the size 1 and the amplitude VALUE=RELATIVE",
         )
         return
-    if kind in ("PERIODIC", "DECAY"):
+    if kind in ENDLESS:
         _endless(deck, card, kind, name, total)
         return
     table = _equally_spaced(deck, card) if kind == "EQUALLYSPACED" else _pairs(deck, card)
@@ -95,7 +103,11 @@ def _equally_spaced(deck: Deck, card: Card) -> tuple[list[float], list[float]] |
 
 
 def _endless(deck: Deck, card: Card, kind: str, name: str, total: bool) -> None:
-    """``PERIODIC``: terms, omega, start, A0; pairs A, B. ``DECAY``: A0, A, start, decay time."""
+    """Numbers of a curve without an end.
+
+    ``PERIODIC``: terms, omega, start, A0; pairs A, B. ``DECAY``: A0, A, start, decay time.
+    ``MODULATED``: A0, A, start and two frequencies.
+    """
     rows = list(card.rows())
     if not rows:
         deck.error(card, card.where, "a data line is missing")
@@ -117,13 +129,13 @@ def _endless(deck: Deck, card: Card, kind: str, name: str, total: bool) -> None:
             return
         numbers = [float(v or 0.0) for v in head + pairs]
     else:
-        names = ("the initial value", "the size", "the start", "the decay time")
+        names = ("the initial value", "the size", "the start", *ENDLESS[kind])
         found = [deck.real(card, rows[0], i, what) for i, what in enumerate(names)]
         if None in found:
             return
         numbers = [float(v or 0.0) for v in found]
-        if numbers[3] <= 0.0:
-            deck.row_error(card, rows[0], 3, "the decay time must be > 0")
+        if min(numbers[3:]) <= 0.0:
+            deck.row_error(card, rows[0], 3, f"{' and '.join(ENDLESS[kind])} must be > 0")
             return
     if name and not _amplitude_twice(deck, card, name):
         deck.curves[key(name)] = Curve(kind, numbers, total, name, card.where)

@@ -1,4 +1,4 @@
-"""Point masses and dashpots of decks: elements of one or two nodes, and their values."""
+"""Point masses, rotary inertias and dashpots of decks: elements, and their values."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     Find = Callable[[Draft], str | Ints | None]
 
 #: The card that gives the value of each.
-CARDS = {"MASS": "MASS", "DASHPOTA": "DASHPOT"}
+CARDS = {"MASS": "MASS", "ROTARYI": "ROTARY INERTIA", "DASHPOTA": "DASHPOT"}
 
 
 def elements(deck: Deck, card: Card, type_: str) -> None:
-    """``*ELEMENT, TYPE=MASS`` or ``DASHPOTA``: label, nodes; the set names them."""
+    """``*ELEMENT, TYPE=MASS``, ``ROTARYI`` or ``DASHPOTA``: label, nodes; the set names them."""
     name = deck.required(card, "ELSET")
     draft = AttachedDraft(type_, name, card)
     count = ATTACHED[type_]
@@ -52,27 +52,32 @@ def mass(deck: Deck, card: Card) -> None:
     _value(deck, card, "MASS", "the mass")
 
 
+def rotary_inertia(deck: Deck, card: Card) -> None:
+    """``*ROTARY INERTIA, ELSET=``: I11, I22 and that about the normal of the plane, I33."""
+    _value(deck, card, "ROTARYI", "the inertia about the normal of the plane", 2)
+
+
 def dashpot(deck: Deck, card: Card) -> None:
     """``*DASHPOT, ELSET=``: an empty line, then force per velocity along the line."""
     _value(deck, card, "DASHPOTA", "the damping")
 
 
-def _value(deck: Deck, card: Card, type_: str, what: str) -> None:
+def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> None:
     name = deck.required(card, "ELSET")
     rows = list(card.rows())
     if not rows:
         deck.error(card, card.where, f"a data line is missing: {what}")
         return
-    value = deck.real(card, rows[0], 0, what)
+    value = deck.real(card, rows[0], place, what)
     for row in rows[1:]:
         deck.row_error(card, row, 0, f"one data line is expected, {what}, constant in time")
         return
-    if rows[0].get(1):
+    if rows[0].get(1) and not place:
         deck.note(f"{rows[0].where}: the temperature or frequency {rows[0].get(1)} is ignored")
     if value is None or not name:
         return
     if not value >= 0.0:
-        deck.row_error(card, rows[0], 0, f"{what} must be >= 0, not {value:g}")
+        deck.row_error(card, rows[0], place, f"{what} must be >= 0, not {value:g}")
         return
     mine = [d for d in deck.attached if d.type == type_ and key(d.name) == key(name)]
     for draft in mine:
@@ -108,11 +113,13 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
             if len(nodes) < len(drafts):
                 continue
             where = drafts[0].row.where
-            if draft.type == "MASS":
+            if draft.type in ("MASS", "ROTARYI"):
                 deck.masses[number] = len(model.point_masses)
-                model.point_masses.append(PointMass(np.array(nodes), draft.value, 0.0, where))
+                turns = draft.type == "ROTARYI"
+                mass, inertia = (0.0, draft.value) if turns else (draft.value, 0.0)
+                model.point_masses.append(PointMass(np.array(nodes), mass, inertia, where))
             else:
                 model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value, where=where))
 
 
-__all__ = ["AttachedDraft", "build_attachments", "dashpot", "elements", "mass"]
+__all__ = ["AttachedDraft", "build_attachments", "dashpot", "elements", "mass", "rotary_inertia"]

@@ -11,6 +11,7 @@ from corota.io.deck.cards.supports import RATES
 from corota.io.deck.cards.thermal import initial_stress, initial_temperature
 from corota.io.deck.cards.tie import parameter_row
 from corota.io.deck.drafts import Draft
+from corota.io.deck.lexer import key
 from corota.model.steps import Dynamic, Frequency, ModalDynamic, SteadyState
 
 if TYPE_CHECKING:
@@ -24,6 +25,12 @@ APPLICATIONS = {
     "TRANSIENTFIDELITY": -0.05,
     "MODERATEDISSIPATION": -1.0 / 3.0,
     "QUASI-STATIC": 0.0,
+}
+#: Values of ``TIME INTEGRATOR=`` with the application that they belong to.
+INTEGRATORS = {
+    "HHT-TF": "TRANSIENTFIDELITY",
+    "HHT-MD": "MODERATEDISSIPATION",
+    "BWE": "QUASI-STATIC",
 }
 #: Values of ``SCHEME=``, which is our own parameter.
 SCHEMES = {"HHT": "hht", "ENERGYMOMENTUM": "energy_momentum"}
@@ -53,8 +60,9 @@ def dynamic(deck: Deck, card: Card) -> None:
     now = _procedure(deck, card)
     if now is None:
         return
-    now.direct = card.has("DIRECT")
-    use = deck.choice(card, "APPLICATION", APPLICATIONS, "TRANSIENTFIDELITY")
+    now.direct = card.has("DIRECT") or card.has("DIRECTUSERCONTROL")
+    integrator = deck.choice(card, "TIMEINTEGRATOR", INTEGRATORS, "HHT-TF")
+    use = deck.choice(card, "APPLICATION", APPLICATIONS, INTEGRATORS[integrator])
     alpha = deck.parameter_number(card, "ALPHA", APPLICATIONS[use], -1.0 / 3.0)
     if alpha > 0.0:
         deck.error(card, card.at("ALPHA"), f"ALPHA must lie in [-1/3, 0], not {alpha:g}")
@@ -94,7 +102,8 @@ def dynamic(deck: Deck, card: Card) -> None:
             if quasi_static
             else "HHT with the largest dissipation, ALPHA = -1/3"
         )
-        deck.note(f"{card.where}: APPLICATION={card.value('APPLICATION')} is {what}")
+        name = "APPLICATION" if card.has("APPLICATION") else "TIME INTEGRATOR"
+        deck.note(f"{card.where}: {name}={card.value(key(name))} is {what}")
     now.make = Dynamic
     now.options = {
         "alpha": alpha,
@@ -112,7 +121,7 @@ def dynamic(deck: Deck, card: Card) -> None:
         "rayleigh": deck.damping,
     }
     step_times(deck, card, now)
-    if explicit and not card.has("DIRECT"):
+    if explicit and not now.direct:
         # The stable increment is found by the analysis.
         first, period, least, most = now.times
         now.times = (min(first, period), period, least, most)

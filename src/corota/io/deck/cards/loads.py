@@ -202,6 +202,23 @@ def dsload(deck: Deck, card: Card) -> None:
             )
 
 
+def _axes(deck: Deck, card: Card) -> float | None:
+    """Angle of the axes of ``ORIENTATION`` for directions; ``None`` after an error."""
+    if not card.has("ORIENTATION"):
+        return 0.0
+    name = card.value("ORIENTATION")
+    known = deck.root.orientations | deck.scope.orientations
+    angle = known.get(key(name))
+    if angle is None:
+        hint = nearest(name, list(known))
+        deck.error(card, card.at("ORIENTATION"), f"no orientation named {name!r}", hint=hint)
+    elif math.isnan(angle):
+        hint = "give the direction in global axes"
+        deck.error(card, card.at("ORIENTATION"), f"{name} is not rectangular", hint=hint)
+        return None
+    return angle
+
+
 def _traction(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> Draft | None:
     """Size and direction of ``TRVEC`` or ``TRSHR``; ``None`` after an error."""
     follower = deck.choice(card, "FOLLOWER", ("YES", "NO", ""), "YES") != "NO"
@@ -223,5 +240,9 @@ def _traction(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> D
     if size == 0.0:
         deck.row_error(card, row, 3, "the direction of the traction is zero")
         return None
-    vector = (value * x / size, value * y / size)
+    angle = _axes(deck, card)
+    if angle is None:
+        return None
+    c, s = math.cos(angle), math.sin(angle)
+    vector = (value * (c * x - s * y) / size, value * (s * x + c * y) / size)
     return Draft(kinds[label], card, row, row.get(0), vector, -1, card.value("AMPLITUDE"))

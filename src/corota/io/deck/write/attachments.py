@@ -66,20 +66,20 @@ def attachment_cards(writer: Writer) -> Iterator[str]:
     Raises
     ------
     UnsupportedError
-        If a point mass has an inertia, or a dashpot goes to the ground.
+        If a dashpot goes to the ground.
     """
     mesh, model = writer.mesh, writer.model
     label = int(mesh.cell_labels.max(initial=0))
     for count, mass in enumerate(model.point_masses, start=1):
+        kinds = [("MASS", "MASS", number(mass.mass))] if mass.mass or not mass.inertia else []
         if mass.inertia:
-            raise UnsupportedError(
-                "the inertia of a point mass cannot be written to a deck: keep the model in Python"
-            )
-        yield f"*ELEMENT, TYPE=MASS, ELSET=MASS{count}\n"
-        for node in mesh.node_labels[mesh.node_indices(mass.nodes)].tolist():
-            label += 1
-            yield f"{label}, {node}\n"
-        yield f"*MASS, ELSET=MASS{count}\n{number(mass.mass)}\n"
+            kinds.append(("ROTARYI", "ROTARY INERTIA", f"0., 0., {number(mass.inertia)}"))
+        for type_, card, value in kinds:
+            yield f"*ELEMENT, TYPE={type_}, ELSET={type_}{count}\n"
+            for node in mesh.node_labels[mesh.node_indices(mass.nodes)].tolist():
+                label += 1
+                yield f"{label}, {node}\n"
+            yield f"*{card}, ELSET={type_}{count}\n{value}\n"
     for count, dashpot in enumerate(model.dashpots, start=1):
         if dashpot.second is None:
             raise UnsupportedError(
