@@ -26,6 +26,7 @@ TOPICS = {
     "Motion and impact": ("dynamics", "impact", "howto/impact"),
     "Beams": ("line-elements", "howto/beams_on_plates"),
     "Elements": ("comparison", "theory"),
+    "Periodic cells": ("cells",),
     "More": ("howto/index",),
 }
 
@@ -41,6 +42,12 @@ class Entry:
 
 #: Examples by their path below ``examples``.
 ENTRIES = {
+    "cells/chiral": Entry(
+        "Periodic cells", "Bulk modulus over that by hand: 1.000000000000; Poisson's ratio -0.990."
+    ),
+    "cells/holes": Entry(
+        "Periodic cells", "Onset by one cell over that by the path of 2 x 2 cells: 1.00000000."
+    ),
     "contact/bistable_beam": Entry(
         "Buckling and snap-through",
         "The probe's force vanishes after 4/3 of the height within 2 % (Qiu, Lang, Slocum).",

@@ -42,6 +42,7 @@ WORDS = {
     "howto/user_material": "umat, user material",
     "howto/sweep": "optimization, parameters, design of experiments",
     "axisymmetry": "axisymmetric, turned parts, solid of revolution",
+    "cells": "homogenization, Bloch, metamaterial, lattice, unit cell",
     "gradients": "sensitivity, adjoint, optimizer",
     "limits": "creep, crack, 3d, limitations",
     "other-programs": "alternatives, comparison with other programs",

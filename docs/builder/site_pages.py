@@ -41,6 +41,7 @@ REFERENCE = {
     "Running and reading": "solve resume read write read_results JobFiles",
     "Sweeps": "sweep sample grid Sweep seek Sought",
     "Gradients": "gradient value_and_grad optimize",
+    "Periodic cells": "PeriodicCell",
     "Selections": "near on_line on_circle inside",
     "Results": "Results BodyMotion Frame PointFields History CriticalPoint Modes",
     "Observers": "BaseObserver Observer Iteration",
@@ -68,7 +69,7 @@ LOOK = (
     ".prev-next-footer a,.prev-next-info,.prev-next-title{overflow:visible;white-space:normal}"
 )
 #: Modules of the reference.
-MODULES = ("corota.mesh", "corota.plots", "corota.examples", "corota.gradients")
+MODULES = ("corota.mesh", "corota.plots", "corota.examples", "corota.gradients", "corota.cells")
 #: Pages of the repository that have a place in the site.
 ROOT_PAGES = {
     "changelog": "CHANGELOG.md",

@@ -8,9 +8,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from corota import examples, mesh, plots
+    from corota import cells, examples, gradients, mesh, plots
     from corota._core import __version__ as __version__
     from corota.analysis.run import solve
+    from corota.cells import PeriodicCell
     from corota.errors import (
         ConvergenceError,
         CorotaError,
@@ -96,6 +97,7 @@ _HOMES = {
     "BodyForce": "model.loads",
     "Buckle": "model.steps",
     "Cells": "mesh",
+    "cells": "",
     "ContactPair": "model.contact",
     "ConvergenceError": "errors",
     "CorotaError": "errors",
@@ -141,6 +143,7 @@ _HOMES = {
     "Ogden": "model.hyperelastic",
     "Orthotropic": "model.materials",
     "Output": "model.steps",
+    "PeriodicCell": "cells",
     "PointFields": "results.results",
     "PointMass": "model.attachments",
     "Polynomial": "model.hyperelastic",
@@ -253,6 +256,7 @@ __all__ = [
     "Ogden",
     "Orthotropic",
     "Output",
+    "PeriodicCell",
     "PointFields",
     "PointMass",
     "Polynomial",
@@ -278,6 +282,7 @@ __all__ = [
     "Voce",
     "Yeoh",
     "YieldRatio",
+    "cells",
     "examples",
     "gradient",
     "gradients",

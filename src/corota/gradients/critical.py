@@ -326,12 +326,14 @@ def _settle_at_amplitude(point: Point, row: Floats, amplitude: float) -> None:
         increment.time = increment.factor * period
         change = tangent.expand(found[:-1])
         _move(point, change)
-        if np.abs(change).max() <= 1e-13 * max(float(np.abs(point.u).max()), 1e-300):
+        settled = np.abs(change).max() <= 1e-13 * max(float(np.abs(point.u).max()), 1e-300)
+        if settled and abs(found[-1]) <= 1e-13 * abs(increment.factor):
             return
 
 
 def _settle_beside_mode(point: Point, mode: Floats) -> None:
     """Find the equilibrium of the primary path at the load factor of the increment."""
+    _move(point, np.zeros_like(point.u))  # prescribed displacements are part of the load
     for _ in range(NEWTON):
         tangent = Tangent(point.system, point.u, point.increment.time)
         border = tangent.restrict(mode)

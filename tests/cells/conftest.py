@@ -1,0 +1,7 @@
+"""Let the tests of this folder share their cells."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
