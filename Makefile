@@ -22,8 +22,8 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python test-slow test-view test-mesh test-petsc lint lint-python clippy format bench docs \
-	check-site wheel try-wheel meshes lock clean
+.PHONY: help setup demo test test-rust test-python test-slow test-view test-mesh test-optimize test-petsc lint lint-python clippy \
+	format bench docs check-site wheel try-wheel meshes lock clean
 
 help: ## Say what the targets do
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' Makefile | awk -F'|' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -69,6 +69,10 @@ test-view: $(VIEW) ## Run the tests against VTK, PyVista, xarray, pandas, meshio
 test-mesh: $(CORE) ## Install Gmsh and ezdxf, and run the tests of outlines
 	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-mesh.txt -c requirements.txt
 	$(BIN)/python -m pytest tests/outline
+
+test-optimize: $(CORE) ## Install mmapy, and run the tests of optimization
+	@$(BIN)/python -m pip install --quiet --require-hashes -r requirements-optimize.txt -c requirements.txt
+	$(BIN)/python -m pytest tests/gradients/test_optimize.py
 
 test-petsc: $(CORE) ## Install PETSc (Debian 12, as root) and test runs on two processes
 	scripts/install_petsc.sh $(abspath $(BIN)/python)

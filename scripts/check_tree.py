@@ -47,6 +47,8 @@ ROOT_NAMES = frozenset(
         "requirements-docs.txt",
         "requirements-mesh.in",
         "requirements-mesh.txt",
+        "requirements-optimize.in",
+        "requirements-optimize.txt",
         "requirements-view.in",
         "requirements-view.txt",
         "requirements.txt",

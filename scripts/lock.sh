@@ -14,5 +14,6 @@ pin() {
 pin requirements.txt pyproject.toml --extra plot
 pin requirements-dev.txt requirements-dev.in --constraint requirements.txt
 pin requirements-mesh.txt requirements-mesh.in
+pin requirements-optimize.txt requirements-optimize.in --constraint requirements.txt
 pin requirements-docs.txt requirements-docs.in --constraint requirements.txt
 pin requirements-view.txt requirements-view.in --constraint requirements.txt --constraint requirements-dev.txt

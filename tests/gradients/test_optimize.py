@@ -37,9 +37,18 @@ def lightest(**options: object) -> gradients.Optimum:
     )
 
 
-@pytest.mark.parametrize("method", ["SLSQP", "trust-constr"])
+METHODS = ["SLSQP", "trust-constr", "MMA"]
+
+
+def require(method: str) -> None:
+    if method == "MMA":
+        pytest.importorskip("mmapy", reason="mmapy is not installed (requirements-optimize.txt)")
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_the_lightest_cantilever_is_tapered(method: str) -> None:
     """Lighter than the uniform one of the same sag, with the sag at its bound."""
+    require(method)
     found = lightest(method=method)
     uniform = 10.0 * (4.0 * 10.0**3 / (1e5 * 0.05)) ** (1.0 / 3.0)
     assert found.constraints[0] == pytest.approx(-0.05, rel=1e-3)
@@ -54,8 +63,10 @@ def test_both_methods_find_the_same_design() -> None:
     assert one.value == pytest.approx(two.value, rel=1e-6)
 
 
-def test_a_run_that_was_stopped_continues_to_the_bit(tmp_path: Path) -> None:
-    whole = lightest()
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_that_was_stopped_continues_to_the_bit(tmp_path: Path, method: str) -> None:
+    require(method)
+    whole = lightest(method=method, most=12)
     record = tmp_path / "designs.jsonl"
 
     def stop(number: int, design: gradients.Design) -> None:
@@ -63,17 +74,19 @@ def test_a_run_that_was_stopped_continues_to_the_bit(tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        lightest(record=record, progress=stop)
+        lightest(record=record, progress=stop, method=method, most=12)
     with record.open("a") as file:
         file.write('{"x": [1.0')  # as a process that was killed leaves it
-    again = lightest(record=record)
+    again = lightest(record=record, method=method, most=12)
     assert again.runs == len(whole.history) - 4
     assert [d.x for d in again.history] == [d.x for d in whole.history]
     assert again.x.tobytes() == whole.x.tobytes()
 
 
-def test_designs_that_fail_are_left() -> None:
+@pytest.mark.parametrize("method", ["SLSQP", "MMA"])
+def test_designs_that_fail_are_left(method: str) -> None:
     """The analysis of thin beams fails: the optimum next to them is found all the same."""
+    require(method)
 
     def build(x: np.ndarray) -> ct.Model:
         if x[1] < 0.55:
@@ -81,7 +94,13 @@ def test_designs_that_fail_are_left() -> None:
         return cantilever(x)
 
     found = ct.optimize(
-        build, [1.5, 1.5], gradients.Mass(), [SAG], bounds=[(0.2, 3.0), (0.6, 3.0)], threads=1
+        build,
+        [1.5, 1.5],
+        gradients.Mass(),
+        [SAG],
+        bounds=[(0.2, 3.0), (0.6, 3.0)],
+        method=method,
+        threads=1,
     )
     assert found.constraints[0] == pytest.approx(-0.05, rel=1e-4)
     with pytest.raises(ct.ModelError, match="too thin"):
@@ -101,3 +120,29 @@ def test_senseless_input_is_refused(tmp_path: Path) -> None:
     other.write_text("a line of another kind\n")
     with pytest.raises(ct.FileError, match="not a design"):
         lightest(record=other)
+
+
+def test_moving_asymptotes_find_the_design_of_the_others() -> None:
+    require("MMA")
+    one, two = lightest(), lightest(method="MMA")
+    assert two.success
+    np.testing.assert_allclose(two.x, one.x, rtol=2e-3)
+    assert two.value == pytest.approx(one.value, rel=1e-5)
+    free = ct.optimize(
+        cantilever,
+        [1.5, 1.5],
+        gradients.Displacement("right", "y") ** 2,
+        bounds=BOUNDS,
+        method="MMA",
+        threads=1,
+    )
+    np.testing.assert_allclose(free.x, [3.0, 3.0], rtol=1e-5)  # the stiffest there is
+
+
+def test_what_moving_asymptotes_refuse() -> None:
+    with pytest.raises(ct.InputError, match="finite bounds"):
+        ct.optimize(cantilever, [1.5, 1.5], gradients.Mass(), method="MMA")
+    require("MMA")
+    even = gradients.Constraint(gradients.Displacement("right", "y"), -0.05, -0.05)
+    with pytest.raises(ct.InputError, match="no equations"):
+        ct.optimize(cantilever, [1.5, 1.5], gradients.Mass(), [even], bounds=BOUNDS, method="MMA")

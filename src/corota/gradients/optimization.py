@@ -1,4 +1,4 @@
-"""Optimization of designs by SciPy with exact gradients, a record, and restart from it."""
+"""Optimization of designs with exact gradients, a record, and restart from it."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -191,7 +191,7 @@ def optimize(
     *,
     bounds: Sequence[tuple[float, float]] | None = None,
     maximize: bool = False,
-    method: Literal["SLSQP", "trust-constr"] = "SLSQP",
+    method: Literal["SLSQP", "trust-constr", "MMA"] = "SLSQP",
     tolerance: float = 1e-8,
     most: int = 100,
     sizes: ArrayLike | None = None,
@@ -216,8 +216,9 @@ def optimize(
         Lowest and highest value of each parameter.
     maximize : bool
         Make the objective largest.
-    method : {"SLSQP", "trust-constr"}
-        Of SciPy.
+    method : {"SLSQP", "trust-constr", "MMA"}
+        The first two of SciPy; the method of moving asymptotes, for many parameters within bounds
+        and inequalities, by mmapy (``pip install corota[optimize]``).
     tolerance : float
         Relative to the scaled objective.
     most : int
@@ -225,7 +226,7 @@ def optimize(
     sizes : array_like, optional
         Sizes of the parameters; by default the ranges of the bounds, or the magnitudes of `x0`.
     record : path-like, optional
-        File (``.jsonl``) that keeps each design; the same call continues from it. SciPy's methods
+        File (``.jsonl``) that keeps each design; the same call continues from it. The methods
         are deterministic, so that designs which are stored are taken in the same order.
     progress : callable, optional
         ``progress(number, design)`` after each design.
@@ -263,13 +264,13 @@ def optimize(
     >>> bool(abs(found.constraints[0] + 0.1) < 1e-6)
     True
     """
-    from scipy.optimize import Bounds, NonlinearConstraint, minimize
-
     start = np.array(x0, dtype=float)
     if start.ndim != 1 or not np.isfinite(start).all():
         raise InputError(f"the first design has the shape (k,) and is finite, not {x0!r}")
-    if method not in ("SLSQP", "trust-constr"):
-        raise InputError(f"method is 'SLSQP' or 'trust-constr', not {method!r}")
+    if method not in ("SLSQP", "trust-constr", "MMA"):
+        raise InputError(f"method is 'SLSQP', 'trust-constr' or 'MMA', not {method!r}")
+    if method == "MMA" and (bounds is None or not np.isfinite(np.array(bounds, float)).all()):
+        raise InputError("method='MMA' needs finite bounds of all parameters")
     scale = _scale(start, bounds, sizes)
     own = list(constraints)
     measures = [objective, *(c.measure for c in own)]
@@ -293,36 +294,27 @@ def optimize(
         values[0] = worst + 1.0 + abs(worst)
         return values, unit[:, None] * np.array(good.gradient) * scale
 
-    def value(k: int, y: Floats) -> float:
-        return float(at(y)[0][k])
-
-    def slope(k: int, y: Floats) -> Floats:
-        return np.asarray(at(y)[1][k])
-
-    limits = None
+    limits = [
+        (
+            -np.inf if each.lower is None else each.lower * unit[k],
+            np.inf if each.upper is None else each.upper * unit[k],
+        )
+        for k, each in enumerate(own, start=1)
+    ]
+    box = None
     if bounds is not None:
         low, high = np.array(bounds, dtype=float).T
-        limits = Bounds(low / scale, high / scale, keep_feasible=True)
-    conditions: list[Any] = []
-    for k, each in enumerate(own, start=1):
-        low = -np.inf if each.lower is None else each.lower * unit[k]
-        high = np.inf if each.upper is None else each.upper * unit[k]
-        bound: Any = partial(value, k)
-        conditions.append(NonlinearConstraint(bound, low, high, jac=partial(slope, k)))
-    extra: dict[str, Any] = {"maxiter": most}
-    if method == "SLSQP":
-        extra["ftol"] = tolerance
+        box = low / scale, high / scale
+    found: Any
+    if box is not None and method == "MMA":
+        from corota.gradients.asymptotes import moving_asymptotes
+
+        def usable(y: Floats) -> bool:
+            return not designs.at(_unscaled(y, scale, bounds)).error
+
+        found = moving_asymptotes(at, usable, start / scale, box, limits, tolerance, most)
     else:
-        extra |= {"gtol": tolerance, "xtol": tolerance}
-    found: Any = cast("Any", minimize)(
-        partial(value, 0),
-        start / scale,
-        jac=partial(slope, 0),
-        bounds=limits,
-        constraints=conditions,
-        method=method,
-        options=extra,
-    )
+        found = _by_scipy(method, at, start / scale, box, limits, tolerance, most)
     best = _best(designs, own, unit, _unscaled(found.x, scale, bounds))
     return Optimum(
         np.array(best.x),
@@ -332,6 +324,44 @@ def optimize(
         str(found.message),
         designs.history,
         function.runs,
+    )
+
+
+def _by_scipy(
+    method: str,
+    at: Callable[[Floats], tuple[Floats, Floats]],
+    start: Floats,
+    box: tuple[Floats, Floats] | None,
+    limits: Sequence[tuple[float, float]],
+    tolerance: float,
+    most: int,
+) -> Any:
+    """Minimize the first value within limits of the others by SciPy."""
+    from scipy.optimize import Bounds, NonlinearConstraint, minimize
+
+    def value(k: int, y: Floats) -> float:
+        return float(at(y)[0][k])
+
+    def slope(k: int, y: Floats) -> Floats:
+        return np.asarray(at(y)[1][k])
+
+    conditions: list[Any] = []
+    for k, (low, high) in enumerate(limits, start=1):
+        bound: Any = partial(value, k)
+        conditions.append(NonlinearConstraint(bound, low, high, jac=partial(slope, k)))
+    extra: dict[str, Any] = {"maxiter": most}
+    if method == "SLSQP":
+        extra["ftol"] = tolerance
+    else:
+        extra |= {"gtol": tolerance, "xtol": tolerance}
+    return cast("Any", minimize)(
+        partial(value, 0),
+        start,
+        jac=partial(slope, 0),
+        bounds=None if box is None else Bounds(*box, keep_feasible=True),
+        constraints=conditions,
+        method=method,
+        options=extra,
     )
 
 
