@@ -13,7 +13,7 @@ Source: CalculiX 2.20, ``loadadd.f`` and ``bodyadd.f``; tests/steps compares wit
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from corota.analysis.electrostatics import ElectrostaticPressure
     from corota.analysis.following_forces import FollowingTraction
     from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.penetration import PenetratingPressure
     from corota.errors import Location
 
     Ints = NDArray[np.int64]
@@ -143,6 +144,8 @@ class DistributedLoads:
                 else:
                     kept.append(old)
                 continue
+            if _goes_on(old, new):
+                continue
             alike = _family(old.item) == _family(new.item)
             hit = np.isin(_codes(old.faces), _codes(new.faces)) & alike
             if not hit.any():
@@ -200,13 +203,13 @@ class DistributedLoads:
         for item in items:
             faces = self._faces(item)
             load = DistributedLoad(0.0, 1.0, amplitude(item.amplitude, item.where), item)
-            if item.kind == "pressure":
+            if item.kind.endswith("pressure"):
                 load.end = item.value[0]
             else:
                 share = 1.0 / self._area(faces) if item.total else 1.0
                 load.traction = tuple(share * v for v in item.value)
-            opposite = np.asarray(item.opposite)
-            key = (item.kind, load.end, load.amplitude, load.traction, opposite.tobytes())
+            more = [np.asarray(part).tobytes() for part in (item.opposite, item.start)]
+            key = (item.kind, load.end, load.amplitude, load.traction, item.value[1:], *more)
             found.setdefault(key, (load, []))[1].append(faces)
         return [
             self._edge_load(replace(load, faces=np.concatenate(faces)))
@@ -254,6 +257,9 @@ class DistributedLoads:
         if load.item.kind == "electrostatic":
             load.force = self._electrostatic(load)
             return load
+        if load.item.kind == "penetrating pressure":
+            load.force = self._penetrating(load)
+            return load
         core, drilling = self._core(load.faces)
         if load.item.kind == "pressure":
             load.force = Pressure(self.system, core)
@@ -292,6 +298,45 @@ class DistributedLoads:
         return ElectrostaticPressure(
             self.system, nodes, thickness, strength, ground, opposite, load.item.where
         )
+
+    def _penetrating(self, load: DistributedLoad) -> PenetratingPressure:
+        """The pressure of a fluid that passes along edges."""
+        from corota.analysis.penetration import Edges, PenetratingPressure
+
+        item = load.item
+        assert isinstance(item, EdgeLoad)
+        assert load.faces is not None
+        assert item.start is not None
+        chain, opposite = Edges(*self._edges(load.faces)), None
+        if item.opposite is not None:
+            opposite = Edges(*self._edges(self._faces(replace(item, edges=item.opposite))))
+        start = self.system.model.mesh.node_indices(item.start)
+        critical = item.value[1] if len(item.value) > 1 else None
+        force = PenetratingPressure(self.system, chain, opposite, start, critical, item.where)
+        self._check_contact(force, item)
+        return force
+
+    def _check_contact(self, fluid: PenetratingPressure, item: EdgeLoad) -> None:
+        """Refuse a fluid whose edges are no slave surface: their contact pressure is not known."""
+        system: Any = self.system
+        slaves, masters = (np.zeros_like(fluid.on_chain) for _ in range(2))
+        for pair in system.contact_term.pairs:
+            if not pair.tied:
+                slaves[pair.slave.node_list] = True
+                if pair.master is not None:
+                    masters[pair.master.node_list] = True
+        if (fluid.on_chain & masters & ~slaves).any():
+            raise ModelError(
+                "the edges of a fluid that penetrates are a master surface of contact: give those "
+                "of the slave, and these as opposite=",
+                item.where,
+            )
+        if not (fluid.on_chain & slaves).any():
+            raise ModelError(
+                "the edges of a fluid that penetrates are no slave surface of contact: a pressure "
+                "acts on free edges",
+                item.where,
+            )
 
     def _faces(self, item: EdgeLoad) -> Ints:
         """Cell and side of every loaded edge, shape (n, 2)."""
@@ -362,6 +407,35 @@ class DistributedLoads:
         return area
 
 
+def _goes_on(old: DistributedLoad, new: DistributedLoad) -> bool:
+    """Whether a fluid gets another pressure; where it is and what it was are then those of `new`.
+
+    Raises
+    ------
+    ModelError
+        If the edges are others.
+    """
+    pair = [load.item for load in (old, new) if isinstance(load.item, EdgeLoad)]
+    if len(pair) < 2 or {item.kind for item in pair} != {"penetrating pressure"}:
+        return False
+    assert old.faces is not None
+    assert new.faces is not None
+    both = np.isin(_codes(old.faces), _codes(new.faces))
+    if not both.any():
+        return False
+    if len(old.faces) != len(new.faces) or not both.all():
+        raise ModelError(
+            "a fluid that penetrates gets another pressure on the same edges as before",
+            new.item.where,
+        )
+    before: Any = old.force
+    fluid: Any = new.force
+    new.begin = old.begin
+    for name in ("wet", "committed", "pressure"):
+        setattr(fluid, name, getattr(before, name))
+    return True
+
+
 def _codes(faces: Ints) -> Ints:
     """One number for each pair of cell and side."""
     return faces[:, 0] * SIDES + faces[:, 1]
@@ -378,7 +452,7 @@ def _fading(old: DistributedLoad, new: DistributedLoad) -> list[DistributedLoad]
 
 def _family(item: Item) -> str:
     """Loads on the same edge or node replace each other within a family."""
-    return item.kind.split()[-1] if isinstance(item, EdgeLoad) else "force"
+    return item.kind.removeprefix("following ") if isinstance(item, EdgeLoad) else "force"
 
 
 def _is_dead(item: Item) -> bool:

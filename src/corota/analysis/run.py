@@ -497,7 +497,7 @@ class Analysis:
             assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
         contact, sums, pairs = contact_output(system.contact_term)
-        scalars = {**scalars, **sums}
+        scalars = {**scalars, **sums, **system.conditions.wetted()}
         reaction, held = state.reaction, None
         if reaction is None:
             reaction = system.reaction(state.at)

@@ -196,6 +196,65 @@ class Loading:
         """Apply a pressure [force/length^2] on edges, positive into the element."""
         self.loads.append(EdgeLoad(self._edges(edges), "pressure", (p,), amplitude))
 
+    def penetrating_pressure(
+        self,
+        edges: str | ArrayLike,
+        p: float,
+        start: str | ArrayLike,
+        *,
+        opposite: str | ArrayLike | None = None,
+        critical: float | None = None,
+        amplitude: str = "",
+    ) -> None:
+        """Let a fluid press on edges as far as it gets between surfaces in contact.
+
+        The fluid is at the start and passes along the edges, one by one, where contact does not
+        press harder than the fluid (or than `critical`). It acts on edges that it has passed, as a
+        pressure does. Between increments it draws back where the surfaces press again. The scalar
+        ``wetted length`` says how far it is. For static and implicit dynamic steps.
+
+        Parameters
+        ----------
+        edges : str or array_like of int, shape (n, 2)
+            The slave surface of a contact pair, with the free surface that leads there.
+        p : float
+            Pressure of the fluid, >= 0 [force/length^2].
+        start : str or array_like of int
+            Nodes of these edges that are in the fluid.
+        opposite : str or array_like of int, optional
+            Edges of the other body, if it is deformable: the fluid presses on them as well.
+        critical : float, optional
+            Contact pressure up to which the fluid passes [force/length^2], by default that of the
+            fluid; 0 for surfaces that are apart only.
+        amplitude : str
+            Name in ``Model.amplitudes``; empty: a ramp.
+
+        Raises
+        ------
+        InputError
+            If a pressure is negative.
+
+        Examples
+        --------
+        >>> import corota as ct
+        >>> model = ct.Model(ct.mesh.rectangle(10.0, 2.0, nx=10, ny=2))
+        >>> model.section("all", element="Q4", material=ct.Elastic(E=100.0, nu=0.0))
+        >>> model.contact("bottom", ct.RigidCurve.line((-5.0, 0.0), (15.0, 0.0)), name="floor")
+        >>> model.fix("top")
+        >>> model.fix("right", x=None, y=0.0)
+        >>> model.penetrating_pressure("bottom", 2.0, start=[0])
+        >>> frame = ct.solve(model, ct.Static(nlgeom=False), threads=1).frames[-1]
+        >>> frame.scalars["wetted length"]
+        10.0
+        """
+        value = (p,) if critical is None else (p, critical)
+        sides = None if opposite is None else self._edges(opposite)
+        nodes = selection.names(start) or self._nodes(start)
+        on, kind = self._edges(edges), "penetrating pressure"
+        self.loads.append(
+            EdgeLoad(on, kind, value, amplitude, opposite=sides, start=nodes)  # type: ignore[arg-type]
+        )
+
     def electrostatic(
         self,
         edges: str | ArrayLike,

@@ -361,7 +361,10 @@ class Force(Brief):
 
 
 #: Kinds of loads on edges.
-EDGE_LOADS = ("pressure", "traction", "following traction", "shear", "electrostatic")
+EDGE_LOADS = (
+    *("pressure", "traction", "following traction", "shear", "electrostatic"),
+    "penetrating pressure",
+)
 
 
 @dataclass(repr=False)
@@ -372,38 +375,50 @@ class EdgeLoad(Brief):
     ----------
     edges : str or array_like of int, shape (n, 2)
         Edge set, or pairs of global cell index and local edge (from 0).
-    kind : {"pressure", "traction", "following traction", "shear", "electrostatic"}
+    kind : {"pressure", "traction", "following traction", "shear", "electrostatic", \
+            "penetrating pressure"}
         ``pressure``: normal, positive into the element, follows the deforming edge in
         geometrically nonlinear steps (the thickness stays the undeformed one); ``traction``:
         dead, fixed in space; ``following traction``: the same on the undeformed edge, rotates with
         it and acts on its current length, as a pressure does; ``shear``: along the edge, with the
         element on the left, and follows it; ``electrostatic``: towards an opposite electrode, by
-        the current gap.
+        the current gap; ``penetrating pressure``: a pressure on the edges that a fluid reaches.
     value : tuple of float
         ``(p,)``, ``(tx, ty)`` or ``(t,)`` [force/length^2]; times thickness and length.
         ``electrostatic``: half the permittivity times the square of the voltage [force], and x, y
         of two points of the opposite electrode, if it is a fixed line [length].
+        ``penetrating pressure``: ``(p,)``, or with the critical contact pressure.
     total : bool
         Whether a traction's value is a total force [force], distributed over the edges' area.
     opposite : str or array_like of int, shape (n, 2), optional
-        Edges of the opposite electrode, if they can move.
+        Edges of the opposite electrode, if they can move, or of the other body beside a fluid.
+    start : str or array_like of int, optional
+        Nodes where a fluid is from the start.
     """
 
     edges: str | Ints
-    kind: Literal["pressure", "traction", "following traction", "shear", "electrostatic"]
+    kind: Literal[
+        "pressure", "traction", "following traction", "shear", "electrostatic",
+        "penetrating pressure",
+    ]  # fmt: skip
     value: tuple[float, ...]
     amplitude: str = ""
     total: bool = False
     where: Location | None = field(default=None, compare=False, repr=False)
     opposite: str | Ints | None = None
+    start: str | Ints | None = None
 
     def __post_init__(self) -> None:
         self.edges = selected(self.edges, "edge", self.where)
         if self.opposite is not None:
             self.opposite = selected(self.opposite, "edge", self.where)
+        if self.start is not None:
+            self.start = selected(self.start, "node", self.where)
         choose(self.kind, EDGE_LOADS, "load on edges", self.where)
-        what = "a pressure" if self.kind == "pressure" else "a traction"
+        what = "a pressure" if self.kind.endswith("pressure") else "a traction"
         self.value = tuple(number(v, what, self.where) for v in self.value)
+        if self.kind == "penetrating pressure" and min(self.value) < 0.0:
+            raise InputError(f"a fluid has pressures >= 0, not {min(self.value):g}", self.where)
         self.amplitude = _amplitude(self.amplitude, self.where)
 
 
@@ -636,6 +651,12 @@ def applied_in_step(loads: Sequence[Load], mesh: Mesh) -> list[AppliedLoad]:
 def _united(load: AppliedLoad, mesh: Mesh) -> AppliedLoad:
     """The load with the members of its sets, where it names several."""
     if isinstance(load, EdgeLoad):
+        if _several(load.opposite):
+            assert load.opposite is not None
+            load = replace(load, opposite=mesh.edge_pairs(load.opposite))
+        if _several(load.start):
+            assert load.start is not None
+            load = replace(load, start=mesh.node_indices(load.start))
         return replace(load, edges=mesh.edge_pairs(load.edges)) if _several(load.edges) else load
     if isinstance(load, BodyForce):
         return replace(load, cells=mesh.cell_indices(load.cells)) if _several(load.cells) else load

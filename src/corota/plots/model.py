@@ -267,7 +267,7 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
         along = last - first
         length = float(np.linalg.norm(along)) or 1.0
         inward = np.array([-along[1], along[0]]) / length
-        if load.kind == "pressure":
+        if load.kind.endswith("pressure"):
             direction = inward * np.sign(load.value[0])
         elif load.kind == "shear":
             direction = along / length * np.sign(load.value[0])
@@ -276,7 +276,7 @@ def _edge_load(ax: Any, subject: Model, load: EdgeLoad, size: float) -> None:
         else:
             direction = np.array(load.value[:2])
             direction = direction / (float(np.linalg.norm(direction)) or 1.0)
-        head = load.kind == "pressure" and load.value[0] > 0.0
+        head = load.kind.endswith("pressure") and load.value[0] > 0.0
         _arrow(ax, 0.5 * (first + last), 0.06 * size * direction, LOAD, tail=not head)
 
 

@@ -56,6 +56,7 @@ SCALARS: dict[str, tuple[str, str]] = {
     "friction energy": ("ALLFD", "energy"),
     "contact energy": ("ALLCL", "energy"),
     "stabilization energy": ("ALLSD", "energy"),
+    "wetted length": ("undeformed length of the edges that fluids have reached", "length"),
     "modal strain energy": ("strain energy of the modes that are superposed", "energy"),
     "between increments": ("1 at a requested time within an explicit increment", ""),
     **{

@@ -29,6 +29,7 @@ from corota.errors import ModelError, UnsupportedError
 from corota.model.loads import (
     LOAD_KINDS,
     BodyForce,
+    EdgeLoad,
     NodalForce,
     Temperature,
     applied,
@@ -149,6 +150,7 @@ class Conditions(Term):
                 self._begin_harmonic(step, model.supports if first else [])
         else:
             self._change_loads(step)
+        self._refuse_fluids(step)
         if reaction is not None:
             released = constrained_before & ~self.constrained
             self.fading[released] = reaction[released]
@@ -210,6 +212,61 @@ class Conditions(Term):
         self.distributed.carry(lambda load: self.scale(load, end), self.factors.runs_on)
         self.temperatures.carry(end)
         self.forces.carry(end)
+
+    # -- fluids that penetrate ----------------------------------------------------------
+
+    @property
+    def fluids(self) -> list[DistributedLoad]:
+        """Loads of fluids that penetrate between surfaces."""
+        return [
+            load
+            for load in self.distributed.loads
+            if isinstance(load.item, EdgeLoad) and load.item.kind == "penetrating pressure"
+        ]
+
+    def begin_fluids(self, contact: Floats, soft: NDArray[np.bool_], u: Floats) -> None:
+        """Put the fronts of fluids where the committed contact pressures allow them."""
+        for load in self.fluids:
+            load.force.begin(contact, soft, u)  # type: ignore[attr-defined]
+        self._known = {}
+
+    def advance_fluids(
+        self, contact: Floats, soft: NDArray[np.bool_], u: Floats, step_time: float
+    ) -> bool:
+        """Advance the fronts of fluids at an equilibrium; False where all stand."""
+        moved = [
+            load.force.advance(contact, soft, self.scale(load, step_time), u)  # type: ignore[attr-defined]
+            for load in self.fluids
+        ]
+        if any(moved):
+            self._known = {}
+        return any(moved)
+
+    def commit(self) -> None:
+        """Accept the fronts of fluids."""
+        for load in self.fluids:
+            load.force.commit()  # type: ignore[attr-defined]
+
+    def wetted(self) -> dict[str, float]:
+        """How far fluids have penetrated, by the name of the scalar."""
+        fluids = self.fluids
+        if not fluids:
+            return {}
+        return {"wetted length": sum(load.force.wetted for load in fluids)}  # type: ignore[attr-defined]
+
+    def _refuse_fluids(self, step: Step) -> None:
+        """Refuse a fluid in a step that does not find out where it is."""
+        explicit = getattr(step, "scheme", "") == "central_difference"
+        path = getattr(step, "path", None) is not None
+        if step.procedure in ("static", "dynamic") and not (explicit or path):
+            return
+        for load in (self.harmonic or self).fluids:
+            if load.begin != load.end or explicit:
+                raise UnsupportedError(
+                    "a fluid that penetrates is for static steps by load control and implicit "
+                    "dynamic steps",
+                    load.item.where,
+                )
 
     def add_items(self, loads: list[Load], supports: Iterable[Fixed]) -> None:
         """Add loads and supports that grow from zero, apart from any step."""
@@ -331,6 +388,11 @@ class Conditions(Term):
                 f"amplitude {self.factors.names[index]!r} in a step that follows a path: its loads "
                 "grow with the load factor; leave the amplitude out, or put that load into a "
                 "step before"
+            )
+        if any(load.begin != load.end for load in self.fluids):
+            raise ModelError(
+                "a fluid that penetrates in a step that follows a path: its front is no function "
+                "of the load factor; let its pressure grow in a step before"
             )
         if not self.factors.ramp:
             raise ModelError(

@@ -309,6 +309,9 @@ _TABLE: dict[str, Keyword] = {
         "OP AMPLITUDE FOLLOWER LOADCASE ORIENTATION REAL IMAGINARY",
         "REGIONTYPE CONSTANTRESULTANT",
     ),
+    "PRESSURE PENETRATION": Keyword(
+        card("loads.pressure_penetration"), "SLAVE MASTER AMPLITUDE OP", "PENETRATIONTIME"
+    ),
     "TEMPERATURE": Keyword(card("thermal.temperature"), "OP AMPLITUDE", "LOADCASE"),
     "NODE PRINT": Keyword(card("output.node_print"), f"NSET {_PRINT} GLOBAL", "SUMMARY"),
     "EL PRINT": Keyword(card("output.el_print"), f"ELSET {_PRINT}", "GLOBAL POSITION SUMMARY"),

@@ -106,6 +106,12 @@ class ContactEquations:
             int, Floats
         ] = {}  # of slipping tractions, by the pair's first multiplier
 
+    def go_on(self) -> None:
+        """Begin again at the equilibrium that was found, with its states."""
+        last, kink, first = self.last, self.kink, self.first_move
+        self.forget()
+        self.last, self.kink, self.first_move = last, kink, first
+
     # -- the protocol of Newton's method -----------------------------------------------
 
     def start(self, u: Floats) -> Floats:

@@ -109,6 +109,7 @@ def solve_increment(
         PATIENCE,
         ContactEquations,
     )
+    from corota.analysis.terms.contact.output import pressures
 
     problem = ContactEquations(inner, system)
     problem.inherit_kink()
@@ -127,7 +128,22 @@ def solve_increment(
             for added, sign in ((known.added, -1.0), (start.at.added, 1.0)):
                 if added is not None:
                     system.pattern.add_diagonal(start.at.values, sign * added)
+    fluids = system.conditions.fluids
+    if fluids:
+        term = system.contact_term
+        known_terms = None if term.at is None else term.at.terms
+        system.conditions.begin_fluids(*pressures(term, known_terms, term.committed), u)
+        start = None
     found = newton(problem, z, target, step_time, more, start, report)
+    while fluids and found.converged and found.at is not None:
+        state = found.at.contact_state
+        contact = pressures(system.contact_term, state.terms, state.multipliers)
+        if not system.conditions.advance_fluids(*contact, found.u[:n], step_time):
+            break
+        problem.go_on()
+        again = newton(problem, found.u, target, step_time, more, None, report)
+        again.iterations += found.iterations
+        found = again
     return problem.settle(found), problem
 
 

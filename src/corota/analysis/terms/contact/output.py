@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import COVERED, OPEN
+from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN
 from corota.arrays import distinct
 
 if TYPE_CHECKING:
@@ -90,6 +90,31 @@ def output(
     return values, sums, each
 
 
+def pressures(
+    contact_term: ContactTerm, terms: list[Terms] | None, multipliers: Floats
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Contact pressure of the slave nodes, and nodes whose pair has a pressure law.
+
+    Parameters
+    ----------
+    contact_term : ContactTerm
+    terms : list of Terms or None
+        Of all pairs at the state; None before the first increment.
+    multipliers : ndarray, shape (n_multipliers,)
+    """
+    n = len(contact_term.system.per_node)
+    values, soft = np.zeros((n, 5)), np.zeros(n, bool)
+    each = zip(contact_term.pairs, contact_term.parts(multipliers), strict=True)
+    for k, (pair, (p, _)) in enumerate(each):
+        if pair.tied:
+            continue
+        rows = np.zeros((pair.n, 5))
+        rows[:, 0], rows[:, 4] = p, np.where(p > 0.0, CLOSED, OPEN)
+        _spread(values, pair, rows[pair.owner], None if terms is None else terms[k])
+        soft[pair.nodes] |= pair.law is not None
+    return values[:, 0], soft
+
+
 def _spread(values: Floats, pair: Pair, rows: Floats, terms: Terms | None = None) -> None:
     """Add a pair's rows to the nodes; mid-side nodes get the mean of their corners."""
     n = len(values)
@@ -166,4 +191,4 @@ def resultant(
     return float(nodal[:, 0].sum()), float(nodal[:, 1].sum()), float(moment)
 
 
-__all__ = ["output", "resultant"]
+__all__ = ["output", "pressures", "resultant"]

@@ -138,6 +138,8 @@ class LoadBuilder:
                 return None
             found: Temperature = build_temperature(draft, nodes, amplitude)
             return found
+        if draft.kind == "penetrating pressure":
+            return self._penetrating(draft, amplitude)
         if draft.kind.startswith("surface "):
             edges = self._edges_of(draft)
             if edges is None or amplitude is None:
@@ -151,6 +153,30 @@ class LoadBuilder:
                 where=where,
             )
         return self._cell_load(draft, amplitude)
+
+    def _penetrating(self, draft: Draft, amplitude: str | None) -> Load | None:
+        """A fluid that passes along the slave surface of a contact pair."""
+        start, sides = self.targets.nodes(draft), []
+        for side in ("SLAVE", "MASTER"):
+            name: str = self.sets.mesh_name(
+                self.mesh.edge_sets, self.targets.at, draft.card.value(side)
+            )
+            if not name and side == "SLAVE":
+                self.deck.error(
+                    draft.card,
+                    draft.card.at(side),
+                    f"no surface of elements named {numerals.shown(draft.card.value(side))}",
+                    hint=nearest(draft.card.value(side), self.mesh.edge_sets),
+                )
+                return None
+            sides.append(name)
+        if start is None or amplitude is None:
+            return None
+        where, kind = draft.row.where, cast("Literal['penetrating pressure']", draft.kind)
+        slave, master = sides
+        return EdgeLoad(
+            slave, kind, draft.value, amplitude, where=where, opposite=master or None, start=start
+        )
 
     def _turns(self, draft: Draft, nodes: str | Ints) -> bool:
         """Whether a force can follow its nodes; an error where it cannot but should."""

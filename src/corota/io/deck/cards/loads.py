@@ -9,7 +9,7 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from corota.io.deck.cards.step import loads_of
+from corota.io.deck.cards.step import loads_of, open_step
 from corota.io.deck.cards.supports import dof_of
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import Draft, StepDraft
@@ -217,6 +217,38 @@ def _axes(deck: Deck, card: Card) -> float | None:
         deck.error(card, card.at("ORIENTATION"), f"{name} is not rectangular", hint=hint)
         return None
     return angle
+
+
+def pressure_penetration(deck: Deck, card: Card) -> None:
+    """``*PRESSURE PENETRATION, SLAVE=, MASTER=``: node, node, pressure, critical pressure."""
+    now = open_step(deck, card)
+    if now is None:
+        return
+    if deck.choice(card, "OP", ("MOD", "NEW", ""), "MOD") == "NEW":
+        deck.error(
+            card,
+            card.at("OP"),
+            "OP=NEW of fluids that penetrate is not part of this version",
+            hint="give each of them the pressure 0",
+        )
+    for name in ("SLAVE", "MASTER"):
+        if not card.value(name):
+            deck.error(card, card.where, f"{name}= is missing: the surfaces of a contact pair")
+            return
+    for row in card.rows():
+        deck.extra_fields(card, row, 4)
+        pressure = deck.real(card, row, 2, "the pressure of the fluid")
+        critical = deck.real(card, row, 3, "the critical contact pressure", 0.0)
+        if not row.get(0):
+            deck.row_error(card, row, 0, "the node of the slave surface in the fluid is missing")
+        elif pressure is not None and critical is not None:
+            if min(pressure, critical) < 0.0:
+                deck.row_error(card, row, 2, "the pressures of a fluid must be >= 0")
+                continue
+            value, amplitude = (pressure, critical), card.value("AMPLITUDE")
+            now.loads.append(
+                Draft("penetrating pressure", card, row, row.get(0), value, -1, amplitude)
+            )
 
 
 def _traction(deck: Deck, card: Card, row: Row, label: str, now: StepDraft) -> Draft | None:

@@ -104,6 +104,11 @@ def _edges(writer: Writer, load: EdgeLoad, option: str) -> Iterator[str]:
         return
     if load.kind == "electrostatic":
         raise UnsupportedError("decks have no electrostatic loads; keep the model in Python")
+    if load.kind == "penetrating pressure":
+        raise UnsupportedError(
+            "decks have fluids that penetrate by contact pair, models by edges; keep the model in "
+            "Python"
+        )
     name = writer.edge_set(load.edges)
     if load.kind == "pressure":
         yield f"*DSLOAD{option}\n{name}, P, {number(load.value[0])}\n"
