@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 #: Modules of the page; each imports only those before it.
 MODULES = (
     "dom", "chunk", "colors", "geometry", "fields", "source", "model", "scene", "painter",
-    "overlay", "player", "history", "axes", "charts", "tables", "live", "main",
+    "overlay", "revolved", "player", "history", "axes", "charts", "tables", "live", "main",
 )  # fmt: skip
 #: Content security policy: only the page's own scripts; a live page may also request its server.
 POLICY = (

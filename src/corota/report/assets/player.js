@@ -5,6 +5,7 @@ import { byId, el, fill, format, ink, onceAFrame } from "./dom.js";
 import { extremes } from "./fields.js";
 import { Overlay, rigidPoints } from "./overlay.js";
 import { makePainter } from "./painter.js";
+import { paintRevolved } from "./revolved.js";
 
 /** Rigid curves that make the view larger than this times the body are not framed. */
 const LARGE = 2.5;
@@ -80,6 +81,8 @@ export class Player {
     byId("mesh").checked = this.model.nCells <= EDGES_UP_TO;
     byId("undeformed").checked = true;
     byId("contact").checked = true;
+    const ring = (this.model.description.sections ?? []).some(({ plane }) => plane === "axisymmetric");
+    byId("revolved").parentElement.hidden = !ring;
     this.#controls();
     this.#gestures();
     this.#modelControls();
@@ -122,7 +125,7 @@ export class Player {
       scene.show(Number(e.target.value));
     });
     on("play", "click", () => this.toggle());
-    for (const id of ["mesh", "undeformed", "reactions", "contact", "extremes", "supports", "loads"]) on(id, "change", () => this.draw());
+    for (const id of ["mesh", "undeformed", "reactions", "contact", "extremes", "revolved", "supports", "loads"]) on(id, "change", () => this.draw());
     for (const button of document.querySelectorAll("[data-zoom]")) button.addEventListener("click", () => this.zoom(button.dataset.zoom));
     for (const input of document.querySelectorAll("input[name=view]")) input.addEventListener("change", () => this.showView(input.value));
     on("probe-node", "change", (e) => this.probeLabel("node", e.target));
@@ -291,6 +294,17 @@ export class Player {
     this.nodes = nodes;
     this.positions = positions;
     this.drawnValues = model.surface.spread(values, 1);
+    const legend = () => {
+      if (!scene.field || blank) return;
+      const scale = scene.scale === 1 ? "" : `displacements × ${format(scene.scale, 3)}`;
+      overlay.legend({ name: scene.field.name, meaning: scene.field.meaning, range, bands, table: colors, remark: scale });
+    };
+    this.surfaceCanvas.hidden = this.checked("revolved");
+    if (this.surfaceCanvas.hidden) {
+      paintRevolved(overlay.context, camera, model.surface, positions, this.drawnValues, range, bands, colors);
+      legend();
+      return;
+    }
     this.painter.data(positions, this.drawnValues);
     this.painter.colors(colors);
     this.painter.paint({ camera, range, bands, mesh: this.checked("mesh"), meshInk: this.#meshInk });
@@ -309,15 +323,13 @@ export class Player {
     }
     if (this.checked("extremes") && scene.field) this.#markExtremes(values, nodes);
     if (this.probed) this.#markProbe(nodes);
-    if (scene.field && !blank) {
-      const scale = scene.scale === 1 ? "" : `displacements × ${format(scene.scale, 3)}`;
-      overlay.legend({ name: scene.field.name, meaning: scene.field.meaning, range, bands, table: colors, remark: scale });
-    }
+    legend();
   }
 
   #drawModel() {
     const { model, overlay, camera } = this;
     byId("empty").hidden = true;
+    this.surfaceCanvas.hidden = false;
     if (!this.still) this.still = model.surface.spread(model.points, 2);
     this.nodes = model.points;
     this.positions = this.still;
@@ -449,7 +461,7 @@ export class Player {
   }
 
   #hover(x, y) {
-    if (this.view !== "results" || !this.positions || this.playing || this.model.surface.owner.length > 200000) return;
+    if (this.view !== "results" || this.surfaceCanvas.hidden || !this.positions || this.playing || this.model.surface.owner.length > 200000) return;
     const found = this.model.surface.find(this.positions, this.camera.fromX(x), this.camera.fromY(y));
     const value = found?.corners.reduce((sum, corner, i) => sum + found.shares[i] * this.drawnValues[corner], 0);
     byId("hover").textContent = found ? `${this.scene.field?.name ?? ""} ${format(value, 4)}` : "";
@@ -457,7 +469,7 @@ export class Player {
 
   // Probe.
   probeAt(x, y) {
-    if (!this.nodes) return;
+    if (!this.nodes || this.surfaceCanvas.hidden) return;
     const { camera, model } = this;
     let node = -1;
     let nearest = 24;
@@ -552,7 +564,8 @@ export class Player {
     const context = canvas.getContext("2d");
     context.fillStyle = ink("stage");
     context.fillRect(0, 0, canvas.width, canvas.height);
-    for (const layer of [this.surfaceCanvas, this.overlayCanvas]) context.drawImage(layer, 0, 0);
+    if (!this.surfaceCanvas.hidden) context.drawImage(this.surfaceCanvas, 0, 0);
+    context.drawImage(this.overlayCanvas, 0, 0);
     canvas.toBlob((blob) => {
       const link = el("a", { href: URL.createObjectURL(blob), download: `${this.model.name}.png` });
       link.click();
