@@ -30,8 +30,9 @@ TYPES = ("CAX8R", "CAX8", "CAX6", "CAX8R", "CAX8", "CAX4", "CAX6")
 #: 2, 3 times the cells). With flow they are 1e-4 in one linear step, up to 2.9e-3 under NLGEOM and
 #: after an ideally plastic reversal, whatever mesh and increments. There CalculiX differs from an
 #: independent program along the radius, with which Corota agrees (.9 % and 3e-5 at the bore of
-#: deck 80 with straight sides; tests/axisymmetric/test_plastic_ring.py). CAX3 is not compared: it
-#: differs by up to 5e-2 on these coarse meshes, for a reason that is not known.
+#: deck 80 with straight sides; tests/axisymmetric/test_plastic_ring.py). CAX3 is not compared: of
+#: its loads CalculiX takes the circumference at the centroid, which costs up to 4e-2 on these
+#: meshes; with nodal forces both agree (``test_calculix_takes_loads_of_cax3_at_centroids``).
 SECTOR, FLAT, FLOW, AT_AXIS = 5e-4, 5e-3, 4e-3, 2e-3
 MATERIALS = {
     "elastic": "*ELASTIC\n210000., .3\n",

@@ -87,10 +87,18 @@ ENTRIES = {
     "motion/pendulum": Entry("Motion and impact"),
     "motion/pulse": Entry("Motion and impact"),
     "motion/rotor": Entry("Motion and impact"),
+    "o_ring/o_ring": Entry(
+        "Snap-fits and seals",
+        "The wall carries the fluid between its fronts within 1e-6; the ring stays tight.",
+    ),
     "perforated_strip/perforated_strip": Entry("Plasticity"),
     "plastic_cook/plastic_cook": Entry("Plasticity"),
     "rollup/rollup": Entry(
         "Elements", "The gap of the closed circle over its length: 0.0007; exact 0.", "rollup"
+    ),
+    "snap_fit/annular": Entry(
+        "Snap-fits and seals",
+        "On the land 600 N; a shell on an elastic foundation 604 N, CalculiX 592 N.",
     ),
     "snap_fit/snap_fit": Entry("Snap-fits and seals"),
     "switch/switch": Entry("Buckling and snap-through", model="bistable"),

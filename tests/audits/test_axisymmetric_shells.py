@@ -452,3 +452,33 @@ def test_steady_vibration_of_a_ring() -> None:
         assert frame.scalars["frequency"] == pytest.approx(share * natural)
         exact = R**2 / E / (1.0 - share**2)
         assert frame.U[:, 0].mean() == pytest.approx(exact, rel=1e-2)
+
+
+def test_two_layers_of_a_sphere_expand_unlike() -> None:
+    """Bonded layers 50 to 70 and 70 to 100, heated by 80: the pressure between them by Lame."""
+    a, c, b, rise = 50.0, 70.0, 100.0, 80.0
+    layers = [(ct.Elastic(70e3, 0.33, expansion=2.3e-5), a, c), (STEEL, c, b)]
+
+    def moved(r: float, layer: int, inside: float, outside: float) -> float:
+        """Radial displacement under unit pressures, without heat (Timoshenko and Goodier)."""
+        law, low, high = layers[layer]
+        size = high**3 - low**3
+        spread = (1.0 - 2.0 * law.nu) * (inside * low**3 - outside * high**3) * r
+        shear = 0.5 * (1.0 + law.nu) * (inside - outside) * (low * high) ** 3 / r**2
+        return (spread + shear) / (law.E * size)
+
+    alphas = [law.expansion for law, _, _ in layers]
+    apart = (alphas[0] - alphas[1]) * rise * c
+    between = apart / (moved(c, 1, 1.0, 0.0) - moved(c, 0, 0.0, 1.0))
+    model = ct.Model(ct.mesh.annulus(a, b, 10, 16, angle=90.0, cell="quad8"))
+    far = np.hypot(*model.mesh.points[model.mesh.cells[0].nodes].mean(axis=1).T)
+    for (law, _, _), inside in zip(layers, (far < c, far >= c), strict=True):
+        model.section(np.flatnonzero(inside), element="Q8R", material=law, plane="axisymmetric")
+    model.fix("start", x=None)
+    step = ct.Static(nlgeom=False)
+    step.temperature(rise)
+    u = solve(model, step).frames[-1].U
+    for r, layer, pressures in ((a, 0, (0.0, between)), (b, 1, (between, 0.0))):
+        exact = alphas[layer] * rise * r + moved(r, layer, *pressures)
+        assert u[node(model, r, 0.0), 0] == pytest.approx(exact, rel=1e-4)
+        assert u[node(model, 0.0, r), 1] == pytest.approx(exact, rel=1e-3)

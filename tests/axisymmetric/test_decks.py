@@ -6,12 +6,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import corota as ct
 from benchmarks.axisymmetric_decks import ANSWERS, generate
 from benchmarks.structure_decks import by_corota, difference
 from corota.io.deck.write.model import write_deck
+from tests.support.calculix import needs_ccx, run_ccx
 
 STORED = json.loads(ANSWERS.read_text(encoding="utf-8"))
 #: A few of them; ``python -m benchmarks.axisymmetric_decks --stored`` compares with all.
@@ -88,3 +90,73 @@ def test_other_elements_of_revolution_are_refused_with_the_reason(
 ) -> None:
     with pytest.raises(ct.CorotaError, match="not part of this version"):
         read(tmp_path, RING.format(type=type_, load="*CLOAD\n3, 2, 1."))
+
+
+def triangles(load: str) -> tuple[str, ct.Mesh]:
+    """A deck of CAX3, 4 x 3 cells of two, with a load."""
+    mesh = ct.mesh.rectangle(10.0, 8.0, 4, 3, "tri3")
+    mesh.points[:, 0] += 5.0
+    lines = ["*NODE, NSET=NALL"]
+    lines += [f"{i}, {x:.12g}, {y:.12g}, 0." for i, (x, y) in enumerate(mesh.points.tolist(), 1)]
+    lines += ["*ELEMENT, TYPE=CAX3, ELSET=EALL"]
+    nodes = (mesh.cells[0].nodes + 1).tolist()
+    lines += [", ".join(map(str, [label, *row])) for label, row in enumerate(nodes, 1)]
+    lines += ["*NSET, NSET=LOWER", *(f"{n + 1}," for n in mesh.nodes_of("bottom"))]
+    lines += ["*SURFACE, NAME=ROOF"]
+    lines += [f"{cell + 1}, S{side + 1}" for cell, side in mesh.edge_pairs("top").tolist()]
+    lines += ["*MATERIAL, NAME=M", "*ELASTIC", "210000., .3", "*DENSITY", "7.8e-9"]
+    lines += ["*SOLID SECTION, ELSET=EALL, MATERIAL=M", "*BOUNDARY", "LOWER, 2, 2"]
+    lines += ["*STEP", "*STATIC", load, "*NODE PRINT, NSET=NALL", "U", "*END STEP"]
+    return "\n".join(lines) + "\n", mesh
+
+
+def at_centroids(kind: str, mesh: ct.Mesh) -> np.ndarray:
+    """Nodal forces of a load whose circumference is that of the middle of its edge or triangle."""
+    force = np.zeros((mesh.n_nodes, 2))
+    x = mesh.points
+    if kind == "roof":
+        for ends in mesh.edge_nodes(mesh.edge_pairs("top")):
+            area = 2.0 * np.pi * x[ends, 0].mean() * np.ptp(x[ends, 0])
+            force[ends, 1] -= 50.0 * area / len(ends)
+        return force
+    for nodes in mesh.cells[0].nodes:
+        (ax, ay), (bx, by) = x[nodes[1:]] - x[nodes[0]]
+        radius = x[nodes, 0].mean()
+        mass = 7.8e-9 * 2.0 * np.pi * radius * 0.5 * abs(ax * by - ay * bx)
+        if kind == "weight":
+            force[nodes, 1] -= 1e8 * mass / 3.0
+        else:
+            force[nodes, 0] += 1e7 * radius * mass / 3.0
+    return force
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    ("kind", "load", "least"),
+    [
+        ("roof", "*DSLOAD\nROOF, P, 50.", 0.03),
+        ("weight", "*DLOAD\nEALL, GRAV, 1e8, 0., -1., 0.", 0.01),
+        ("spin", "*DLOAD\nEALL, CENTRIF, 1e7, 0., 0., 0., 0., 1., 0.", 0.008),
+    ],
+)
+def test_calculix_takes_loads_of_cax3_at_centroids(
+    tmp_path: Path, kind: str, load: str, least: float
+) -> None:
+    """Its wedge has one point: nodes share a load alike, though the outer ones have more of it.
+
+    With these forces both agree as they do for other elements, with the load they differ.
+    """
+    text, mesh = triangles(load)
+    (tmp_path / "ccx.inp").write_text(text)
+    run_ccx(tmp_path, "ccx")
+    rows = [line.split() for line in (tmp_path / "ccx.dat").read_text().splitlines()]
+    known = np.array([row[1:3] for row in rows if len(row) == 4 and row[0].isdigit()], float)
+    force = at_centroids(kind, mesh)
+    cards = [f"{n + 1}, {d + 1}, {force[n, d]:.12g}" for n, d in np.argwhere(force).tolist()]
+    forces = "\n".join(["*CLOAD", *cards])
+    apart = []
+    for given in (load, forces):
+        moved = ct.solve(read(tmp_path, triangles(given)[0]), threads=1).frames[-1].U
+        apart.append(np.abs(moved - known).max() / np.abs(known).max())
+    assert apart[0] > least
+    assert apart[1] < 5e-4
