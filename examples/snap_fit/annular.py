@@ -7,7 +7,7 @@ The tube has a bore of 20, a wall of 1.5 and a round lip of 0.5 at its free end,
 On the land the force is that of a half-infinite shell with a line load near its end, and the
 largest force of insertion that of a wedge on this shell, turned by the wall. A strip in plane
 strain, as snap-fits are often estimated, has no hoop: it is 50 times too soft.
-``--calculix 0.02`` runs the same tube (CAX8R) and shaft in CalculiX, in and out, which takes minutes:
+``--calculix 0.02`` runs the same tube (CAX8R) and shaft in CalculiX, in and out, within minutes:
 592 N on the land, 1848 N of insertion, 1482 N of retention, where Corota has 600, 1799 and 1460 N.
 CalculiX pairs surfaces once an increment; with increments of 0.1 its insertion is 2178 N.
 """
