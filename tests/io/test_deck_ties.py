@@ -71,8 +71,9 @@ def test_mpc_beam(tmp_path: Path) -> None:
     assert found.reference == 6
 
 
-def test_mpc_straight_over_two_rows(tmp_path: Path) -> None:
-    model = read(tmp_path, deck("*MPC\nSTRAIGHT, 1, 3, 0\n2\n"))
+@pytest.mark.parametrize("rows", ["STRAIGHT, 1, 3, 0\n2", "SLIDER, 2, 1, 3"])
+def test_mpc_line(tmp_path: Path, rows: str) -> None:
+    model = read(tmp_path, deck(f"*MPC\n{rows}\n"))
     found = model.constraints[0]
     assert isinstance(found, StraightLine)
     assert (found.first, found.last) == (0, 2)

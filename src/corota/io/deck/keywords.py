@@ -61,6 +61,7 @@ def parameter(deck: Deck, card: Card) -> None:
 
 
 _PRINT = "TOTALS FREQUENCY FREQUENCYF TIMEPOINTS"
+_PRINT_IGNORED = "SUMMARY LASTITERATIONS CONTACTELEMENTS"
 _FILE = "FREQUENCY FREQUENCYF TIMEPOINTS"
 _FILE_IGNORED = (
     "GLOBAL OUTPUT LASTITERATIONS CONTACTELEMENTS OUTPUTALL POSITION DIRECTIONS SECTIONFORCES "
@@ -313,8 +314,10 @@ _TABLE: dict[str, Keyword] = {
         card("loads.pressure_penetration"), "SLAVE MASTER AMPLITUDE OP", "PENETRATIONTIME"
     ),
     "TEMPERATURE": Keyword(card("thermal.temperature"), "OP AMPLITUDE", "LOADCASE"),
-    "NODE PRINT": Keyword(card("output.node_print"), f"NSET {_PRINT} GLOBAL", "SUMMARY"),
-    "EL PRINT": Keyword(card("output.el_print"), f"ELSET {_PRINT}", "GLOBAL POSITION SUMMARY"),
+    "NODE PRINT": Keyword(card("output.node_print"), f"NSET {_PRINT} GLOBAL", _PRINT_IGNORED),
+    "EL PRINT": Keyword(
+        card("output.el_print"), f"ELSET {_PRINT}", f"GLOBAL POSITION {_PRINT_IGNORED}"
+    ),
     "NODE FILE": Keyword(card("output.node_file"), f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
     "NODE OUTPUT": Keyword(card("output.node_file"), f"NSET {_FILE}", f"ELSET {_FILE_IGNORED}"),
     "EL FILE": Keyword(card("output.el_file"), f"NSET ELSET {_FILE}", _FILE_IGNORED),

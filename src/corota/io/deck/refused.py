@@ -22,6 +22,8 @@ IGNORED: dict[str, str] = {
     **dict.fromkeys(
         (
             "CONDUCTIVITY",
+            "GAPCONDUCTANCE",
+            "GAPHEATGENERATION",
             "LATENTHEAT",
             "PHYSICALCONSTANTS",
             "JOULEHEATFRACTION",

@@ -218,7 +218,7 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 def mpc(deck: Deck, card: Card) -> None:
     """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
 
-    ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
+    ``SLIDER`` is a line whose ends come last. ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
     """
     line: TieDraft | None = None
     for row in card.rows():
@@ -232,6 +232,13 @@ def mpc(deck: Deck, card: Card) -> None:
             _on_line(line, card, row, 0)
             continue
         line = None
+        if type_ == "SLIDER":
+            deck.extra_fields(card, row, 4)
+            between = TieDraft("straight", card, row.where, ready=True)
+            _on_line(between, card, row, 1)
+            between.terms = [*between.terms[1:], *between.terms[:1]]
+            deck.ties.append(between)
+            continue
         if type_ == "PLANE":
             deck.note(f"{row.where}: the nodes of a planar model lie in a plane: *MPC, PLANE holds")
             continue
@@ -241,7 +248,7 @@ def mpc(deck: Deck, card: Card) -> None:
                 row,
                 0,
                 f"MPC type {row.get(0)!r} is not supported",
-                "BEAM, PIN, TIE, STRAIGHT, PLANE are; or write *EQUATION, *RIGID BODY, *COUPLING",
+                "BEAM, PIN, TIE, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, *RIGID BODY, *COUPLING",
             )
             continue
         deck.extra_fields(card, row, 3)
