@@ -218,7 +218,8 @@ def _kind(deck: Deck, card: Card, kind: str) -> None:
 def mpc(deck: Deck, card: Card) -> None:
     """``*MPC``: ``BEAM``, ``PIN`` or ``TIE`` with two nodes or sets, ``STRAIGHT`` with many.
 
-    ``SLIDER`` is a line whose ends come last. ``PLANE`` holds by itself. Rows that begin with a node continue the one before.
+    ``SLIDER`` is a line whose ends come last. ``PLANE`` holds by itself. Rows that begin with a
+    node continue the one before.
     """
     line: TieDraft | None = None
     for row in card.rows():
@@ -248,7 +249,8 @@ def mpc(deck: Deck, card: Card) -> None:
                 row,
                 0,
                 f"MPC type {row.get(0)!r} is not supported",
-                "BEAM, PIN, TIE, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, *RIGID BODY, *COUPLING",
+                "BEAM, PIN, TIE, STRAIGHT, SLIDER, PLANE are; or write *EQUATION, *RIGID BODY or "
+                "*COUPLING",
             )
             continue
         deck.extra_fields(card, row, 3)
