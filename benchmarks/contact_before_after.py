@@ -179,11 +179,11 @@ def main() -> int:
     said = f"`python -m benchmarks.contact_before_after OLD NEW --size {chosen.size:g} --write`, "
     said += f"{machine()}\n\nNumbers {kept[0]['number']} to {kept[-1]['number']}, {len(kept)} run."
     sys.stdout.write(f"\n{differing(kept)}\n")
-    told = f"{said} *Overlap more*: the largest depth over the run is more than {DEEPER:g} times "
-    told += f"that of the other version.\n\n{answers(kept)}\n\n{compared(kept)}"
-    sys.stdout.write(f"\n{told}\n")
+    reported = f"{said} *Overlap more*: the largest depth over the run is more than {DEEPER:g} "
+    reported += f"times that of the other version.\n\n{answers(kept)}\n\n{compared(kept)}"
+    sys.stdout.write(f"\n{reported}\n")
     if chosen.write:
-        write_between(PAGE, "before", told)
+        write_between(PAGE, "before", reported)
     return 0
 
 

@@ -195,9 +195,9 @@ def _tool(out: ContactData, curve: RigidCurve) -> Face:
 
 def _stages(given: Problem, tools: list[Tool], curves: list[RigidCurve]) -> list[Stage]:
     model = given.model
-    told: dict[tuple[int, int], float] = {}
+    reported: dict[tuple[int, int], float] = {}
     for tool in tools:
-        told |= {(node, dof): 0.0 for node in tool.nodes for dof in (0, 1)}
+        reported |= {(node, dof): 0.0 for node in tool.nodes for dof in (0, 1)}
     out = []
     for number, step in enumerate(given.steps):
         for item in [*(model.supports if number == 0 else []), *step.supports]:
@@ -211,9 +211,9 @@ def _stages(given: Problem, tools: list[Tool], curves: list[RigidCurve]) -> list
             where = nodes_of(model, item.nodes).tolist()
             if driven:
                 where = [node for tool in driven for node in tool.nodes]
-            told |= {(node, item.dof): item.value for node in where}
+            reported |= {(node, item.dof): item.value for node in where}
         first = min(step.first_increment, step.period)
-        now = [(node, dof, value) for (node, dof), value in told.items()]
+        now = [(node, dof, value) for (node, dof), value in reported.items()]
         out.append(Stage(first, step.period, now))
     return out
 

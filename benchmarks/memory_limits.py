@@ -150,15 +150,15 @@ def _rows(folder: Path) -> list[object]:
 def lost_frames(folder: Path, whole: Path, code: int) -> str:
     """What of the increments that a run told of is not in its result file."""
     rows = folder / "job.sta"
-    told = 0
+    reported = 0
     if rows.exists():
-        told = sum(line[:1] == " " and line.split()[:1][0].isdigit() for line in _lines(rows))
+        reported = sum(line[:1] == " " and line.split()[:1][0].isdigit() for line in _lines(rows))
     path = folder / "job.vtkhdf"
     if not path.exists():
-        return f"{told} increments, no results" if told or code == 0 else ""
+        return f"{reported} increments, no results" if reported or code == 0 else ""
     with ct.read_results(path) as mine, ct.read_results(whole / "job.vtkhdf") as right:
-        if len(mine.frames) < told:
-            return f"{told} increments, {len(mine.frames)} frames"
+        if len(mine.frames) < reported:
+            return f"{reported} increments, {len(mine.frames)} frames"
         if code == 0 and len(mine.frames) != len(right.frames):
             return "frames are missing behind exit 0"
         for a, b in zip(mine.frames, right.frames, strict=False):

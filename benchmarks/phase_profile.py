@@ -189,10 +189,10 @@ def main() -> int:
         fits = [
             exponent(dofs[-4:], [max(r.get(p, 0.0), 1e-9) for r in phases[-4:]]) for p in PHASES
         ]
-        told = [
+        reported = [
             f"{f:.2f}" if phases[-1].get(p, 0.0) else "" for f, p in zip(fits, PHASES, strict=True)
         ]
-        table.append(["exponent", "", *told, "", "", ""])
+        table.append(["exponent", "", *reported, "", "", ""])
     head = ["dofs", "iterations", *PHASES, "peak MB", "assemble / floor", "factor / floor"]
     report(
         f"Phases of one increment of P1, {args.element}, processor seconds, one thread; copy "

@@ -160,8 +160,8 @@ def catalogue_rows(names: list[str], solver: str) -> list[list[object]]:
                 raise
             count, frames = count + 1, frames + len(ours.frames)
             worst = np.maximum(worst, differences(ours, theirs))
-        told = [f"{value:.1e}" if np.isfinite(value) else "other increments" for value in worst]
-        rows.append([name, count, frames, *told])
+        reported = [f"{value:.1e}" if np.isfinite(value) else "other increments" for value in worst]
+        rows.append([name, count, frames, *reported])
         sys.stderr.write(f"{rows[-1]}\n")
     return rows
 

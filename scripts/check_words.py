@@ -45,6 +45,11 @@ IDENTIFIERS = {
     "ASIDE": "the quantity",
     "ENOUGH": "the quantity",
     "COMPANIONS": "LINE_ELEMENTS",
+    "heft": "inertial_stiffness",
+    "honest": "combined residuals",
+    "senseless": "implausible_displacement",
+    "told": "the quantity, or reported",
+    "book": "energy_balance",
 }
 #: Retired phrase of documents and messages: what to write.
 PHRASES = {

@@ -152,8 +152,8 @@ def run(data: ContactData, kind: str, used: list[int], limit: int) -> Outcome:
         force = mean(_totals(folder / "job.dat"), data.period)
         reached = _reached(folder / "job.sta")
         iterations = _rows(folder / "job.cvg")
-    told = "yes" if not why else f"{why}, {reached / data.period:.0%}"
-    return Outcome(told, iterations, force)
+    reported = "yes" if not why else f"{why}, {reached / data.period:.0%}"
+    return Outcome(reported, iterations, force)
 
 
 def _short(error: str) -> str:

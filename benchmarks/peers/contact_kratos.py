@@ -81,8 +81,8 @@ def run(data: ContactData, kind: str, used: list[int], limit: int) -> Outcome:
         elif not rows or rows[-1]["converged"]:
             why = "stops"
     force = mean(((row["time"], math.hypot(*row["force"])) for row in good), data.period)
-    told = "yes" if not why else f"{why}, {share:.0%}"
-    return Outcome(told, iterations, force)
+    reported = "yes" if not why else f"{why}, {share:.0%}"
+    return Outcome(reported, iterations, force)
 
 
 def call(

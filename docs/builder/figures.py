@@ -169,8 +169,8 @@ def line_element(name: str) -> str:
             svg.line([(x, y + k), (x + 8, y + k - 8)], "ink", 1)
     svg.text(300, 48, name, anchor="start", size=18, bold=True)
     svg.text(300, 76, many, anchor="start")
-    told = "turns with its nodes" if facts.turns else "keeps its direction"
-    svg.text(300, 98, told, "soft", "start")
+    reported = "turns with its nodes" if facts.turns else "keeps its direction"
+    svg.text(300, 98, reported, "soft", "start")
     return str(svg)
 
 

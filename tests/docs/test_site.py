@@ -53,9 +53,9 @@ def test_page_of_a_keyword_is_whole(key: str) -> None:
     assert difference
     assert pages.rows(DOCS)[key]
     assert "## A deck that runs" in text
-    told = re.sub(r"[^A-Z0-9-]", "", text.split("## What differs")[0])
+    reported = re.sub(r"[^A-Z0-9-]", "", text.split("## What differs")[0])
     for parameter in KEYWORDS[key].parameters.split():
-        assert parameter in told, f"*{name} does not tell of its parameter {parameter}"
+        assert parameter in reported, f"*{name} does not tell of its parameter {parameter}"
 
 
 def test_notes_are_of_known_keywords() -> None:

@@ -70,7 +70,7 @@ def deck(card: str) -> str:
     return "\n".join(rows) + "\n"
 
 
-def told(job: Path, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
+def reported(job: Path, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
     """What the console says of a run, and the notes of its report."""
     out = job.parent / "out"
     assert main(["run", str(job), "-o", str(out)]) == 0
@@ -82,14 +82,14 @@ def told(job: Path, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
 def test_console_and_report_show_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     job = tmp_path / "ring.inp"
     job.write_text(deck("*DYNAMIC, DIRECT, ALPHA=0."))
-    for text in told(job, capsys):
+    for text in reported(job, capsys):
         assert "gained by step 1" in text
         assert "does not conserve energy where contact opens and closes" in text
         assert "*DYNAMIC, SCHEME=ENERGY MOMENTUM" in text
     # And what it names helps.
     job = tmp_path / "keeps.inp"
     job.write_text(deck("*DYNAMIC, DIRECT, SCHEME=ENERGY MOMENTUM"))
-    for text in told(job, capsys):
+    for text in reported(job, capsys):
         assert "energy balance:" not in text
 
 

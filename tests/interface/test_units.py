@@ -94,11 +94,11 @@ def test_a_comment_that_is_not_understood_is_a_note(tmp_path: Path, comment: str
 
 def test_units_label_files_and_axes_and_change_no_number(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
-    plain, told = strip(), strip()
-    told.units("mm", "N", "t", "s")
+    plain, reported = strip(), strip()
+    reported.units("mm", "N", "t", "s")
     results = [
         ct.solve(m, ct.Static(), observers=[ct.JobFiles(tmp_path, n)], threads=1)
-        for m, n in ((plain, "plain"), (told, "told"))
+        for m, n in ((plain, "plain"), (reported, "told"))
     ]
     assert np.array_equal(results[0].frame().U, results[1].frame().U)
     heads = [(tmp_path / f"{n}.csv").read_text().split("\n") for n in ("plain", "told")]
@@ -108,7 +108,7 @@ def test_units_label_files_and_axes_and_change_no_number(tmp_path: Path) -> None
         assert heading in heads[1][0]
     assert "[" not in heads[0][0]
     with ct.read_results(tmp_path / "told.vtkhdf") as read:
-        assert read.model.unit_system == told.unit_system
+        assert read.model.unit_system == reported.unit_system
         figure = read.plot("S11")
         labels = [ax.get_xlabel() + ax.get_ylabel() for ax in figure.axes]
         assert any("S11: Cauchy stress xx [MPa]" in label for label in labels)
@@ -125,15 +125,15 @@ def findings(model: ct.Model) -> str:
 def test_mixed_units_are_noticed_plasticity_included() -> None:
     assert "which no solid" not in findings(strip(yield_stress=250.0))
     assert "yield stress 2.5e+08 is 1.19e+03 of E" in findings(strip(yield_stress=250e6))
-    told = strip(E=210e9)
-    told.units("mm", "N")
-    assert "2.1e+17 Pa, which no solid has" in findings(told)
-    told = strip(rho=7850.0)
-    told.units("mm", "N", "t", "s")
-    assert "kg/m^3" in findings(told)
-    told = strip(rho=7.85e-9)
-    told.units("mm", "N", "t", "s")
-    assert "which no solid" not in findings(told)
-    told = strip(E=210.0, rho=7.85e-6)
-    told.units("mm", "kN", "kg", "ms")
-    assert "which no solid" not in findings(told)
+    reported = strip(E=210e9)
+    reported.units("mm", "N")
+    assert "2.1e+17 Pa, which no solid has" in findings(reported)
+    reported = strip(rho=7850.0)
+    reported.units("mm", "N", "t", "s")
+    assert "kg/m^3" in findings(reported)
+    reported = strip(rho=7.85e-9)
+    reported.units("mm", "N", "t", "s")
+    assert "which no solid" not in findings(reported)
+    reported = strip(E=210.0, rho=7.85e-6)
+    reported.units("mm", "kN", "kg", "ms")
+    assert "which no solid" not in findings(reported)

@@ -81,9 +81,9 @@ def test_large_strain_under_the_linear_measure_is_said_once_with_the_remedy(mate
     model = strip(material, "linear", 0.1)
     with pytest.warns(UserWarning, match="local strain reaches") as caught:
         results = ct.solve(model, ct.Static(increments=4), threads=1)
-    told = [str(w.message) for w in caught if "local strain reaches" in str(w.message)]
-    assert len(told) == 1
-    assert advised in told[0]
+    reported = [str(w.message) for w in caught if "local strain reaches" in str(w.message)]
+    assert len(reported) == 1
+    assert advised in reported[0]
     # The largest value of all increments, once, at the end.
-    assert f"step 1, increment {results.frames[-1].increment}, under" in told[0]
-    assert results.notes.count(told[0]) == 1
+    assert f"step 1, increment {results.frames[-1].increment}, under" in reported[0]
+    assert results.notes.count(reported[0]) == 1

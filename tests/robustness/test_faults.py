@@ -228,17 +228,17 @@ def test_controls_of_a_later_step_do_not_damp_an_earlier_one(tmp_path):
 
 def test_a_commit_reaches_the_disk_before_its_name(tmp_path, monkeypatch):
     """A power cut leaves a state of the file, not a name without numbers."""
-    told = []
+    reported = []
     for name in ("fsync", "replace"):
         true = getattr(os, name)
-        monkeypatch.setattr(os, name, lambda *a, t=true, n=name: (told.append(n), t(*a))[1])
+        monkeypatch.setattr(os, name, lambda *a, t=true, n=name: (reported.append(n), t(*a))[1])
     monkeypatch.setattr(atomic_file, "YOUNG", 0.0)
     file = atomic_file.AtomicFile(tmp_path / "x")
     for number in range(3):
-        told.clear()
+        reported.clear()
         file.write(b"%d" % number)
         file.commit()
-        assert told[:2] == ["fsync", "replace"]
+        assert reported[:2] == ["fsync", "replace"]
     file.close()
     assert (tmp_path / "x").read_bytes() == b"012"
 

@@ -101,7 +101,7 @@ def test_pages_are_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
 
 
 def test_a_process_that_ends_takes_only_its_own_problem_with_it(monkeypatch) -> None:
-    told: list[str] = []
+    reported: list[str] = []
     chosen = [problems()[n] for n in ("straight_beam", "curved_beam")]
 
     class Pool:
@@ -117,7 +117,7 @@ def test_a_process_that_ends_takes_only_its_own_problem_with_it(monkeypatch) -> 
         def submit(self, work, name, *rest):
             future = Future()
             self.broken |= name == "curved_beam"
-            if self.broken or (name == "straight_beam" and not told and len(submitted) == 0):
+            if self.broken or (name == "straight_beam" and not reported and len(submitted) == 0):
                 future.set_exception(BrokenProcessPool())
             else:
                 future.set_result(runner.Outcome(name, [Value("x", 1.0, 1.0, 0.1)]))
@@ -126,7 +126,7 @@ def test_a_process_that_ends_takes_only_its_own_problem_with_it(monkeypatch) -> 
 
     submitted: list[str] = []
     monkeypatch.setattr(runner, "ProcessPoolExecutor", Pool)
-    outcomes = runner.run(chosen, lambda outcome: told.append(outcome.name))
+    outcomes = runner.run(chosen, lambda outcome: reported.append(outcome.name))
     assert [o.ok for o in outcomes] == [True, False]
     assert "ended" in outcomes[1].error
-    assert sorted(told) == ["curved_beam", "straight_beam"]
+    assert sorted(reported) == ["curved_beam", "straight_beam"]

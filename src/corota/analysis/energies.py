@@ -178,7 +178,7 @@ class Energies:
         """Energy of rounding size: of forces, or of strains canceled by free expansion."""
         free, scales, length = self.system.free, self.system.scales, self.system.length
         expansion = free.largest(free.start - free.now) * length if free.responds else 0.0
-        rounding = scales.nothing * max(scales.moved, NEGLIGIBLE_ENERGY * length)
+        rounding = scales.zero_force * max(scales.moved, NEGLIGIBLE_ENERGY * length)
         return max(rounding, NEGLIGIBLE_ENERGY * scales.stiffest * expansion**2)
 
     @property

@@ -258,7 +258,7 @@ class System(NumberedModel):
         """:meth:`correct` for columns one after the other, of which `rhs` is overwritten."""
         link, pattern = at.link, self.constraints.pattern
         if (at.load_stiffness is not None or (link.couples and self.nlgeom)) and not (
-            self.free_motion_excluded or at.heft
+            self.free_motion_excluded or at.inertial_stiffness
         ):
             # Follower loads, and loads on rotating rigid parts, give a free motion a stiffness
             # that does not constrain it.

@@ -41,7 +41,7 @@ class Evaluation:
         Forces of inertia and damping, added to those of the displacement.
     contact : ContactState or None
         Of pairs and ties, once their term has been added.
-    heft, momentum : float
+    inertial_stiffness, momentum : float
         In motion: inertia per displacement [force/length], and the largest of the terms of
         which the acceleration is a difference [force].
     """
@@ -56,7 +56,7 @@ class Evaluation:
     inertia: Floats | None = None
     damping: Floats | None = None
     contact: Any = None
-    heft: float = 0.0
+    inertial_stiffness: float = 0.0
     momentum: float = 0.0
 
     @property

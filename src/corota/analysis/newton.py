@@ -87,7 +87,7 @@ class ResidualNorms:
     #: Whether all forces are of rounding size, in a motion that may be that slow.
     idle: bool = False
     #: Residuals of forces and moments over all that acts, be it force, moment or inertia.
-    honest: tuple[float, float] = (0.0, 0.0)
+    combined: tuple[float, float] = (0.0, 0.0)
     note: str = ""  # how the correction before was found, for the log
     #: Measures `floor` and `moment_floor`, which few residuals need and which takes as long as the
     #: norms.
@@ -240,7 +240,7 @@ def newton(
         settled = settled and norms.rounding(settings.tolerance)
         if settled:
             # Against the smaller of forces and moments alone it could look large.
-            norms.force, norms.moment = norms.honest
+            norms.force, norms.moment = norms.combined
             size = norms.size
         outcome.u, outcome.at, outcome.iterations = u, at, iteration
         outcome.sizes.append(size)

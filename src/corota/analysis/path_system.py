@@ -223,7 +223,7 @@ class SmoothPath:
 
     def refuse(self, at: Evaluation, u: Floats) -> str:
         """An unconstrained body far away is not in equilibrium."""
-        return self.system.scales.senseless(u)
+        return self.system.scales.implausible_displacement(u)
 
     def explain(self, at: Evaluation) -> str:
         """The residual is the explanation."""

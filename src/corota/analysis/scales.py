@@ -68,7 +68,7 @@ class Scales:
         self.tolerance = 1e-9
         #: Of the last checked state: inertia per displacement [force/length], all that acts, the
         #: largest rounding and the rounding of the stiffest dof [force].
-        self._heft = self.whole = self._most = self._noise = 0.0
+        self._inertial_stiffness = self.whole = self._most = self._noise = 0.0
         #: Largest force and moment of the last checked state, and of the committed one.
         self._sizes = self._committed = [0.0, 0.0]
         self._begun: Floats | None = None
@@ -93,9 +93,11 @@ class Scales:
         self._committed = self._sizes
 
     @property
-    def nothing(self) -> float:
+    def zero_force(self) -> float:
         """Force that rounding of the coordinates alone would give."""
-        return NEGLIGIBLE_FORCE * EPS * (self.stiffest + self._heft) * self.system.length
+        return (
+            NEGLIGIBLE_FORCE * EPS * (self.stiffest + self._inertial_stiffness) * self.system.length
+        )
 
     @property
     def force(self) -> float:
@@ -118,7 +120,7 @@ class Scales:
         self._sizes, residual, worst, displacement = system.core.sizes(
             internal, scale, external, u, self.conditions.constrained, not at.link.couples
         )
-        self._heft = at.heft
+        self._inertial_stiffness = at.inertial_stiffness
         force = larger(self._sizes[0], self._committed[0])
         moment = larger(self._sizes[1], self._committed[1])
         moment, force = max(moment, LEAST * force * length), max(force, LEAST * moment / length)
@@ -126,17 +128,19 @@ class Scales:
         # Rotations round like the displacements they give an element.
         moved = max(displacement[0], system.cell_size * displacement[1])
         self.moved = float(displacement[0])
-        self._noise = EPS * (self.stiffest + at.heft) * moved
-        nothing = self.nothing
-        if whole <= nothing and not at.external.any():
+        self._noise = EPS * (self.stiffest + at.inertial_stiffness) * moved
+        zero_force = self.zero_force
+        if whole <= zero_force and not at.external.any():
             # A slow motion may be that small: its size is unknown before a correction.
-            return ResidualNorms(0.0, 0.0, 0.0, 0, idle=at.heft > 0.0 and bool(max(residual)))
+            return ResidualNorms(
+                0.0, 0.0, 0.0, 0, idle=at.inertial_stiffness > 0.0 and bool(max(residual))
+            )
         relative = (_ratio(residual[0], force), _ratio(residual[1], moment))
         norms = ResidualNorms(*relative, 0.0, worst[0] if relative[0] >= relative[1] else worst[1])
-        norms.honest = (_ratio(residual[0], whole), _ratio(residual[1], whole * length))
+        norms.combined = (_ratio(residual[0], whole), _ratio(residual[1], whole * length))
         most = LARGEST_NOISE * whole
-        if FARTHEST * nothing > most and not at.external.any():
-            most = FARTHEST * nothing
+        if FARTHEST * zero_force > most and not at.external.any():
+            most = FARTHEST * zero_force
         self._most = most
         if norms.size > self.tolerance and max(residual[0], residual[1] / length) <= most:
 
@@ -171,11 +175,14 @@ class Scales:
         """Add the contact residual, a force, to the last residual norms."""
         # Where nothing is loaded yet, and where all surfaces part, forces of rounding size are
         # the measure.
-        force = max(self.force, self.nothing)
+        force = max(self.force, self.zero_force)
         ratio = _ratio(complementarity, force)
         norms.force = max(norms.force, min(ratio, 1.0))
-        least, moment = norms.honest
-        norms.honest = (max(least, _ratio(complementarity, max(self.whole, self.nothing))), moment)
+        least, moment = norms.combined
+        norms.combined = (
+            max(least, _ratio(complementarity, max(self.whole, self.zero_force))),
+            moment,
+        )
         if norms.force > self.tolerance:
             # Gaps become forces by the stiffness of the nodes.
             rounding, of_elements = min(self._noise, self._most / FLOOR), norms.measure
@@ -190,7 +197,7 @@ class Scales:
 
             norms.measure = measure
 
-    def senseless(self, u: Floats) -> str:
+    def implausible_displacement(self, u: Floats) -> str:
         """Why a static displacement is implausible; empty if it is not.
 
         A constrained body moves at most by its supports and its own deformation.

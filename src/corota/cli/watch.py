@@ -57,16 +57,16 @@ def tell_address(address: str, terminal: Terminal) -> None:
 def _wait_for(name: str, folder: str | None, terminal: Terminal) -> JobPaths:
     """Find the job; one that was just started may have no files yet."""
     limit = time.monotonic() + PATIENCE
-    told = False
+    announced = False
     while True:
         try:
             return find_job(name, folder)
         except FileError:
             if time.monotonic() > limit:
                 raise
-        if not told:
+        if not announced:
             terminal.line(f"waiting for the files of {name}")
-            told = True
+            announced = True
         time.sleep(BEAT)
 
 

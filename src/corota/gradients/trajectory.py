@@ -281,7 +281,7 @@ class Trajectory:
         if worst > EQUILIBRIUM and not system.scales.stiffest:
             # Bodies without forces have residuals that are rounding of their positions.
             system.return_tangent(system.evaluate(point.u, point.increment.time))
-        if worst > EQUILIBRIUM and left > system.scales.nothing:
+        if worst > EQUILIBRIUM and left > system.scales.zero_force:
             raise UnsupportedError(
                 f"frame {point.increment.frame} is no equilibrium of the model's equations "
                 f"(residual {worst:.2g} of the element forces): forces acted in the run that "

@@ -97,9 +97,9 @@ def shared_label(names: Sequence[str], units: Units) -> str:
 
 def axis_label(name: str, units: Units | None = None) -> str:
     """Name of a history with its meaning and unit."""
-    told = units or Units()
+    named_units = units or Units()
     variable, _, place = name.partition(" at ")
-    what = described(variable, told)
+    what = described(variable, named_units)
     if not what:
-        return labeled(name, told)
+        return labeled(name, named_units)
     return f"{variable}: {what}" + (f", at {place}" if place else "")

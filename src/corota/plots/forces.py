@@ -124,8 +124,8 @@ def section_forces(
         what, of = NAMES[name]
         unit = units.label(of)
         head = f"{name}: {what}" + (f" [{unit}]" if unit else "")
-        told = frame_title(results, members.frame, scale)
-        ax.set_title(title if title is not None else f"{head}\n{told}", loc="left")
+        heading = frame_title(results, members.frame, scale)
+        ax.set_title(title if title is not None else f"{head}\n{heading}", loc="left")
         return finish(figure, path, dpi)
 
 
@@ -242,9 +242,9 @@ def section_history(
     rows = [np.array([getattr(f, name) for f in found]) for name in NAMES]
     unit = results.model.unit_system.label("time")
     (a, b), (c, d) = cut.start, cut.end
-    told = title or f"{results.model.name}: cut from ({a:g}, {b:g}) to ({c:g}, {d:g})"
+    heading = title or f"{results.model.name}: cut from ({a:g}, {b:g}) to ({c:g}, {d:g})"
     x = "time" + (f" [{unit}]" if unit else "")
-    return _three(results, results.times, rows, x, told, path, dpi, False)
+    return _three(results, results.times, rows, x, heading, path, dpi, False)
 
 
 def _three(

@@ -255,8 +255,8 @@ def _finish(
         for color, name in ((TENSION, "tension"), (COMPRESSION, "compression")):
             ax.plot([], [], color=color, linewidth=1.6, label=name)
         ax.figure.legend(loc="outside lower center", ncols=2)
-    told = f"{what}\n{frame_title(results, frame, scale)}"
-    ax.set_title(title if title is not None else told, loc="left")
+    heading = f"{what}\n{frame_title(results, frame, scale)}"
+    ax.set_title(title if title is not None else heading, loc="left")
 
 
 def _size(results: Results, largest: float) -> str:

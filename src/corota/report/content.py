@@ -342,16 +342,16 @@ def history_chunk(
     return pack(header, arrays, level)
 
 
-def units_of(names: Sequence[str], told: str) -> dict[str, str]:
+def units_of(names: Sequence[str], system: str) -> dict[str, str]:
     """Units of columns and axis labels, of those that have one.
 
     Parameters
     ----------
     names : sequence of str
-    told : str
+    system : str
         The units of the model, such as ``mm, N, t, s``.
     """
-    units = Units.of(*filter(None, told.split(", ")))
+    units = Units.of(*filter(None, system.split(", ")))
     of = {name: vf.dimension(name) for name in names}
     of |= {name: "force" for name in names if re.search(r": (force|friction) [xy]$", name)}
     of |= {"energy": "energy", "force": "force", "time": "time", "time increment": "time"}

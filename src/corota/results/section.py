@@ -292,9 +292,9 @@ class Cut:
         steps = self.results.steps or self.results.model.steps
         if 0 < state.step <= len(steps):
             return steps[state.step - 1].nlgeom
-        told = getattr(self.results, "description", {}).get("steps", [])
-        if 0 < state.step <= len(told):
-            return bool(told[state.step - 1].get("nlgeom", False))
+        described = getattr(self.results, "description", {}).get("steps", [])
+        if 0 < state.step <= len(described):
+            return bool(described[state.step - 1].get("nlgeom", False))
         return True
 
     def _of_elements(
@@ -326,8 +326,10 @@ class Cut:
         mesh = self.results.mesh
         moving = any(v is not None and v.any() for v in (state.V, state.A))
         closed = state.C is not None and state.C[:, 4].any()
-        told = getattr(self.results, "description", {})
-        joined = bool(self.results.model.constraints or told.get("couplings") or told.get("joints"))
+        described = getattr(self.results, "description", {})
+        joined = bool(
+            self.results.model.constraints or described.get("couplings") or described.get("joints")
+        )
         if moving or closed or joined or {"RF", "F"} & state.absent:
             return None
         if self.results.model.contacts:
@@ -369,8 +371,8 @@ class Cut:
 
     def _need_plain_elements(self) -> None:
         """Refuse elements whose nodal forces do not follow from their stress."""
-        told = getattr(self.results, "description", {}).get("sections", [])
-        names = {s.element for s in self.results.model.sections} | {s["element"] for s in told}
+        described = getattr(self.results, "description", {}).get("sections", [])
+        names = {s.element for s in self.results.model.sections} | {s["element"] for s in described}
         for name in sorted(names):
             facts = elements.known(name)
             if facts is not None and (facts.stabilized or facts.drilling):
@@ -490,8 +492,8 @@ def _is_ring(results: ResultSource) -> bool:
     """Whether results are those of a solid of revolution."""
     planes = [section.plane for section in results.model.sections]
     if not planes:
-        told = getattr(results, "description", {}).get("sections", [])
-        planes = [section.get("plane", "") for section in told]
+        described = getattr(results, "description", {}).get("sections", [])
+        planes = [section.get("plane", "") for section in described]
     return "axisymmetric" in planes
 
 
@@ -514,10 +516,10 @@ def _thickness(results: ResultSource, crossing: _Crossing, nodes: Ints) -> Float
         if not s.profile[0]
     ]
     if not sections:
-        told = getattr(results, "description", {}).get("sections", [])
+        described = getattr(results, "description", {}).get("sections", [])
         sections = [
             (s["where"], np.array(s.get("thickness of nodes", s["thickness"])))
-            for s in told
+            for s in described
             if not s["line"]
         ]
     alike = len({np.asarray(t).tobytes() for _, t in sections}) == 1

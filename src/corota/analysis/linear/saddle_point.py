@@ -187,7 +187,9 @@ class SaddlePointSystem:
             Negative pivots, -1 if unknown.
         """
         system, link = self.system, at.link
-        if at.load_stiffness is not None and not (system.free_motion_excluded or at.heft):
+        if at.load_stiffness is not None and not (
+            system.free_motion_excluded or at.inertial_stiffness
+        ):
             # Follower loads give a free motion a stiffness that does not constrain it.
             bare = replace(at, load_stiffness=None)
             none = np.zeros_like(rhs)

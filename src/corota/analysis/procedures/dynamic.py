@@ -122,29 +122,33 @@ class DynamicStepper(NewtonStepper):
             else start_motion(system, step, state, self.inertia, self.viscous)
         )
         assert state.energies is not None
-        self.book = Balance(system, step, self.now, self.inertia, state.energies)
+        self.energy_balance = Balance(system, step, self.now, self.inertia, state.energies)
         self.ends = EndForces(system)
         if not step.fixed_increments and step.first_increment >= step.period:
             control.size = step.period / 100.0
         again = system.correct_with_last_factor
         self.settings = Settings(step.tolerance, step.max_iterations, again)
         #: Whole turns that were taken off the rotations [rad].
-        self.turned: Floats | float = 0.0
+        self.removed_turns: Floats | float = 0.0
         #: Of the last attempt: its motion, and its local error over the allowed one.
         self.motion: NewmarkMotion | ConservingMotion
         self.error = 0.0
         if resumes:
             found = state.resume(
-                self.kind, control=control, book=self.book, ends=self.ends, approach=self.approach
+                self.kind,
+                control=control,
+                energy_balance=self.energy_balance,
+                ends=self.ends,
+                approach=self.approach,
             )
-            self.now, self.turned = found["now"], found["turned"]
+            self.now, self.removed_turns = found["now"], found["removed_turns"]
             return
         now = self.now
         scalars: dict[str, float] = {}
         self.ends.start(now, system.contact_term.force)
         state.u, state.v, state.a = now.u, now.v, now.a
         state.at, state.reaction = self.ends.at, self.ends.reaction
-        self.book.add_to(scalars)
+        self.energy_balance.add_to(scalars)
         loop.show_start(scalars)
 
     @cached_property
@@ -161,11 +165,11 @@ class DynamicStepper(NewtonStepper):
         """What a checkpoint holds beside the committed state."""
         return {
             "control": self.control,
-            "book": self.book,
+            "energy_balance": self.energy_balance,
             "ends": self.ends,
             "approach": self.approach,
             "now": self.now,
-            "turned": self.turned,
+            "removed_turns": self.removed_turns,
         }
 
     def target(self) -> float:
@@ -203,8 +207,8 @@ class DynamicStepper(NewtonStepper):
             # An impact that no increment is short enough for is taken as it is.
             shorter = CUT * dt >= step.smallest_increment
             if shorter:
-                begin, end, book = self.motion.start, self.motion.end, self.book
-                energy = max(book.energy, book.driven(end))
+                begin, end, energy_balance = self.motion.start, self.motion.end, self.energy_balance
+                energy = max(energy_balance.energy, energy_balance.driven(end))
                 moved, meets = end.u - begin.u, self.approach.meets
                 missed = contact.impact_error(moved, energy, step.error_tolerance, meets)
                 self.error = max(self.error, missed)
@@ -255,15 +259,15 @@ class DynamicStepper(NewtonStepper):
         system.commit()
         self.inertia.settle(self.now, motion.end, dt)
         state.notes += contact.accept(outcome.u, target)
-        self.book.accept(motion, contact.force)
+        self.energy_balance.accept(motion, contact.force)
         now = self.now = motion.end
         self.ends.find(motion, contact.force, target)
-        state.u, state.v, state.a = now.u + self.turned, now.v, now.a
+        state.u, state.v, state.a = now.u + self.removed_turns, now.v, now.a
         if step.scheme == "energy_momentum":
             state.v = admissible_velocity(system, step, self.inertia, now, target)
         if (more := _whole_turns(system, now.u)) is not None:
             now.u = now.u - more
-            self.turned = self.turned + more
+            self.removed_turns = self.removed_turns + more
         state.at, state.reaction = self.ends.at, self.ends.reaction
         state.step_time = target
         attempts = control.attempt
@@ -276,9 +280,9 @@ class DynamicStepper(NewtonStepper):
             "iterations": float(outcome.iterations),
             "attempts": float(attempts),
             "residual": outcome.sizes[-1],
-            "external work": self.book.external,
+            "external work": self.energy_balance.external,
         }
-        self.book.add_to(scalars)
+        self.energy_balance.add_to(scalars)
         return Accepted(control.number, target / step.period, scalars)
 
 

@@ -43,7 +43,7 @@ SAME_TIME = 1e-9
 #: Attributes of the stepper that a checkpoint holds.
 MEMORY = (
     *("known", "done", "n", "keep", "wanted", "dt", "stable", "u", "v", "at"),
-    *("begin", "work", "internal", "told", "driven", "contact", "force", "between"),
+    *("begin", "work", "internal", "reported_internal", "driven", "contact", "force", "between"),
 )
 
 
@@ -206,7 +206,7 @@ class ExplicitStepper:
         self.begin = account.work
         #: Velocity half an increment ahead.
         self.v = state.v + 0.5 * dt * a
-        self.work = self.internal = self.told = 0.0
+        self.work = self.internal = self.reported_internal = 0.0
         first = 0.5 * float(state.v @ (mass * state.v))
         self.known = Known(system, mass, first, dt)
         account.set_kinetic(first)
@@ -328,8 +328,8 @@ class ExplicitStepper:
         state.at = replace(at, internal=at.internal - force)
         state.a = np.where(constrained, given_a, a)
         state.step_time, account.kinetic = time, kinetic
-        account.internal += self.internal - self.told
-        self.told = self.internal
+        account.internal += self.internal - self.reported_internal
+        self.reported_internal = self.internal
         state.reaction = np.where(constrained, residual + mass * given_a, 0.0)
         scalars = {
             "dt": dt,

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 at_limit = lazy("corota.analysis.procedures.stopping:at_limit")
 collapse = lazy("corota.analysis.procedures.stopping:collapse")
 driven = lazy("corota.analysis.procedures.stopping:driven")
-explained = lazy("corota.analysis.procedures.stopping:explained")
+explanation = lazy("corota.analysis.procedures.stopping:explanation")
 passed = lazy("corota.analysis.procedures.stopping:passed")
 unstable = lazy("corota.analysis.procedures.stopping:unstable")
-ways = lazy("corota.analysis.procedures.stopping:ways")
+remedies = lazy("corota.analysis.procedures.stopping:remedies")
 path_step = lazy("corota.analysis.procedures.path.arc_length:path_step")
 by_relaxation = lazy("corota.analysis.procedures.static_relaxation:by_relaxation")
 
@@ -264,7 +264,7 @@ class StaticStepper(NewtonStepper):
                 raise
             outcome = Outcome(False, state.u, None, reason=f"the tangent is singular: {error}")
         if outcome.converged:
-            outcome.reason = system.scales.senseless(outcome.u)
+            outcome.reason = system.scales.implausible_displacement(outcome.u)
         elif not outcome.reason:
             outcome.reason = "no convergence"
         return outcome, contact
@@ -297,9 +297,10 @@ class StaticStepper(NewtonStepper):
         if self.passed is not None:
             return (
                 f"{passed(self.loop.number, self.passed, failed.outcome.negative)}. All increments "
-                f"before are kept; to continue, {ways(driven(self.system, self.step, self.state))}"
+                "before are kept; to continue, "
+                f"{remedies(driven(self.system, self.step, self.state))}"
             )
-        text: str = explained(
+        text: str = explanation(
             self.system,
             self.loop.number,
             self.control,
@@ -456,7 +457,7 @@ class StaticStepper(NewtonStepper):
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
                     f"{said}{stalled}{unstable(state)}. All converged increments are kept; to "
-                    f"continue, {ways(moves)}"
+                    f"continue, {remedies(moves)}"
                 ) from None
             return False
         state.counters["arc length took over"] = 1

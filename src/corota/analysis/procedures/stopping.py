@@ -39,11 +39,11 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
     return (
         f"limit point at load factor {factor:.6g} of step {number}{yielding}: the structure "
         "cannot carry more load in this equilibrium. The states up to it are kept; to continue, "
-        f"{ways(moves, follow=step.at_limit == 'stop')}"
+        f"{remedies(moves, follow=step.at_limit == 'stop')}"
     )
 
 
-def ways(moves: bool, follow: bool = False) -> str:
+def remedies(moves: bool, follow: bool = False) -> str:
     """How to continue beyond a limit point or a jump.
 
     Parameters
@@ -112,7 +112,7 @@ def _yields(system: System) -> bool:
     return any(isinstance(b.section.material, Mises) for b in system.blocks)
 
 
-def explained(
+def explanation(
     system: System,
     number: int,
     control: Increments,
@@ -160,4 +160,4 @@ def explained(
     )
 
 
-__all__ = ["at_limit", "collapse", "driven", "explained", "unstable", "ways"]
+__all__ = ["at_limit", "collapse", "driven", "explanation", "remedies", "unstable"]

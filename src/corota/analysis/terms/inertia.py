@@ -112,7 +112,7 @@ class Inertia(Term):
 
     def weigh(self, at: Evaluation, du: Floats, weight: float) -> None:
         """Set the sizes of inertia of an evaluation: `weight` times the mass of a change `du`."""
-        at.heft = weight * self._largest
+        at.inertial_stiffness = weight * self._largest
         terms = weight * self._own * np.abs(du)
         if self._turns:
             terms[self.system.is_rotation] /= self.system.length

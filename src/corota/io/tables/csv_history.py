@@ -205,8 +205,8 @@ def csv_text(rows: Sequence[dict[str, float]], units: Units | None = None) -> st
 
 def headings(names: Sequence[str], units: Units | None) -> list[str]:
     """Names of columns with their units, without quotes."""
-    told = units or Units()
-    return [labeled(name, told).replace('"', "'") for name in names]
+    named_units = units or Units()
+    return [labeled(name, named_units).replace('"', "'") for name in names]
 
 
 def _line(names: Sequence[str]) -> str:

@@ -125,7 +125,7 @@ def _search(
         if not settled and before is not None and norms.size >= 0.1 * before.size:
             settled = norms.rounding(settings.tolerance)
             if settled:
-                norms.force, norms.moment = norms.honest
+                norms.force, norms.moment = norms.combined
         done.sizes.append(norms.size)
         done.iterations = iteration
         if iteration and report is not None:

@@ -149,7 +149,7 @@ class ContactTerm(Term):
         self._stiff = False
         #: The kink of the surfaces at which the committed equilibrium lies.
         self.kink: Any = None
-        self.told: set[int] = set()  # dropped constraints that were reported
+        self.reported_constraints: set[int] = set()  # dropped constraints that were reported
         self.border: SaddlePointSystem | None = (
             None  # linear algebra with the multipliers, made when needed
         )

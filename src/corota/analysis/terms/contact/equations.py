@@ -23,7 +23,7 @@ from corota.analysis.terms.contact.impact import impact_error
 from corota.analysis.terms.contact.kink_correction import along_kink, keeps_kink
 from corota.analysis.terms.contact.kinks import Kink, Sides, again, both_sides
 from corota.analysis.terms.contact.linearization import linearized
-from corota.analysis.terms.contact.messages import explained
+from corota.analysis.terms.contact.messages import explanation
 from corota.analysis.terms.contact.pair import CLOSED
 from corota.analysis.terms.contact.pivoting import pivoted
 from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
@@ -350,7 +350,7 @@ class ContactEquations:
         Nodes passed through the opposite surface, or an unconstrained body is far away.
         """
         if self.inner is self.system:
-            far: str = self.system.scales.senseless(z)
+            far: str = self.system.scales.implausible_displacement(z)
             if far:
                 return far
         if not self.system.nlgeom:
@@ -382,7 +382,7 @@ class ContactEquations:
     def presses(self) -> bool:
         """Whether any contact has a pressure above rounding at the end of the increment."""
         assert self.contact_state is not None
-        none = self.system.scales.nothing
+        none = self.system.scales.zero_force
         return any(
             not pair.tied and bool((p * terms.area > none).any())
             for pair, terms, (p, _) in self._pairs(self.contact_state)
@@ -412,13 +412,13 @@ class ContactEquations:
         self.contact_term.accept(u, self.contact_state, step_time)
         self.contact_term.kink = None if self.kink is None else replace(self.kink, base=None)
         notes = []
-        if self.loose and not self.presses and FLOATS not in self.contact_term.told:
-            self.contact_term.told.add(FLOATS)
+        if self.loose and not self.presses and FLOATS not in self.contact_term.reported_constraints:
+            self.contact_term.reported_constraints.add(FLOATS)
             notes.append(
                 f"no contact is closed, and {self.loose}: the position of that body is "
                 "undetermined until contact or a support constrains it"
             )
-        for number in sorted(self.border.dropped - self.contact_term.told):
+        for number in sorted(self.border.dropped - self.contact_term.reported_constraints):
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
             constraint = (number - pair.first) % pair.n
             if constraint >= pair.of_nodes:
@@ -428,12 +428,12 @@ class ContactEquations:
                 f"{self.contact_term.label(pair, constraint)} is redundant and was dropped: "
                 "supports, ties or other contact constraints fix the node in that direction"
             )
-        self.contact_term.told |= self.border.dropped
+        self.contact_term.reported_constraints |= self.border.dropped
         return notes
 
     def explain(self, at: ContactEvaluation | None) -> str:
         """Pair and nodes that caused a failed increment, and what was tried."""
-        return explained(self, at)
+        return explanation(self, at)
 
 
 __all__ = ["MAX_EXTRA_CONTACT_ITERATIONS", "PATIENCE", "ContactEquations"]

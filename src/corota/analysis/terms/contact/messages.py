@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 OFTEN = 2
 
 
-def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
+def explanation(problem: ContactProblem, at: ContactEvaluation | None) -> str:
     """Pair and nodes that caused a failed increment, and what was tried."""
     if at is None:
         return ""
@@ -58,4 +58,4 @@ def explained(problem: ContactProblem, at: ContactEvaluation | None) -> str:
     return said + sunk_corner(problem.contact_term)
 
 
-__all__ = ["explained"]
+__all__ = ["explanation"]

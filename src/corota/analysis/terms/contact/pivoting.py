@@ -413,7 +413,7 @@ def pivoted(
 def _small(problem: ContactProblem) -> float:
     """Force that counts as zero."""
     scales = problem.system.scales
-    return 1e-9 * max(scales.force, scales.nothing)
+    return 1e-9 * max(scales.force, scales.zero_force)
 
 
 def responses(
