@@ -69,3 +69,12 @@ def test_gradient_of_a_limit_load_by_an_imperfection(load) -> None:
     assert slope[0] == pytest.approx(difference, rel=1e-7)
     koiter = -math.sqrt(example.frame_slope() * abs(turn) / size)
     assert slope[0] == pytest.approx(koiter, rel=0.1)
+
+
+def test_asymmetric_branching_has_no_gradient(load) -> None:
+    """The frame's branches cross at an angle, the column's do not, however slender both are."""
+    example = load("imperfections/imperfections.py")
+    model = example.frame(8)
+    model.steps = [ct.Static(path=ct.ArcLength(factor=1.05))]
+    with pytest.raises(ct.UnsupportedError, match="branches cross at an angle"):
+        ct.value_and_grad(lambda _: model, gradients.BifurcationLoad(), threads=1)([1.0])

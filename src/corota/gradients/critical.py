@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 #: Slope of the load factor at a limit point, or test function at a bifurcation, over its change in
 #: the first step of the search.
 LOCATED = 1e-7
+#: Last step of the search over the first, where rounding of slender structures ends it.
+ROUNDED = 1e-5
 #: Steps of a search, and of Newton's method in each.
 SEARCH, NEWTON = 12, 10
 #: Share of the size of the model of a difference along a mode.
@@ -49,6 +51,8 @@ ALONG = 4e-4
 DOUBLE = 1e-6
 #: Coupling of a mode with other terms, over their size, that symmetry excludes.
 SYMMETRY = 1e-5
+#: Rounding of that coupling, over the change of the forces of the mode.
+NOISE = 1e-11
 
 
 class Tangent:
@@ -199,8 +203,9 @@ class BifurcationLoad(SpecialMeasure):
         self.null = np.zeros(len(tangent.free))
         self.null[tangent.active] = own
         slope = _quadratic_slope(point, self.null)[tangent.active]
-        size = float(np.abs(own) @ np.abs(slope))
-        if abs(own @ slope) > SYMMETRY * size:
+        size = SYMMETRY * float(np.abs(own) @ np.abs(slope))
+        size += NOISE * math.sqrt(float(slope @ slope))
+        if abs(own @ slope) > size:
             raise UnsupportedError(
                 f"{self!r}: the bifurcation is not symmetric (its branches cross at an angle): the "
                 "load has no derivative by most parameters"
@@ -360,7 +365,8 @@ def _secant(function: Callable[[float], float], start: float, step: float, what:
         f1 = function(x1)
         if abs(f1) <= LOCATED * size or abs(x1 - x0) <= 1e-12 * max(abs(x1), abs(step)):
             return
-    raise UnsupportedError(f"{what!r}: the critical point could not be located exactly")
+    if abs(x1 - x0) > ROUNDED * abs(step):
+        raise UnsupportedError(f"{what!r}: the critical point could not be located exactly")
 
 
 def _reduced(system: System, u: Floats, time: float) -> Any:

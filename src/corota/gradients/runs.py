@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: Change of a force that symmetry excludes, over the forces it is made of.
 SYMMETRY = 1e-7
+#: Least size of a sum of forces, over the largest of them.
+FORCE_FLOOR = 1e-8
 #: Relative difference of the results of second and fourth order that shows a kink.
 KINK = 1e-2
 
@@ -191,6 +193,8 @@ class Run:
                 continue
             total += point.reaction @ adjoint.weights
             size += point.at.scale @ np.abs(adjoint.weights)
+            # What symmetry makes zero exactly has a size, too.
+            size += FORCE_FLOOR * point.at.scale.max() * np.abs(adjoint.weights).sum(axis=0)
             for column, leaf in adjoint.measures:
                 direct = leaf.direct(point)
                 total[column] += direct
