@@ -80,6 +80,7 @@ ENTRIES = {
     "impact/bar": Entry("Motion and impact"),
     "impact/ring": Entry("Motion and impact"),
     "limit_load/limit_load": Entry("Plasticity"),
+    "inverter/inverter": Entry("Flexures"),
     "joints/joints": Entry("Flexures"),
     "lines/frame_stop": Entry("Beams"),
     "motion/cantilever_sine": Entry("Motion and impact"),

@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: BSD-3-Clause
 from corota.gradients.critical import BifurcationLoad, Frequency, LimitLoad
+from corota.gradients.density import Density, optimize_density
 from corota.gradients.measures import (
     Area,
     Displacement,
@@ -30,6 +31,7 @@ __all__ = [
     "BifurcationLoad",
     "Constant",
     "Constraint",
+    "Density",
     "Design",
     "Displacement",
     "Frequency",
@@ -49,5 +51,6 @@ __all__ = [
     "ValueAndGradient",
     "gradient",
     "optimize",
+    "optimize_density",
     "value_and_grad",
 ]

@@ -43,6 +43,7 @@ def moving_asymptotes(
     limits: Sequence[tuple[float, float]],
     tolerance: float,
     most: int,
+    move: float = 0.5,
 ) -> Outcome:
     """Minimize the first value within limits of the others.
 
@@ -60,6 +61,8 @@ def moving_asymptotes(
         It ends where no parameter changes by more than the square root of it.
     most : int
         Most iterations.
+    move : float
+        Largest change of a parameter in an iteration, over the range of its bounds.
 
     Raises
     ------
@@ -91,7 +94,7 @@ def moving_asymptotes(
         found = mmasub(
             *(m, n, iteration, x[:, None], low, high, old[:, None], older[:, None]),
             *(values[0], slopes[0][:, None], excess, by, *asymptotes),
-            *(1.0, 0.0 * one, COST * one, one),
+            *(1.0, 0.0 * one, COST * one, one, move),
         )
         asymptotes = found[-2:]
         new = np.clip(found[0][:, 0], low[:, 0], high[:, 0])

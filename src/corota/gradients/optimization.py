@@ -120,7 +120,7 @@ class Optimum(Brief):
         )
 
 
-class _Designs:
+class Designs:
     """Evaluates designs once, and keeps them in a file."""
 
     def __init__(
@@ -275,7 +275,7 @@ def optimize(
     own = list(constraints)
     measures = [objective, *(c.measure for c in own)]
     function = value_and_grad(build, measures, sizes=scale, **options)
-    designs = _Designs(function, None if record is None else Path(record), progress)
+    designs = Designs(function, None if record is None else Path(record), progress)
     first = designs.at(start)
     sign = -1.0 if maximize else 1.0
     unit = np.array([sign / (abs(first.values[0]) or 1.0), *(1.0 / c.size for c in own)])
@@ -396,7 +396,7 @@ def _unscaled(y: Floats, scale: Floats, bounds: Sequence[tuple[float, float]] | 
 
 
 def _best(
-    designs: _Designs, constraints: Sequence[Constraint], unit: Floats, last: Floats
+    designs: Designs, constraints: Sequence[Constraint], unit: Floats, last: Floats
 ) -> Design:
     """The best design that keeps the constraints; else the one where the optimizer ended."""
     kept = []
@@ -411,4 +411,4 @@ def _best(
     return designs.at(last)
 
 
-__all__ = ["Constraint", "Design", "Optimum", "optimize"]
+__all__ = ["Constraint", "Design", "Designs", "Optimum", "optimize"]
