@@ -102,6 +102,10 @@ ENTRIES = {
         "On the land 600 N; a shell on an elastic foundation 604 N, CalculiX 592 N.",
     ),
     "snap_fit/snap_fit": Entry("Snap-fits and seals"),
+    "taylor_bar/taylor_bar": Entry(
+        "Motion and impact",
+        "Length 26.55, diameter of the foot 11.15; Abaqus 26.56, 11.16, DynELA 26.52, 11.15.",
+    ),
     "switch/switch": Entry("Buckling and snap-through", model="bistable"),
 }
 for _script in thumbnails.scripts():  # those that nobody has put under a topic yet

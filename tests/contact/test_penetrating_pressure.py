@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import corota as ct
+from benchmarks.same_bits import Takes
 
 LENGTH, HEIGHT = 10.0, 2.0
 STIFF = 1e10
@@ -169,6 +170,45 @@ def test_the_fluid_draws_back_where_surfaces_are_pressed_again() -> None:
     assert ends[0].scalars["wetted length"] == pytest.approx(LENGTH)
     assert ends[1].scalars["wetted length"] == pytest.approx(0.0)
     assert ends[1].scalars["floor: force y"] == pytest.approx(40.0, rel=1e-2)
+
+
+def test_a_checkpoint_keeps_the_front() -> None:
+    """Resumed in the middle of the lift: the same bits."""
+
+    def given() -> tuple[ct.Model, list[ct.Static]]:
+        model = ct.Model(ct.mesh.rectangle(LENGTH, HEIGHT, 8, 2))
+        model.section("all", element="Q4", material=ct.Elastic(1000.0, 0.0), plane="strain")
+        model.contact("bottom", ct.RigidCurve.line((-50.0, 0.0), (50.0, 0.0)), name="floor")
+        steps = [ct.Static(), ct.Static(), ct.Static(increments=4)]
+        steps[0].fix("top", y=-2.0 * HEIGHT / 1000.0)
+        steps[1].penetrating_pressure("bottom", 2.5, start=start(model))
+        steps[2].penetrating_pressure("bottom", 3.0, start=start(model))
+        return model, steps
+
+    takes = Takes()
+    model, steps = given()
+    whole = ct.solve(model, steps, observers=[takes], threads=1).frames[-1]
+    assert whole.scalars["wetted length"] == LENGTH
+    for found in takes.found[1:-1]:
+        model, steps = given()
+        again = ct.solve(model, steps, threads=1, start=found).frames[-1]
+        np.testing.assert_array_equal(again.U, whole.U)
+        assert again.scalars["wetted length"] == LENGTH
+
+
+@pytest.mark.parametrize("scheme", ["hht", "energy_momentum"])
+def test_a_block_is_lifted_in_motion(scheme: str) -> None:
+    """A light block under a fluid that rises slowly has the stress of the fluid in the end."""
+    model = ct.Model(ct.mesh.rectangle(LENGTH, HEIGHT, 8, 2))
+    model.section("all", element="Q4", material=ct.Elastic(1000.0, 0.0, rho=1e-6), plane="strain")
+    model.contact("bottom", ct.RigidCurve.line((-50.0, 0.0), (50.0, 0.0)), name="floor")
+    model.fix("top", y=-2.0 * HEIGHT / 1000.0)
+    rise = ct.Dynamic(period=0.1, increments=40, scheme=scheme, ramp=True)
+    rise.penetrating_pressure("bottom", 3.0, start=start(model))
+    frame = ct.solve(model, [ct.Static(), rise], threads=1).frames[-1]
+    assert frame.scalars["wetted length"] == pytest.approx(LENGTH)
+    top = model.mesh.nodes_of("top")
+    assert frame.RF[top, 1].sum() == pytest.approx(-3.0 * LENGTH, rel=0.02)
 
 
 def test_a_fluid_needs_a_slave_surface_and_a_start_on_it() -> None:

@@ -25,6 +25,7 @@ use super::integrate::{History, Local, Section, absorbed, flowed, local};
 use crate::base::small::{Blocks, Nodal, blocks, nodal};
 use crate::elements::Element;
 use crate::elements::element::Wanted;
+use crate::materials::Clock;
 
 /// Points of Gauss's rule on the increment, each of weight one half.
 const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
@@ -168,11 +169,14 @@ where
     let curved = !(section.law.is_linear() && section.strain.is_linear());
     // A law with a history and no account of its work has the mean force only.
     let accounts = section.law.n_state() == 0 || section.law.work_member().is_some();
+    let clock = history.clock;
+    history.clock = passed(clock, 0.0);
     let begin = local::<E, f64, N, M, A>(x, &f0.q, section, history, false);
     let mut energy = [0.0; 2];
     if curved && accounts {
         energy[0] = absorbed::<E, N, M, A>(x, &f0.q, section, history);
     }
+    history.clock = clock;
     let mut end = local::<E, f64, N, M, A>(x, &f1.q, section, history, step.tangent);
     let mut failed = begin.failed | end.failed;
     let mut mean = nodal::<f64, N, M>();
@@ -181,6 +185,7 @@ where
         end.stiffness = blocks::<f64, N, M>();
         for s in ALONG {
             let q = between_ends(&f0.q, &f1.q, s);
+            history.clock = passed(clock, s);
             let at = local::<E, f64, N, M, A>(x, &q, section, history, step.tangent);
             failed |= at.failed;
             for a in 0..N {
@@ -198,6 +203,7 @@ where
             }
         }
         // The history is that of the end again.
+        history.clock = clock;
         local::<E, f64, N, M, A>(x, &f1.q, section, history, false);
     } else {
         for n in 0..N {
@@ -263,11 +269,14 @@ where
         failed |= answer.failed;
         answer
     };
+    let clock = history.clock;
+    history.clock = passed(clock, 0.0);
     respond(step.u0, history, false);
     if accounts {
         energy[0] = E::absorbed(x, step.u0, section, history, step.nlgeom);
     }
     for s in ALONG {
+        history.clock = passed(clock, s);
         let at = respond(&between_ends(step.u0, step.u1, s), history, step.tangent);
         for (to, from) in internal.as_flattened_mut().iter_mut().zip(at.force.as_flattened()) {
             *to += 0.5 * from;
@@ -279,6 +288,7 @@ where
         }
     }
     // The history is that of the end again.
+    history.clock = clock;
     respond(step.u1, history, false);
     if accounts {
         energy[1] = E::absorbed(x, step.u1, section, history, step.nlgeom);
@@ -295,6 +305,12 @@ where
     let between = Between::new(x, step, &frame, &frame);
     let inertia = plain(mass.0, mass.1 == MassKind::Lumped, step, &between, &mut tangent);
     Answer { internal, inertia, tangent, failed }
+}
+
+/// The clock at the fraction `s` of the increment.
+fn passed(clock: Clock, s: f64) -> Clock {
+    let increment = s * clock.increment;
+    Clock { increment, end: clock.end - clock.increment + increment, ..clock }
 }
 
 /// Local dofs at the fraction `s` of the increment.

@@ -193,8 +193,12 @@ impl Problem {
             array.fill(0.0);
         }
         let tangent = !values.is_empty();
-        let context =
-            Context { nlgeom, tangent, ..Context::new(&self.x, &self.dofs, self.lanes, u) };
+        let context = Context {
+            nlgeom,
+            tangent,
+            clock: self.clock,
+            ..Context::new(&self.x, &self.dofs, self.lanes, u)
+        };
         let sink = Sink::new(force, scale, values);
         let alone = Sink::new(internal, &mut unused, &mut []);
         let pool = self.pool_if_apart();

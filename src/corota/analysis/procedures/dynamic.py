@@ -32,7 +32,7 @@ from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.moving_mass import massless_nodes
 from corota.analysis.terms.viscous import ViscousElements
-from corota.errors import ModelError, SingularError
+from corota.errors import SingularError
 from corota.model import elements
 from corota.model.schemes import SCHEMES
 
@@ -80,12 +80,6 @@ def dynamic_step(
         With the reason, when no smaller increment helps.
     """
     check_density(system)
-    if step.scheme == "energy_momentum" and system.depends_on_time:
-        raise ModelError(
-            "the energy-momentum scheme is for materials that do not depend on the time: use "
-            "scheme='hht' or 'generalized_alpha'",
-            step.where,
-        )
     loop = IncrementLoop(system, step, number, state, observers, save)
     if step.scheme == "central_difference":
         explicit_step(loop, step, stops)

@@ -104,6 +104,7 @@ class Elements(Term):
         assert point.between is not None
         start, end, dt = point.between
         self.heat(point.time)
+        self._set_clock(point.time + 0.5 * dt)
         x1, x0, v0 = (system.in_space(x) for x in (end, start, begun))
         both = np.empty(system.n_dofs)
 

@@ -294,7 +294,7 @@ export class Overlay {
       if (squares.has(key)) continue;
       squares.add(key);
       const length = Math.hypot(bx - ax, by - ay) || 1;
-      if (load.kind === "pressure") {
+      if (load.kind.endsWith("pressure")) {
         const sign = Math.sign(load.value[0]);
         // The body is on the left of the edge; on the screen y points down.
         const inward = [(by - ay) / length, (bx - ax) / length];

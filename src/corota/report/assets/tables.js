@@ -30,7 +30,7 @@ const withUnit = (value, unit) => (unit ? `${show(value)} ${unit}` : show(value)
 const CONSTANTS = { rho: "mass/length^3" };
 for (const name of ["E", "E1", "E2", "E3", "G12", "G", "yield_stress", "isotropic"]) CONSTANTS[name] = "force/length^2";
 const LOADS = {
-  force: "force", moment: "force*length", pressure: "force/length^2", traction: "force/length^2",
+  force: "force", moment: "force*length", pressure: "force/length^2", "penetrating pressure": "force/length^2", traction: "force/length^2",
   shear: "force/length^2", gravity: "length/time^2", body: "force/length^3",
 };
 
