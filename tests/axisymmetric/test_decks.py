@@ -160,3 +160,56 @@ def test_calculix_takes_loads_of_cax3_at_centroids(
         apart.append(np.abs(moved - known).max() / np.abs(known).max())
     assert apart[0] > least
     assert apart[1] < 5e-4
+
+
+HOT = """*NODE, NSET=NALL
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=E
+1, 1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+210000., .3
+*EXPANSION
+1.2e-5
+*SOLID SECTION, ELSET=E, MATERIAL=M
+1.
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+NALL, 20.
+*BOUNDARY
+1, 1, 2
+4, 1
+2, 2
+*STEP, NLGEOM
+*STATIC
+1., 1.
+*CLOAD
+2, 1, {force}
+3, 1, {force}
+*TEMPERATURE
+NALL, {heat}
+*NODE PRINT, NSET=NALL
+U
+*END STEP
+"""
+
+
+@needs_ccx
+def test_a_heated_body_is_strained_from_its_hot_shape_in_calculix(tmp_path: Path) -> None:
+    """Heated by 1000: its compliance is 1 / (1 + e) of the cold one, here 1 / (1 + e)^2.
+
+    The reason for deck 34, a heated ring that spins: e = 1.2e-3 on half of the displacement.
+    """
+    found = []
+    for force, heat in (("105.", "20."), ("0.", "1020."), ("105.", "1020.")):
+        text = HOT.format(force=force, heat=heat)
+        (tmp_path / "ccx.inp").write_text(text)
+        run_ccx(tmp_path, "ccx")
+        rows = [line.split() for line in (tmp_path / "ccx.dat").read_text().splitlines()]
+        theirs = next(float(row[1]) for row in rows if len(row) == 4 and row[0] == "2")
+        ours = float(ct.solve(read(tmp_path, text), threads=1).frames[-1].U[1, 0])
+        found.append((theirs, ours))
+    cold, hot, pulled = np.array(found)
+    np.testing.assert_allclose((pulled - hot) / cold, [1.0 / 1.012, 1.0 / 1.012**2], rtol=1e-4)
