@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from corota.mesh.geometric import inside, near, on_circle, on_line
     from corota.model.attachments import Dashpot, PointMass
     from corota.model.constraints import Coupling, Equation, LocalAxes, StraightLine
-    from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie
+    from corota.model.contact import ContactPair, PressureLaw, RigidCurve, Tie, gap_element
     from corota.model.hill import Hill
     from corota.model.hyperelastic import (
         ArrudaBoyce,
@@ -167,6 +167,7 @@ _HOMES = {
     "Yeoh": "model.hyperelastic",
     "__version__": "_core",  # that of Cargo.toml
     "examples": "",
+    "gap_element": "model.contact",
     "gradient": "gradients",
     "gradients": "",
     "grid": "sweeps",
@@ -284,6 +285,7 @@ __all__ = [
     "YieldRatio",
     "cells",
     "examples",
+    "gap_element",
     "gradient",
     "gradients",
     "grid",

@@ -52,13 +52,19 @@ pub enum Piece {
 pub struct Rigid {
     pieces: Vec<Piece>,
     pub(super) node: Option<u32>,
+    /// Whether the rotation of the node turns it; else it moves along only.
+    pub(super) turns: bool,
     point: Vec2<f64>,
 }
 
 impl Rigid {
     /// From rows `x0 y0 x1 y1 cx cy sweep` in the reference configuration; arcs are cut into
     /// pieces of at most 30 degrees.
-    pub fn new(rows: &[[f64; 7]], node: Option<u32>, point: Vec2<f64>) -> Result<Self, String> {
+    pub fn new(
+        rows: &[[f64; 7]],
+        (node, turns): (Option<u32>, bool),
+        point: Vec2<f64>,
+    ) -> Result<Self, String> {
         let mut pieces = Vec::new();
         for (i, &[x0, y0, x1, y1, cx, cy, sweep]) in rows.iter().enumerate() {
             let first = sub([x0, y0], point);
@@ -85,12 +91,13 @@ impl Rigid {
                 pieces.push(Piece::Arc(center, radius, start + part * k as f64, part));
             }
         }
-        Ok(Self { pieces, node, point })
+        Ok(Self { pieces, node, turns, point })
     }
 
     fn frame<T: Smooth>(&self, v: &[T]) -> Frame<T> {
         match v {
             [x, y, angle] => Frame::new(*x, *y, *angle),
+            [x, y] => Frame { origin: [*x, *y], cos: T::real(1.0), sin: T::real(0.0) },
             _ => Frame::lift(Frame { origin: self.point, cos: 1.0, sin: 0.0 }),
         }
     }
@@ -318,8 +325,8 @@ impl Surface {
             Self::Edges(edges) => edges[j].variables(),
             Self::Both(first, _) if j < first.len() => first.variables(j),
             Self::Both(first, edges) => edges[j - first.len()].variables(),
-            Self::Rigid(Rigid { node: Some(n), .. }) => {
-                (0..3).map(|c| 3 * i64::from(*n) + c).collect()
+            Self::Rigid(Rigid { node: Some(n), turns, .. }) => {
+                (0..2 + i64::from(*turns)).map(|c| 3 * i64::from(*n) + c).collect()
             }
             Self::Rigid(_) => Vec::new(),
         }
@@ -374,7 +381,7 @@ impl Surface {
             Self::Both(first, _) if j < first.len() => first.place(j, x),
             Self::Both(first, edges) => Master::Curve(edges[j - first.len()].place(x)),
             Self::Rigid(rigid) => match rigid.node {
-                Some(n) => self.shape(j, &x[n as usize]),
+                Some(n) => self.shape(j, &x[n as usize][..2 + usize::from(rigid.turns)]),
                 None => self.shape(j, &[]),
             },
         }

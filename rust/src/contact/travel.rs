@@ -78,7 +78,7 @@ impl Start {
     ) -> bool {
         self.still = x == old;
         self.turned = match &sides.master {
-            Surface::Rigid(rigid) => {
+            Surface::Rigid(rigid) if rigid.turns => {
                 rigid.node.map_or(0.0, |n| x[n as usize][2] - old[n as usize][2])
             }
             _ => 0.0,

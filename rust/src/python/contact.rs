@@ -46,7 +46,8 @@ pub(super) fn edges(
     let edge = |(row, &alpha_b): (&[i64; 3], &f64)| {
         let n_nodes = if row[2] < 0 { 2 } else { 3 };
         let shape = Shape::Element;
-        let mut edge = Edge { nodes: [0; 3], shape, n_nodes, alpha_b, length: 0.0, half: None };
+        let (nodes, length, sagitta) = ([0; 3], 0.0, 0.0);
+        let mut edge = Edge { nodes, shape, n_nodes, alpha_b, length, sagitta, half: None };
         for a in 0..n_nodes {
             edge.nodes[a] = u32::try_from(row[a])
                 .ok()
@@ -224,11 +225,11 @@ impl Contact {
     ///
     /// ``segments`` (n, 7) are rows x0, y0, x1, y1, cx, cy, sweep in reference coordinates: for
     /// sweep 0 the line from 0 to 1, else the arc about c from 0 through the angle; the body is
-    /// on the left. ``node`` (-1 for none) moves the curve and turns it about its place.
+    /// on the left. ``node`` (-1 for none) moves the curve and ``turns`` it about its place.
     #[staticmethod]
     #[pyo3(signature = (
         reference, slave_nodes, slave_bulge, slave_thickness, segments, node, point, *,
-        method="mortar", reach, margin, depth=f64::INFINITY, corners=false
+        turns=true, method="mortar", reach, margin, depth=f64::INFINITY, corners=false
     ))]
     #[allow(clippy::too_many_arguments)]
     fn rigid(
@@ -239,6 +240,7 @@ impl Contact {
         segments: Rows<'_>,
         node: i64,
         point: [f64; 2],
+        turns: bool,
         method: &str,
         reach: f64,
         margin: f64,
@@ -255,7 +257,8 @@ impl Contact {
                 .ok_or_else(|| bad(format!("reference node {n} is out of range")))?,
             None => point,
         };
-        let rigid = Rigid::new(rows::<7, f64>(&segments, "segments")?, node, point).map_err(bad)?;
+        let segments = rows::<7, f64>(&segments, "segments")?;
+        let rigid = Rigid::new(segments, (node, turns), point).map_err(bad)?;
         let distances = Distances { reach, margin, depth };
         Self::wrap(x, slave, Some(Surface::Rigid(rigid)), method, distances, corners)
     }

@@ -28,8 +28,8 @@ fn of_side(x: &[[f64; 3]], side: &(Numbers, Floats, Floats), name: &str) -> PyRe
 ///
 /// ``slave`` and ``master`` are edges: nodes, bulge factors and the distance of a line to its
 /// surfaces, negative for edges of bodies. ``thickness`` is that of the slave edges; ``points`` are
-/// slave nodes without edges. In place of ``master`` a rigid curve: segments, node and point as in
-/// ``Contact.rigid``.
+/// slave nodes without edges. In place of ``master`` a rigid curve: segments, node, point and whether
+/// it turns, as in ``Contact.rigid``.
 #[pyfunction]
 #[pyo3(signature = (
     reference, slave, thickness, points, master, rigid=None, *, method="line", reach, margin,
@@ -42,7 +42,7 @@ fn line_contact(
     thickness: Floats<'_>,
     points: PyReadonlyArray1<'_, i64>,
     master: (Numbers<'_>, Floats<'_>, Floats<'_>),
-    rigid: Option<(Rows<'_>, i64, [f64; 2])>,
+    rigid: Option<(Rows<'_>, i64, [f64; 2], bool)>,
     method: &str,
     reach: f64,
     margin: f64,
@@ -66,7 +66,7 @@ fn line_contact(
         Slave::new(x, own.clone(), depths(&thickness)?, true)
     };
     let first = match &rigid {
-        Some((segments, node, point)) => {
+        Some((segments, node, point, turns)) => {
             let node = u32::try_from(*node).ok();
             let at = match node {
                 Some(n) => x
@@ -76,7 +76,7 @@ fn line_contact(
                 None => *point,
             };
             let segments = rows::<7, f64>(segments, "segments")?;
-            Surface::Rigid(Rigid::new(segments, node, at).map_err(bad)?)
+            Surface::Rigid(Rigid::new(segments, (node, *turns), at).map_err(bad)?)
         }
         None => Surface::Edges(of_side(x, &master, "master")?),
     };

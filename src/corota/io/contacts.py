@@ -29,6 +29,7 @@ def store_contacts(group: Any, model: Model) -> None:
             store(own, "segments", pair.master.segments)
             if isinstance(pair.master.reference, int | np.integer):
                 own.attrs["reference"] = int(pair.master.reference)
+                own.attrs["turns"] = pair.master.turns
         else:
             store(own, "master", edges_or_nodes(model.mesh, pair.master)[0])
 
@@ -63,7 +64,8 @@ def contacts_of_results(file: Any) -> list[ContactPair]:
         else:
             reference = own.attrs.get("reference")
             node = None if reference is None else int(reference)
-            master = RigidCurve(own["segments"][:], node, names[1])
+            turns = bool(own.attrs.get("turns", True))
+            master = RigidCurve(own["segments"][:], node, names[1], turns=turns)
         settings = json.loads(own.attrs.get("settings", "{}"))
         if "law" in settings:
             settings["law"] = PressureLaw(**settings["law"])

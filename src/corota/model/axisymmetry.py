@@ -92,7 +92,7 @@ def guided(model: Model) -> list[tuple[Ints, int]]:
     """
     references = [c.reference for c in model.constraints if isinstance(c, Coupling)]
     curves = [pair.master for pair in model.contacts if isinstance(pair.master, RigidCurve)]
-    references += [int(c.reference) for c in curves if isinstance(c.reference, int | np.integer)]
+    references += [c.turning_node for c in curves if c.turning_node is not None]
     bodies = np.unique(np.asarray(references, np.int64))
     axis = np.setdiff1d(nodes_on_axis(model), bodies)
     return [(axis, 0), (bodies, 0), (bodies, 2)]

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: Largest friction coefficient: no pressure lets surfaces slip with it.
 MOST_FRICTION = 1e6
+#: Half the length of the line of a gap element, in sizes of the model: sideways nothing ends it.
+FAR = 10.0
 #: Treatment of overlaps and gaps at the start.
 STARTS = ("keep", "adjust", "ramp")
 #: Facts of the discretizations of contact that the core knows, by their names.
@@ -52,11 +54,15 @@ class RigidCurve(Brief):
         Node (index) that carries the curve: it can be moved, rotated, loaded or fixed like any
         node; its
         reaction is that of the curve. A point, or None: the curve is fixed.
+    turns : bool
+        Whether the curve turns with its node. Otherwise it moves along with it only, and the node
+        needs no rotation.
     """
 
     segments: Floats
     reference: Reference = None
     name: str = ""
+    turns: bool = field(default=True, kw_only=True)
 
     def __post_init__(self) -> None:
         self.segments = np.asarray(self.segments, dtype=np.float64).reshape(-1, 7)
@@ -173,6 +179,12 @@ class RigidCurve(Brief):
             if j in arcs:
                 rows.append(arcs[j])
         return cls(np.array(rows), reference)
+
+    @property
+    def turning_node(self) -> int | None:
+        """The node that moves and turns the curve, if there is one."""
+        carries = self.turns and isinstance(self.reference, int | np.integer)
+        return int(self.reference) if carries else None  # type: ignore[arg-type]
 
     @property
     def backward(self) -> Floats:
@@ -353,6 +365,75 @@ class ContactPair(Brief):
         if isinstance(self.slave, str):
             return self.slave == self.master
         return np.array_equal(self.slave, np.asarray(self.master))
+
+
+def gap_element(
+    points: Floats,
+    nodes: tuple[int, int],
+    clearance: float,
+    direction: tuple[float, float],
+    name: str = "gap",
+    where: Location | None = None,
+) -> ContactPair:
+    """Contact of two nodes along a fixed direction n: ``clearance + n . (u2 - u1) >= 0``.
+
+    The second node is in contact with a line across n that moves along with the first one.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_nodes, 2)
+        Reference positions [length].
+    nodes : tuple of int
+        Indices of the first and the second node.
+    clearance : float
+        Distance at the start [length]; a negative one is an overlap.
+    direction : tuple of float
+        From the first side to the second, of any length.
+
+    Returns
+    -------
+    ContactPair
+        Its force y and force x are those on the second node.
+
+    Raises
+    ------
+    InputError
+        If the direction has no length.
+    """
+    n = np.asarray(direction, float)
+    if not np.hypot(*n) > 0.0:
+        raise InputError("the direction of a gap has no length", where)
+    n = n / np.hypot(*n)
+    far = FAR * (float(np.ptp(points, axis=0).max()) + abs(clearance))
+    on = points[nodes[1]] - max(clearance, 0.0) * n
+    along = far * np.array([n[1], -n[0]])
+    line = RigidCurve.line(on - along, on + along, reference=int(nodes[0]))
+    line.turns = False
+    return ContactPair(
+        np.array([nodes[1]], np.int64),
+        line,
+        clearance=clearance if clearance < 0.0 else None,
+        reach=far,
+        name=name,
+        where=where,
+    )
+
+
+def is_gap(pair: ContactPair) -> bool:
+    """Whether a pair is a gap element."""
+    return isinstance(pair.master, RigidCurve) and not pair.master.turns
+
+
+def of_gap(points: Floats, pair: ContactPair) -> tuple[tuple[int, int], float, tuple[float, float]]:
+    """Nodes, clearance and direction of a gap element: what :func:`gap_element` takes."""
+    curve, second = pair.master, int(np.asarray(pair.slave)[0])
+    assert isinstance(curve, RigidCurve)
+    start, end = curve.segments[0, :2], curve.segments[0, 2:4]
+    t = (end - start) / np.hypot(*(end - start))
+    n = np.array([-t[1], t[0]])
+    away = float(n @ (points[second] - start))
+    first = int(curve.reference)  # type: ignore[arg-type]
+    return (first, second), away if pair.clearance is None else pair.clearance, (n[0], n[1])
 
 
 def edges_or_nodes(mesh: Mesh, where: str | Ints) -> tuple[Ints, Ints]:

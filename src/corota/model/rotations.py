@@ -38,7 +38,7 @@ def reference_nodes(model: Model) -> list[int]:
     """Nodes that have a rotation because of attached bodies, curves or constraints."""
     found = [c.reference for c in model.constraints if isinstance(c, Coupling)]
     curves = [pair.master for pair in model.contacts if isinstance(pair.master, RigidCurve)]
-    return found + [int(c.reference) for c in curves if isinstance(c.reference, int | np.integer)]
+    return found + [c.turning_node for c in curves if c.turning_node is not None]
 
 
 def without_rotation(mesh: Mesh, support: Fixed) -> str:

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 
 def rigid_curves(model: Model) -> list[RigidCurve]:
-    """The rigid curves of a model, each once."""
+    """The rigid curves of a model, each once; the lines of gap elements are no bodies."""
     found = {
         id(pair.master): pair.master
         for pair in model.contacts
-        if isinstance(pair.master, RigidCurve)
+        if isinstance(pair.master, RigidCurve) and pair.master.turns
     }
     return list(found.values())
 

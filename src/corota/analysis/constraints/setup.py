@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from corota.analysis.constraints.straight_line import OnLine
 from corota.arrays import distinct
 from corota.errors import ModelError
 from corota.model.constraints import Coupling, Equation, StraightLine
-from corota.model.contact import RigidCurve
+from corota.model.contact import RigidCurve, is_gap, of_gap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,12 +68,18 @@ def extra_dofs(model: Model, in_element: NDArray[np.bool_]) -> NDArray[np.uint8]
 
 def reference_nodes(model: Model) -> Ints:
     """Nodes that carry rigid curves; they have two displacements and a rotation."""
-    found = {
-        int(pair.master.reference)
-        for pair in model.contacts
-        if isinstance(pair.master, RigidCurve)
-        and isinstance(pair.master.reference, int | np.integer)
-    }
+    curves = [pair.master for pair in model.contacts if isinstance(pair.master, RigidCurve)]
+    found = {curve.turning_node for curve in curves} - {None}
+    return _existing(model, found)
+
+
+def gap_nodes(model: Model) -> Ints:
+    """Nodes of gap elements; they have two displacements."""
+    gaps = [of_gap(model.mesh.points, pair) for pair in model.contacts if is_gap(pair)]
+    return _existing(model, {node for nodes, *_ in gaps for node in nodes})
+
+
+def _existing(model: Model, found: set[Any]) -> Ints:
     for node in found:
         if not 0 <= node < model.mesh.n_nodes:
             raise ModelError(f"a rigid curve has reference node index {node}, which does not exist")
@@ -81,12 +87,13 @@ def reference_nodes(model: Model) -> Ints:
 
 
 def carry_curves(model: Model, carried: Ints, extra: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Give reference nodes of rigid curves all three dofs; changes `carried`, returns `extra`."""
-    nodes = reference_nodes(model)
-    if len(nodes):
-        carried[nodes] = 3
-        extra = extra if len(extra) else np.zeros(model.mesh.n_nodes, np.uint8)
-        extra[nodes] = 3
+    """Give reference nodes of rigid curves their dofs; changes `carried`, returns `extra`."""
+    for nodes, count in ((reference_nodes(model), 3), (gap_nodes(model), 2)):
+        nodes = nodes[carried[nodes] < count]
+        if len(nodes):
+            carried[nodes] = count
+            extra = extra if len(extra) else np.zeros(model.mesh.n_nodes, np.uint8)
+            extra[nodes] = count
     return extra
 
 

@@ -302,7 +302,7 @@ class Scope:
 
 @dataclass(eq=False, repr=False)
 class AttachedDraft:
-    """One ``*ELEMENT`` card of point masses or dashpots.
+    """One ``*ELEMENT`` card of point masses, dashpots or gaps.
 
     Parameters
     ----------
@@ -314,8 +314,8 @@ class AttachedDraft:
         For each element its nodes, not yet looked up.
     labels : list of int
         Numbers of the elements.
-    value : float or None
-        None until the card with the value is read.
+    value : tuple of float
+        Empty until the card with the numbers is read: mass, damping, or clearance and direction.
     """
 
     type: str
@@ -323,7 +323,7 @@ class AttachedDraft:
     card: Card
     nodes: list[list[Draft]] = field(default_factory=list)
     labels: list[int] = field(default_factory=list)
-    value: float | None = None
+    value: tuple[float, ...] = ()
 
 
 @dataclass(eq=False, repr=False)

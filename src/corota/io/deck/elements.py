@@ -131,8 +131,8 @@ DRILLING = tuple(name for name in OWN if elements.find(name).drilling)
 #: Sides of a rigid body (R2D2) name its nodes and its boundary.
 LINES = {"T3D2": 2, "T3D3": 3, "T2D2": 2, "T2D3": 3, "T2D2H": 2, "T3D2H": 2, "R2D2": 2}
 
-#: Point masses, rotary inertias and dashpots, with their number of nodes.
-ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2}
+#: Point masses, rotary inertias, dashpots and gaps, with their number of nodes.
+ATTACHED = {"MASS": 1, "ROTARYI": 1, "DASHPOTA": 2, "GAPUNI": 2}
 
 
 @dataclass(frozen=True)
@@ -159,8 +159,8 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
     **dict.fromkeys(
-        ("DASHPOT1", "DASHPOT2", "GAPUNI"),
-        "of dashpots this version has DASHPOTA, and no gaps",
+        ("DASHPOT1", "DASHPOT2"),
+        "of dashpots this version has DASHPOTA",
     ),
 }
 
@@ -178,7 +178,7 @@ UNSUPPORTED_FAMILIES: dict[str, str] = {
     "CIN": "infinite elements are not part of this version; fix the outer nodes by *BOUNDARY",
     "CONN": "connectors are not part of this version; use *MPC, *EQUATION or *COUPLING",
     "CPEG": "generalized plane strain is not part of this version; use CPE*",
-    "GAP": "gaps are not part of this version; use *CONTACT PAIR",
+    "GAP": "of gaps this version has GAPUNI; use *CONTACT PAIR",
     "R3D": _SOLID,
     "RAX": "give a rigid ring as *SURFACE, TYPE=SEGMENTS, or as *RIGID BODY of CAX* elements",
     "U": "user elements are not part of this version; use CPS* or CPE*",

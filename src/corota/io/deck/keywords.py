@@ -212,6 +212,7 @@ _TABLE: dict[str, Keyword] = {
     "MASS": Keyword(card("attachments.mass"), "ELSET", place="model"),
     "ROTARY INERTIA": Keyword(card("attachments.rotary_inertia"), "ELSET", place="model"),
     "DASHPOT": Keyword(card("attachments.dashpot"), "ELSET", place="model"),
+    "GAP": Keyword(card("attachments.gap"), "ELSET", place="model"),
     "INITIAL CONDITIONS": Keyword(card("dynamic.initial_conditions"), "TYPE", place="model"),
     "EQUATION": Keyword(card("tie.equation"), place="model"),
     "MPC": Keyword(card("tie.mpc"), place="model"),

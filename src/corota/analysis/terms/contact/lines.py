@@ -115,7 +115,7 @@ def line_core(
         reference = master.reference
         point = reference if isinstance(reference, tuple) else (0.0, 0.0)
         node = -1 if reference is None or isinstance(reference, tuple) else int(reference)
-        rigid = (master.backward, node, point)
+        rigid = (master.backward, node, point, master.turns)
     else:
         other = (master.nodes, master.bulge, master.half)
     tied = isinstance(item, Tie)

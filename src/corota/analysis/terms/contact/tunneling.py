@@ -116,9 +116,10 @@ def other_side(pair: Pair, old: Floats, new: Floats) -> tuple[Floats, Floats, In
         if reference is None or isinstance(reference, tuple):
             return pieces, pieces, nodes
         at = pair.reference[int(reference)]
+        follows = np.array([1.0, 1.0, float(master.turns)])
         return (
-            _carried(pieces, at, old[int(reference)]),
-            _carried(pieces, at, new[int(reference)]),
+            _carried(pieces, at, follows * old[int(reference)]),
+            _carried(pieces, at, follows * new[int(reference)]),
             nodes,
         )
     other = pair.slave if pair.master is None else pair.master

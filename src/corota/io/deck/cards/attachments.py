@@ -1,4 +1,4 @@
-"""Point masses, rotary inertias and dashpots of decks: elements, and their values."""
+"""Point masses, rotary inertias, dashpots and gaps of decks: elements, and their values."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.errors import InputError
 from corota.io.deck.deck import nearest
 from corota.io.deck.drafts import AttachedDraft, Draft
 from corota.io.deck.elements import ATTACHED
 from corota.io.deck.lexer import key
 from corota.model.attachments import Dashpot, PointMass
+from corota.model.contact import gap_element
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,11 +26,14 @@ if TYPE_CHECKING:
     Find = Callable[[Draft], str | Ints | None]
 
 #: The card that gives the value of each.
-CARDS = {"MASS": "MASS", "ROTARYI": "ROTARY INERTIA", "DASHPOTA": "DASHPOT"}
+CARDS = {"MASS": "MASS", "ROTARYI": "ROTARY INERTIA", "DASHPOTA": "DASHPOT", "GAPUNI": "GAP"}
 
 
 def elements(deck: Deck, card: Card, type_: str) -> None:
-    """``*ELEMENT, TYPE=MASS``, ``ROTARYI`` or ``DASHPOTA``: label, nodes; the set names them."""
+    """``*ELEMENT, TYPE=MASS``, ``ROTARYI``, ``DASHPOTA`` or ``GAPUNI``: label, nodes.
+
+    The set names them.
+    """
     name = deck.required(card, "ELSET")
     draft = AttachedDraft(type_, name, card)
     count = ATTACHED[type_]
@@ -79,9 +84,44 @@ def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> Non
     if not value >= 0.0:
         deck.row_error(card, rows[0], place, f"{what} must be >= 0, not {value:g}")
         return
+    _assign(deck, card, type_, (value,))
+
+
+def gap(deck: Deck, card: Card) -> None:
+    """``*GAP, ELSET=``: clearance, direction from the first node to the second.
+
+    Without a direction it is that of the line through the nodes.
+    """
+    rows = list(card.rows())
+    if not deck.required(card, "ELSET"):
+        return
+    if len(rows) != 1:
+        deck.error(card, card.where, f"one data line is expected, found {len(rows)}")
+        return
+    row = rows[0]
+    clearance = deck.real(card, row, 0, "the clearance")
+    given = [i for i in (1, 2, 3) if row.get(i)]
+    direction = [deck.real(card, row, i, "the direction") if i in given else 0.0 for i in (1, 2, 3)]
+    if clearance is None or None in direction:
+        return
+    x, y, z = (float(v or 0.0) for v in direction)
+    if z != 0.0:
+        deck.row_error(card, row, 3, f"the direction of a gap lies in the plane, not along z = {z}")
+        return
+    if given and x == y == 0.0:
+        deck.row_error(card, row, 1, "the direction of a gap has no length")
+        return
+    if any(row.fields[4:]):
+        text = "area, stiffness and tension are not used: a gap closes exactly"
+        deck.note(f"{row.where}: {card.spelled}: {text}")
+    _assign(deck, card, "GAPUNI", (clearance, x, y))
+
+
+def _assign(deck: Deck, card: Card, type_: str, value: tuple[float, ...]) -> None:
+    name = card.value("ELSET")
     mine = [d for d in deck.attached if d.type == type_ and key(d.name) == key(name)]
     for draft in mine:
-        if draft.value is not None:
+        if draft.value:
             deck.error(card, card.at("ELSET"), f"{name} already has its value")
             return
         draft.value = value
@@ -96,17 +136,17 @@ def _value(deck: Deck, card: Card, type_: str, what: str, place: int = 0) -> Non
 
 
 def build_attachments(deck: Deck, model: Model, find: Find) -> None:
-    """Add the deck's point masses and dashpots to the model."""
+    """Add the deck's point masses, dashpots and gaps to the model."""
     number = -1
     for draft in deck.attached:
-        if draft.value is None:
+        if not draft.value:
             deck.error(
                 draft.card,
                 draft.card.at("ELSET"),
                 f"no *{CARDS[draft.type]}, ELSET={draft.name} gives these elements a value",
             )
             continue
-        for drafts in draft.nodes:
+        for label, drafts in zip(draft.labels, draft.nodes, strict=True):
             number += 1
             found = [find(d) for d in drafts]
             nodes = [int(n[0]) for n in found if n is not None and not isinstance(n, str)]
@@ -115,11 +155,29 @@ def build_attachments(deck: Deck, model: Model, find: Find) -> None:
             where = drafts[0].row.where
             if draft.type in ("MASS", "ROTARYI"):
                 deck.masses[number] = len(model.point_masses)
-                turns = draft.type == "ROTARYI"
-                mass, inertia = (0.0, draft.value) if turns else (draft.value, 0.0)
+                (value,), turns = draft.value, draft.type == "ROTARYI"
+                mass, inertia = (0.0, value) if turns else (value, 0.0)
                 model.point_masses.append(PointMass(np.array(nodes), mass, inertia, where))
+            elif draft.type == "DASHPOTA":
+                model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value[0], where=where))
             else:
-                model.dashpots.append(Dashpot(nodes[0], nodes[1], draft.value, where=where))
+                points, (clearance, x, y) = model.mesh.points, draft.value
+                direction = (x, y) if x or y else tuple(points[nodes[1]] - points[nodes[0]])
+                both, name = (nodes[0], nodes[1]), f"{draft.name}-{label}"
+                try:
+                    found_gap = gap_element(points, both, clearance, direction, name, where)
+                except InputError as error:
+                    deck.error(draft.card, where, f"{error.message}; give it by *GAP")
+                    continue
+                model.contacts.append(found_gap)
 
 
-__all__ = ["AttachedDraft", "build_attachments", "dashpot", "elements", "mass", "rotary_inertia"]
+__all__ = [
+    "AttachedDraft",
+    "build_attachments",
+    "dashpot",
+    "elements",
+    "gap",
+    "mass",
+    "rotary_inertia",
+]

@@ -1,4 +1,4 @@
-"""Damping, point masses, dashpots and initial velocities of a model as cards of a deck."""
+"""Damping, point masses, dashpots, gaps and initial velocities of a model as cards of a deck."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -9,6 +9,7 @@ import numpy as np
 
 from corota.errors import UnsupportedError
 from corota.io.deck.write.text import DOFS, Writer, number, numbers
+from corota.model.contact import is_gap, of_gap
 from corota.model.steps import Dynamic, Frequency, Step
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def material_damping(material: Material) -> str:
 
 
 def attachment_cards(writer: Writer) -> Iterator[str]:
-    """Point masses and dashpots: separate elements with a card for the value.
+    """Point masses, dashpots and gaps: separate elements with a card for the value.
 
     Raises
     ------
@@ -90,6 +91,13 @@ def attachment_cards(writer: Writer) -> Iterator[str]:
         first, second = mesh.node_labels[[dashpot.first, dashpot.second]].tolist()
         yield f"*ELEMENT, TYPE=DASHPOTA, ELSET=DASHPOT{count}\n{label}, {first}, {second}\n"
         yield f"*DASHPOT, ELSET=DASHPOT{count}\n\n{number(dashpot.c)}\n"
+    gaps = [p for p in model.contacts if is_gap(p)]
+    for count, pair in enumerate(gaps, start=1):
+        label += 1
+        nodes, clearance, direction = of_gap(mesh.points, pair)
+        first, second = mesh.node_labels[list(nodes)].tolist()
+        yield f"*ELEMENT, TYPE=GAPUNI, ELSET=GAP{count}\n{label}, {first}, {second}\n"
+        yield f"*GAP, ELSET=GAP{count}\n{numbers([clearance, *direction])}\n"
 
 
 def velocity_cards(writer: Writer, steps: Sequence[Step]) -> Iterator[str]:

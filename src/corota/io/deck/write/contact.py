@@ -11,7 +11,7 @@ import numpy as np
 
 from corota.errors import UnsupportedError
 from corota.mesh.parts import cells_of
-from corota.model.contact import RigidCurve, edges_or_nodes
+from corota.model.contact import RigidCurve, edges_or_nodes, is_gap
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,6 +42,8 @@ def contact_cards(writer: Writer) -> Iterator[str]:
         yield from _new_node_surface(writer, tie.slave, known)
         yield f"*TIE, NAME={_word(tie.name)}, ADJUST=NO{tolerance}\n{slave}, {master}\n"
     for number, pair in enumerate(model.contacts, start=1):
+        if is_gap(pair):
+            continue
         if pair.reach:
             raise UnsupportedError(
                 f"contact pair {pair.name!r}: reach cannot be written to a deck: leave it out, or "
