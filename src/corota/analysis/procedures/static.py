@@ -12,6 +12,7 @@ import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
+from corota.analysis.terms.contact.messages import gives_way
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
@@ -453,11 +454,12 @@ class StaticStepper(NewtonStepper):
                 moves = driven(system, step, state)
                 if not moves:
                     fails = collapse(system, number, factor, rates, said)
+                way = gives_way(system.contact_term)
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "
-                    f"{said}{stalled}{unstable(state)}. All converged increments are kept; to "
-                    f"continue, {remedies(moves)}"
+                    f"{way and f'{way}; '}{said}{stalled}{unstable(state)}. All converged "
+                    f"increments are kept; to continue, {remedies(moves)}"
                 ) from None
             return False
         state.counters["arc length took over"] = 1

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.terms.contact.messages import gives_way
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
@@ -36,10 +37,11 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
     yielding = ", with yielding (plastic collapse, unless its shape snaps)" * (
         not moves and _yields(system)
     )
+    way = gives_way(system.contact_term)
     return (
         f"limit point at load factor {factor:.6g} of step {number}{yielding}: the structure "
-        "cannot carry more load in this equilibrium. The states up to it are kept; to continue, "
-        f"{remedies(moves, follow=step.at_limit == 'stop')}"
+        f"cannot carry more load in this equilibrium{way and f' ({way})'}. The states up to it are "
+        f"kept; to continue, {remedies(moves, follow=step.at_limit == 'stop')}"
     )
 
 
