@@ -36,8 +36,8 @@ REFERENCE = {
         ["Expansion", "Voce", "CowperSymonds", "YieldRatio", "RateCurves", "Norton", "WLF"]
         + [n for n in ct.__all__ if is_material(getattr(ct, n))]
     ),
-    "Contact and constraints": "RigidCurve ContactPair PressureLaw Tie Equation Coupling "
-    "StraightLine LocalAxes",
+    "Contact and constraints": "RigidCurve ContactPair PressureLaw gap_element Tie Equation "
+    "Coupling StraightLine LocalAxes",
     "Running and reading": "solve resume read write read_results JobFiles",
     "Sweeps": "sweep sample grid Sweep seek Sought",
     "Gradients": "gradient value_and_grad optimize",

@@ -68,6 +68,28 @@ def tilted(n: int, method: str, floor: str, element: str = "Q4I") -> float:
     return float(stopped.value.results.frames[-1].step_time)
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("friction", "way"), [(0.9, "tips about it"), (0.3, "slides")])
+def test_a_step_that_stops_tells_tipping_from_sliding(
+    method: str, friction: float, way: str
+) -> None:
+    """A block that tips at .5, or slides at its friction."""
+    block = ct.mesh.rectangle(0.5, 1.0, 2, 4)
+    model = ct.Model(block)
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e7, nu=0.0, rho=1.0))
+    line = ct.RigidCurve.line((-9.0, 0.0), (9.0, 0.0))
+    model.contact("bottom", line, friction=friction, method=method, name="floor")
+    weight, tilt = ct.Static(), ct.Static()
+    weight.gravity(y=-1.0)
+    tilt.gravity(x=1.0)
+    with pytest.raises(ConvergenceError, match=way) as stopped:
+        ct.solve(model, [weight, tilt], threads=1)
+    other = {"slides", "tips about it"} - {way}
+    assert other.pop() not in str(stopped.value)
+    reached = float(stopped.value.results.frames[-1].step_time)
+    assert reached == pytest.approx(min(0.5, friction), rel=0.01)
+
+
 @pytest.mark.parametrize("floor", ["rigid", "master", "slave"])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_block_tips_about_its_edge(method: str, floor: str) -> None:
@@ -98,6 +120,59 @@ def test_a_ring_squeezed_between_plates(method: str, element: str) -> None:
     force = squeeze * young * t**3 / 12.0 / (0.14878 * radius**3)
     assert -results.frames[-1].scalars["upper: force y"] == pytest.approx(force, rel=0.01)
     assert not any("energy balance" in note for note in results.notes)
+
+
+def squeezed(method: str, radius: float, side: str) -> float:
+    """Force on a slender ring of Q4I between two rounds, over that of the thin ring.
+
+    The rounds are convex with a radius > 0, else hollow; rigid, or stiff bodies that are the master
+    or the slave (`side`).
+    """
+    size, t, young, squeeze, top = 10.0, 0.4, 1e5, 0.05, 10.2
+    ring = ct.mesh.annulus(size - t / 2, size + t / 2, 2, 80)
+    center, around = top + radius, abs(radius)
+    if side == "rigid":
+        mesh = ring
+        hold = ct.mesh.add_node(mesh, 0.0, 12.0, "tool")
+        first, sweep = (330.0, -120.0) if radius > 0.0 else (30.0, 120.0)
+        upper = ct.RigidCurve.arc((0.0, center), around, first, sweep, reference=hold)
+        lower = ct.RigidCurve.arc((0.0, -center), around, first + 180.0, sweep)
+        model = ct.Model(mesh)
+        model.contact("outer", upper, friction=0.3, method=method, name="upper")
+        model.contact("outer", lower, friction=0.3, method=method, name="lower")
+        model.fix("tool", x=0.0, y=-squeeze, rotation=True)
+    else:
+        angle = float(np.degrees(6.0 / around))
+        inner, face = (around - 1.0, "outer") if radius > 0.0 else (around, "inner")
+        tools = {}
+        for name, sign in (("upper", 1.0), ("lower", -1.0)):
+            middle = -90.0 * sign if radius > 0.0 else 90.0 * sign
+            part = ct.mesh.annulus(inner, inner + 1.0, 2, 80, angle=angle, start=middle - angle / 2)
+            tools[name] = ct.mesh.move(part, (0.0, sign * center))
+        mesh = ct.mesh.assembly(ring=ring, **tools)
+        model = ct.Model(mesh)
+        model.section("upper", element="Q4I", material=ct.Elastic(E=1e9, nu=0.0))
+        model.section("lower", element="Q4I", material=ct.Elastic(E=1e9, nu=0.0))
+        for name in tools:
+            pair = ["ring.outer", f"{name}.{face}"]
+            surfaces = pair if side == "master" else pair[::-1]
+            model.contact(*surfaces, friction=0.3, method=method, name=name)
+        for name, moves in (("upper", -squeeze), ("lower", 0.0)):
+            model.fix(mesh.nodes_of(name), x=0.0, y=moves)
+    cells = "all" if side == "rigid" else "ring"
+    model.section(cells, element="Q4I", material=ct.Elastic(E=young, nu=0.0))
+    last = ct.solve(model, ct.Static(), threads=1).frames[-1].scalars
+    sign = -1.0 if side == "slave" else 1.0
+    thin = squeeze * young * t**3 / 12.0 / (0.14878 * size**3)
+    return -sign * float(last["upper: force y"]) / thin
+
+
+@pytest.mark.parametrize("side", ["rigid", "master", "slave"])
+@pytest.mark.parametrize("radius", [-15.0, 15.0])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_ring_squeezed_between_rounds(method: str, radius: float, side: str) -> None:
+    """The force does not depend on the rounds: their facets and those of the ring are arcs."""
+    assert squeezed(method, radius, side) == pytest.approx(1.0, rel=0.01)
 
 
 @pytest.mark.parametrize("method", METHODS)

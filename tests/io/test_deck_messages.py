@@ -60,7 +60,7 @@ def test_a_message_names_the_file_once(tmp_path: Path) -> None:
 def test_every_refusal_says_what_to_do() -> None:
     assert all(len(text) > 15 for text in UNSUPPORTED.values())
     assert all(len(text) > 10 for text in REFUSED_PARAMETERS.values())
-    for name in ("CGAX8R", "CPE4T", "CPE8RP", "CPEG4", "CONN2D2", "U1", "R3D4", "SAX1", "GAPUNI"):
+    for name in ("CGAX8R", "CPE4T", "CPE8RP", "CPEG4", "CONN2D2", "U1", "R3D4", "SAX1", "GAPCYL"):
         assert why_unsupported(name), name
     for name in ("CPS4", "QUAD", "UX", "CPS", "S"):
         assert not why_unsupported(name), name

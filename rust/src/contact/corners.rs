@@ -451,7 +451,7 @@ fn free(sides: &Sides, corner: Corner, i: usize, nodal: bool) -> bool {
     let own: Vec<usize> = corner.members().collect();
     let edges = &sides.slave.edges;
     let apart = |&j: &usize| !edges[j].nodes().iter().any(|n| edges[i].nodes().contains(n));
-    own.iter().all(apart) && !(nodal && sides.slave.apart(&own, i))
+    own.iter().all(apart) && !(nodal && sides.slave.apart(&own, i, &sides.notches))
 }
 
 fn point(own: &Surface, corner: Corner, x: &[[f64; 3]]) -> Vec2<f64> {
@@ -479,7 +479,7 @@ fn normal_at(member: &Master<f64>, which: usize) -> Vec2<f64> {
 }
 
 /// Angle from one normal to the next, counterclockwise.
-fn turn([a, b]: [Vec2<f64>; 2]) -> f64 {
+pub fn turn([a, b]: [Vec2<f64>; 2]) -> f64 {
     (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b))
 }
 

@@ -3,7 +3,8 @@
 //! All three are `m + d r + b (1 - r^2)`, `r` from -1 to 1, with `m` and `d` from the corners;
 //! `b` is zero, the offset of the middle node, or `alpha_b l0 / 8` times the difference of the
 //! rotations along the chord's outward normal (the bulge of `loads::edge`; l0 is the undeformed
-//! length, so that a nominal pressure gives the moments `alpha_b p t l0^2 / 12`).
+//! length, so that a nominal pressure gives the moments `alpha_b p t l0^2 / 12`). Linear edges of a
+//! round boundary have its height over their chord besides (`rounds`).
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::Smooth;
@@ -192,6 +193,8 @@ pub struct Edge {
     pub alpha_b: f64,
     /// Undeformed length of the chord.
     pub length: f64,
+    /// Height over the chord of an undeformed round boundary, where the edge itself is straight.
+    pub sagitta: f64,
     /// Of a line the distance to its surfaces, which are on both sides.
     pub half: Option<f64>,
 }
@@ -245,8 +248,11 @@ impl Edge {
         if self.n_nodes == 3 {
             c.b = sub([v[4], v[5]], c.m);
             c.straight = false;
-        } else if self.alpha_b > 0.0 {
-            let height = (v[5] - v[4]).scale(self.alpha_b * self.length / 8.0);
+        } else if self.alpha_b > 0.0 || self.sagitta != 0.0 {
+            let mut height = T::real(self.sagitta);
+            if self.alpha_b > 0.0 {
+                height += (v[5] - v[4]).scale(self.alpha_b * self.length / 8.0);
+            }
             c.b = times(unit(outward(c.d)), height);
             c.straight = false;
         }

@@ -362,6 +362,14 @@ impl Surface {
         }
     }
 
+    /// Curvature of a member, positive if it is convex.
+    pub fn curvature(&self, j: usize, x: &[[f64; 3]]) -> f64 {
+        match self.place(j, x) {
+            Master::Arc(a) => a.signed_radius().recip(),
+            Master::Curve(c) => 2.0 * dot(c.b, unit(outward(c.d))) / dot(c.d, c.d),
+        }
+    }
+
     /// Radius of a convex round member; infinite for others.
     pub fn radius(&self, j: usize, x: &[[f64; 3]]) -> f64 {
         match (self, self.place(j, x)) {

@@ -15,6 +15,7 @@ pub mod discretization;
 pub mod law;
 pub mod master;
 pub mod pair;
+pub mod rounds;
 pub mod search;
 pub mod sides;
 pub mod slave;

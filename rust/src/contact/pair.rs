@@ -5,6 +5,7 @@ use super::corners::{Corners, LEAST_TURN, LEAST_TURN_AT_CORNERS};
 use super::curve::Edge;
 use super::discretization::{Discretization, Entry};
 use super::master::Surface;
+use super::rounds::bulge;
 use super::search::Candidate;
 use super::sides::{Distances, Sides};
 use super::slave::{Depth, Slave};
@@ -29,13 +30,18 @@ impl Contact {
     /// of their own: those of the master, and those of the slave where its nodes have means.
     pub fn new(
         x: &[[f64; 3]],
-        slave: (Vec<Edge>, Vec<Depth>),
-        master: Option<Surface>,
+        (edges, thickness): (Vec<Edge>, Vec<Depth>),
+        mut master: Option<Surface>,
         entry: &Entry,
         distances: Distances,
         corners: bool,
     ) -> Self {
-        let slave = Slave::new(x, slave.0, slave.1, entry.middles);
+        if let Some(Surface::Edges(faces)) = &mut master
+            && !entry.joins
+        {
+            bulge(faces, x);
+        }
+        let slave = Slave::new(x, edges, thickness, entry.middles);
         Self::with(x, slave, master, entry, distances, corners)
     }
 
@@ -154,13 +160,13 @@ impl Contact {
 
     /// Renews the candidates of the surfaces where needed; tells whether they changed.
     fn look(&mut self, x: &[[f64; 3]]) -> bool {
-        let Sides { slave, master, search, distances, itself, .. } = &mut self.sides;
+        let Sides { slave, master, search, distances, itself, notches, .. } = &mut self.sides;
         let items = self.method.items(slave, x);
         let count = items.len();
         let owners = itself.then(|| self.method.owners(slave));
         let method = &self.method;
         let allowed = |i: usize, j: usize| {
-            method.allows(i, j) && owners.as_ref().is_none_or(|o| slave.apart(&o[i], j))
+            method.allows(i, j) && owners.as_ref().is_none_or(|o| slave.apart(&o[i], j, notches))
         };
         let changed = search.update(items, master, x, distances.reach, distances.margin, allowed);
         if changed {
@@ -244,12 +250,12 @@ impl Contact {
         self.start.take(found);
     }
 
-    /// Keeps the masters of the constraints as those to return to.
     /// Take which constraints belong to ends of the slave that supports hold from now on.
     pub fn hold(&mut self, held: &[bool]) {
         self.method.hold(&self.sides, held);
     }
 
+    /// Keeps the masters of the constraints as those to return to.
     pub fn commit(&mut self) {
         self.method.commit();
         self.corners.iter_mut().for_each(Corners::commit);

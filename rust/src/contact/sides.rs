@@ -5,6 +5,7 @@ use super::curve::Curve;
 use super::master::Surface;
 use super::search::{self, Candidate, Search};
 use super::slave::Slave;
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// Distances of the search.
@@ -24,6 +25,8 @@ pub struct Sides {
     pub master: Surface,
     /// Whether the master is the slave.
     pub itself: bool,
+    /// Nodes at the tips of notches of a boundary that meets itself.
+    pub notches: HashSet<u32>,
     pub distances: Distances,
     /// Undeformed slave edges.
     pub reference: Vec<Curve<f64>>,
@@ -47,6 +50,7 @@ impl Sides {
     ) -> Self {
         let itself = master.is_none();
         Self {
+            notches: if itself { slave.notches(x) } else { HashSet::new() },
             master: master.unwrap_or_else(|| Surface::Edges(slave.edges.clone())),
             itself,
             distances,

@@ -1,10 +1,15 @@
 //! The slave side of a pair: its edges, and the nodes that carry constraints.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::curve::{Edge, GAUSS, dot};
+use super::curve::{Edge, GAUSS, dot, outward, unit};
 use crate::base::Smooth;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
+
+/// Largest cosine between the normals of the faces of a notch that may meet: 60 degrees of opening.
+const OPPOSITE: f64 = -0.5;
+/// Sine between two normals that is rounding.
+const PARALLEL: f64 = 1e-6;
 
 /// What a length of an edge is multiplied with to give its area.
 #[derive(Clone, Copy, Debug)]
@@ -94,11 +99,25 @@ impl Slave {
         owners
     }
 
-    /// Whether edge `j` comes before all of `mine` and shares no node with them, so that each
-    /// pair of a boundary with itself is taken once.
-    pub fn apart(&self, mine: &[usize], j: usize) -> bool {
+    /// Whether edge `j` comes before all of `mine` and shares no node with them but the tip of a
+    /// notch, so that each pair of a boundary with itself is taken once.
+    pub fn apart(&self, mine: &[usize], j: usize, notches: &HashSet<u32>) -> bool {
         let other = self.edges[j].nodes();
-        mine.iter().all(|&i| j < i && !self.edges[i].nodes().iter().any(|n| other.contains(n)))
+        let joined = |n: &u32| other.contains(n) && !notches.contains(n);
+        mine.iter().all(|&i| j < i && !self.edges[i].nodes().iter().any(joined))
+    }
+
+    /// Nodes at the tips of notches whose faces are opposite, as those of a slit are.
+    pub fn notches(&self, reference: &[[f64; 3]]) -> HashSet<u32> {
+        let normal = |e: &Edge| unit(outward(e.place(reference).d));
+        let begins: HashMap<u32, &Edge> = self.edges.iter().map(|e| (e.nodes[0], e)).collect();
+        let tip = |e: &Edge| {
+            let (a, b) = (normal(e), normal(begins.get(&e.nodes[1]).copied()?));
+            // The sides of a slit are parallel up to rounding.
+            let inwards = a[0] * b[1] - a[1] * b[0] < PARALLEL;
+            (dot(a, b) < OPPOSITE && inwards).then_some(e.nodes[1])
+        };
+        self.edges.iter().filter_map(tip).collect()
     }
 }
 

@@ -84,6 +84,19 @@ pub fn join(slave: &[i64], master: &[i64]) -> [i64; WIDTH] {
     v
 }
 
+/// Variables without those that come again, and the place of each among them.
+pub fn distinct(variables: &[i64]) -> (Vec<i64>, Vec<usize>) {
+    let mut once: Vec<i64> = Vec::with_capacity(variables.len());
+    let place = |v: &i64| {
+        once.iter().position(|o| o == v).unwrap_or_else(|| {
+            once.push(*v);
+            once.len() - 1
+        })
+    };
+    let places = variables.iter().map(place).collect();
+    (once, places)
+}
+
 /// The numbers that `variables` name, as independent variables.
 pub fn lifted<const D: usize>(variables: &[i64; WIDTH], x: &[[f64; 3]]) -> [Hyper<D>; D] {
     std::array::from_fn(|i| match usize::try_from(variables[i]) {

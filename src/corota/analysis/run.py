@@ -26,7 +26,7 @@ from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
 from corota.analysis.terms.contact.output import output as contact_output
-from corota.analysis.terms.contact.peaks import passed_over
+from corota.analysis.terms.contact.peaks import missed_peaks
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
 from corota.errors import (
@@ -268,7 +268,7 @@ class Analysis:
                     warnings.warn(remark, stacklevel=3)
             if self.model.contacts:
                 static = {i for i, s in enumerate(self.steps, 1) if s.procedure == "static"}
-                results.notes += passed_over(results, self.model.contacts, static)
+                results.notes += missed_peaks(results, self.model.contacts, static)
         except MemoryError:
             error = ResourceError(f"{SHORT}. All increments before are kept")
             error.results = results

@@ -10,7 +10,7 @@ pub mod tie;
 use super::search::{self, Candidate, Item};
 use super::sides::Sides;
 use super::slave::Slave;
-use super::terms::{Terms, WIDTH, join};
+use super::terms::{Terms, WIDTH, distinct, join};
 use super::travel::{Start, Station};
 
 /// All discretizations.
@@ -71,7 +71,10 @@ pub trait Discretization: Send + Sync {
 
     /// Variables of a candidate, -1 where unused.
     fn variables(&self, sides: &Sides, (i, j): Candidate) -> [i64; WIDTH] {
-        join(&sides.slave.edges[i].variables(), &sides.master.variables(j))
+        // Beside the tip of a notch both have its node.
+        let mut variables = sides.slave.edges[i].variables();
+        variables.extend(sides.master.variables(j));
+        join(&distinct(&variables).0, &[])
     }
 
     /// Constraints of a candidate, `usize::MAX` where unused.

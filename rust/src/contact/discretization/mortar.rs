@@ -6,17 +6,15 @@
 //! else. Slips are weighted in the same way; their tractions act along the relative tangential
 //! velocity, with weights and limits held.
 //!
-//! The functions are those of the shape, (1 -+ xi) / 2. Against a flat or hollow master a convex polygon would
-//! sink with them by h^2 / 6 R, since the mean gap of its facets counts, and a block would tip when the
-//! resultant is h / 3 inside its edge. There, edges that are round in the undeformed slave and those at
-//! its ends have (1 -+ 3 xi) / 2, biorthogonal to the linear shape functions (Wohlmuth 2000): a gap that
-//! is linear on the edge has G = A g at each node. Round quadratic edges have (1 -+ 2 xi) / 2, which
+//! The functions are those of the shape, (1 -+ xi) / 2. With them a convex polygon would sink by
+//! h^2 / 6 R, since the mean gap of its facets counts, and a block would tip when the
+//! resultant is h / 3 inside its edge. Edges that are round in the undeformed slave, those at
+//! its ends, and all against a curved master have (1 -+ 3 xi) / 2, biorthogonal to the linear shape
+//! functions (Wohlmuth 2000): a gap that is linear on the edge has G = A g at each node. The height
+//! of a curved master over the chord of a linear edge is for this taken out of the gap. Quadratic edges have (1 -+ 2 xi) / 2, which
 //! give the value of a parabola at its vertex. The sum is one, so that a uniform pressure passes the
 //! patch test. Where the master ends within such an edge, xi runs over the covered part, as if the edge
 //! ended there: else the area of a node would be negative.
-//!
-//! Against a convex master the gap is curved on the edge, too. Biorthogonal functions take its
-//! curvature with the wrong sign: two arcs that fit would start with an overlap of h^2 / 12 R.
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::super::corners::{open_ends, round};
@@ -26,7 +24,7 @@ use super::super::search::each;
 use super::super::sides::Sides;
 use super::super::slave::Depth;
 use super::super::slip::{Along, Point, direction, first, firsts};
-use super::super::terms::{Function, PAIR, Share, Terms, WIDTH, join, lifted};
+use super::super::terms::{Function, PAIR, Share, Terms, WIDTH, distinct, join, lifted};
 use super::super::travel::{Start, Station, ray};
 use super::{Discretization, Entry};
 use crate::base::{Dual, Hyper, Smooth};
@@ -44,6 +42,10 @@ pub const ENTRY: Entry = Entry {
 const FACING: f64 = 0.3;
 /// The same for arcs, which are left behind gradually.
 const FACING_ARC: f64 = 0.05;
+/// Turn of a curved master over the longest slave edge [rad] from which it counts, and that from which
+/// it is a fillet between two nodes.
+const FLAT: f64 = 1e-3;
+const STEEP: f64 = 0.5;
 /// Common length of two overlaps, in the slave parameter, that is no more than rounding.
 const TOUCH: f64 = 1e-9;
 
@@ -156,10 +158,29 @@ impl Covered {
         Some(Self { ends: [*first, *last] })
     }
 
+    /// Whether this is the whole edge.
+    fn is_whole(&self) -> bool {
+        (0..2).all(|end| self.limit(end).0 == Limit::Fixed(2.0 * end as f64 - 1.0))
+    }
+
+    /// Whether one overlap covers it.
+    fn is(&self, overlap: &Overlap) -> bool {
+        self.ends.iter().all(|end| end.pair == overlap.pair)
+    }
+
     /// Limit at an end, and the overlap that it belongs to.
     fn limit(&self, end: usize) -> (Limit, usize) {
         (self.ends[end].limits[end], self.ends[end].pair)
     }
+}
+
+/// Part of a slave edge that its functions run over.
+enum Run<const D: usize> {
+    Edge,
+    /// What the master covers.
+    Overlap,
+    /// Up to these ends.
+    Between([Hyper<D>; 2]),
 }
 
 /// A slave edge and a master that it sees.
@@ -168,8 +189,7 @@ struct Facing<'a, const D: usize> {
     master: Master<Hyper<D>>,
     /// Their numbers.
     members: [usize; 2],
-    /// Ends of the part of the edge that the functions run over, if not all of it.
-    covered: Option<[Hyper<D>; 2]>,
+    run: Run<D>,
     /// The undeformed slave edge, and its thickness.
     reference: &'a Curve<f64>,
     thickness: Depth,
@@ -177,6 +197,8 @@ struct Facing<'a, const D: usize> {
     slope: f64,
     /// Clearance taken off the gap at the corners of the edge.
     offset: [f64; 2],
+    /// Height of the master over the chord of the edge.
+    height: f64,
 }
 
 /// Integrals for the two corners of a slave edge.
@@ -194,14 +216,14 @@ fn integrals<const D: usize>(
     now: &Facing<'_, D>,
     start: Option<&Start>,
 ) -> Integrals<D> {
-    let Facing { slave, master, members, covered, reference, thickness, slope, offset } = now;
+    let Facing { slave, master, members, run, reference, thickness, slope, offset, height } = now;
     let limits = overlap.limits.map(|limit| match limit {
         Limit::Fixed(r) => Hyper::real(r),
         Limit::Foot(end) => slave.foot(master.end(end)),
     });
     let centered = |[low, high]: [Hyper<D>; 2]| ((high + low).scale(0.5), (high - low).scale(0.5));
     let (middle, half) = centered(limits);
-    let covered = covered.map(centered);
+    let between = if let Run::Between(ends) = run { Some(centered(*ends)) } else { None };
     // Integrals with 1 and the place in the part that the functions run over, from -1 to 1.
     let mut gap = [Hyper::real(0.0); 2];
     let [mut area, mut slip] = [[0.0; 2]; 2];
@@ -211,7 +233,11 @@ fn integrals<const D: usize>(
     let shift = [0.5 * (offset[0] + offset[1]), 1.5 / slope * (offset[1] - offset[0])];
     for (r, w) in GAUSS {
         let xi = middle + half.scale(r);
-        let place = covered.map_or(xi, |(middle, half)| (xi - middle) / half);
+        let place = match (&between, run) {
+            (Some((middle, half)), _) => (xi - *middle) / *half,
+            (None, Run::Overlap) => Hyper::real(r),
+            (None, _) => xi,
+        };
         let (t, n) = straight.unwrap_or_else(|| {
             let t = slave.slope(xi);
             (t, unit(outward(t)))
@@ -221,7 +247,11 @@ fn integrals<const D: usize>(
             thickness.area(half * length(reference, xi).scale(w), || lift(reference).at(xi)[0]);
         area[0] += da.v;
         area[1] += da.v * place.v;
-        let part = da * (hit.gap - place.scale(shift[1]) - Hyper::real(shift[0]));
+        let mut gap_there = hit.gap - place.scale(shift[1]) - Hyper::real(shift[0]);
+        if *height != 0.0 {
+            gap_there += (Hyper::real(1.0) - xi * xi).scale(*height);
+        }
+        let part = da * gap_there;
         gap[0] += part;
         gap[1] += part * place;
         let Some(start) = start else { continue };
@@ -272,6 +302,8 @@ pub struct Mortar {
     /// The same where no support guides an end of the slave: about one that is guided nothing tips,
     /// and a traction along its support would not move the slave, so that it could take any size.
     free: Vec<f64>,
+    /// Curvature of each master in the reference configuration.
+    curvature: Vec<f64>,
 }
 
 impl Discretization for Mortar {
@@ -326,33 +358,45 @@ impl Mortar {
     fn new(sides: &Sides, x: &[[f64; 3]]) -> Self {
         let slave = Surface::Edges(sides.slave.edges.clone());
         let ends = open_ends(&slave, x);
-        let convex_master = round(&sides.master, x).contains(&true);
         let round = round(&slave, x);
+        let longest = sides.slave.edges.iter().map(|e| e.length).fold(0.0, f64::max);
+        let curvature = |j: usize| {
+            let found = sides.master.curvature(j, x);
+            if (FLAT..STEEP).contains(&(found.abs() * longest)) { found } else { 0.0 }
+        };
+        let curvature: Vec<f64> = (0..sides.master.len()).map(curvature).collect();
+        let curved = curvature.iter().any(|k| *k != 0.0);
         let slope = |(i, edge): (usize, &Edge)| {
             // Around an axis nothing tips, and with a slope of 3 a node on it would have no area.
-            if convex_master || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
+            if sides.itself || !matches!(sides.slave.thickness[i], Depth::Thickness(_)) {
                 return 1.0;
             }
-            let last = !sides.itself && ends[i].contains(&true);
-            match (last, round[i], edge.n_nodes) {
+            match (ends[i].contains(&true), round[i] || curved, edge.n_nodes) {
                 (true, _, _) | (_, true, 2) => 3.0,
                 (_, true, _) => 2.0,
                 _ => 1.0,
             }
         };
         let slope: Vec<f64> = sides.slave.edges.iter().enumerate().map(slope).collect();
-        Self { free: slope.clone(), slope }
+        Self { free: slope.clone(), slope, curvature }
+    }
+
+    /// Height of a master over the chord of a slave edge, whose functions take a gap for linear.
+    fn height(&self, sides: &Sides, i: usize, j: usize) -> f64 {
+        let edge = &sides.slave.edges[i];
+        let linear = edge.n_nodes == 2 && self.slope[i] > 1.0;
+        if linear { 0.125 * self.curvature[j] * edge.length * edge.length } else { 0.0 }
     }
 
     fn edge(&self, sides: &Sides, i: usize, x: &[[f64; 3]], start: Option<&Start>) -> Vec<Terms> {
         let mut overlaps = overlaps(sides, i, x);
         clip_occluded(&mut overlaps);
         let whole = self.slope[i] <= 1.0;
-        let covered = if whole { None } else { Covered::of(&overlaps) };
+        let covered = Covered::of(&overlaps).filter(|c| !whole && !c.is_whole());
         let terms = |o: &Overlap| {
             let covered = covered.as_ref();
-            let variables = variables_of(sides, o, covered);
-            match variables.len() {
+            let variables = distinct(&variables_of(sides, o, covered));
+            match variables.0.len() {
                 0..=8 => self.overlapped::<8>(sides, (o, covered), &variables, x, start),
                 9..=PAIR => self.overlapped::<PAIR>(sides, (o, covered), &variables, x, start),
                 _ => self.overlapped::<WIDTH>(sides, (o, covered), &variables, x, start),
@@ -365,14 +409,15 @@ impl Mortar {
         &self,
         sides: &Sides,
         (overlap, covered): (&Overlap, Option<&Covered>),
-        variables: &[i64],
+        (variables, places): &(Vec<i64>, Vec<usize>),
         x: &[[f64; 3]],
         start: Option<&Start>,
     ) -> Terms {
         let (i, j) = sides.candidates()[overlap.pair];
         let edge = &sides.slave.edges[i];
         let variables = join(variables, &[]);
-        let v = lifted::<D>(&variables, x);
+        let once = lifted::<D>(&variables, x);
+        let v: Vec<Hyper<D>> = places.iter().map(|&p| once[p]).collect();
         let (width, of_master) = (edge.variables().len(), sides.master.variables(j).len());
         let slave = edge.curve(&v[..width]);
         let master = sides.master.shape(j, &v[width..width + of_master]);
@@ -392,22 +437,30 @@ impl Mortar {
                 slave.foot(point)
             }
         };
-        let ends = covered.map(|c| [end(c, 0), end(c, 1)]);
+        let run = match covered {
+            None => Run::Edge,
+            Some(covered) if covered.is(overlap) => Run::Overlap,
+            Some(covered) => Run::Between([end(covered, 0), end(covered, 1)]),
+        };
+        // A notch is closed at its tip anyway: the part there belongs to the other end.
         let constraints = sides.slave.constraints[i];
+        let tip = [0, 1].map(|a| sides.notches.contains(&edge.nodes[a]));
+        let owner = |a: usize| constraints[if tip[a] && !tip[1 - a] { 1 - a } else { a }];
         let facing = Facing {
             slave,
             master,
             members: [i, j],
-            covered: ends,
+            run,
             reference: &sides.reference[i],
             thickness: sides.slave.thickness[i],
             slope: self.slope[i],
             offset: [sides.offset[constraints[0]], sides.offset[constraints[1]]],
+            height: self.height(sides, i, j),
         };
         let sums = integrals(overlap, &facing, start);
         let slip = |a: usize| Function::along(sums.slip[a], &sums.direction[a]);
         let share = |a: usize| Share {
-            constraint: constraints[a],
+            constraint: owner(a),
             gap: (&sums.gap[a]).into(),
             slip: start.map_or_else(Function::none, |_| slip(a)),
             area: sums.area[a],

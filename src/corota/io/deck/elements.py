@@ -159,6 +159,9 @@ UNSUPPORTED_ELEMENTS: dict[str, str] = {
         ("C3D4", "C3D6", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D15", "C3D20", "C3D20R"), _SOLID
     ),
     **dict.fromkeys(
+        ("GAPCYL", "GAPSPHER"), "of gaps this version has GAPUNI; use that or *CONTACT PAIR"
+    ),
+    **dict.fromkeys(
         ("DASHPOT1", "DASHPOT2"),
         "of dashpots this version has DASHPOTA",
     ),
@@ -178,7 +181,6 @@ UNSUPPORTED_FAMILIES: dict[str, str] = {
     "CIN": "infinite elements are not part of this version; fix the outer nodes by *BOUNDARY",
     "CONN": "connectors are not part of this version; use *MPC, *EQUATION or *COUPLING",
     "CPEG": "generalized plane strain is not part of this version; use CPE*",
-    "GAP": "of gaps this version has GAPUNI; use *CONTACT PAIR",
     "R3D": _SOLID,
     "RAX": "give a rigid ring as *SURFACE, TYPE=SEGMENTS, or as *RIGID BODY of CAX* elements",
     "U": "user elements are not part of this version; use CPS* or CPE*",

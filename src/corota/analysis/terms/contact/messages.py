@@ -57,7 +57,7 @@ def explanation(problem: ContactProblem, at: ContactEvaluation | None) -> str:
     if way := gives_way(problem.contact_term):
         said += f"; {way}"
     elif problem.sliding > OFTEN:
-        said += "; no state of friction held the bodies in this attempt"
+        said += "; friction does not hold the bodies: they slide"
     if problem.loose:
         said += f"; without contact pressure, {problem.loose}"
     if problem.pivoted:

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from corota.results.results import Results
 
 #: Change of a force beside its largest value, relative to it, from which an increment may have
-#: passed over the peak.
+#: missed the peak.
 STEEP = 0.05
 
 
-def passed_over(results: Results, pairs: list[ContactPair], static: set[int]) -> list[str]:
+def missed_peaks(results: Results, pairs: list[ContactPair], static: set[int]) -> list[str]:
     """Notes on largest forces of pairs beside which the force changes much in one increment.
 
     Parameters
@@ -46,4 +46,4 @@ def passed_over(results: Results, pairs: list[ContactPair], static: set[int]) ->
     return notes
 
 
-__all__ = ["passed_over"]
+__all__ = ["missed_peaks"]

@@ -114,20 +114,40 @@ def _among(edges: Ints, others: Ints) -> NDArray[np.bool_]:
     return np.isin(key, others[:, 0] * many + others[:, 1])
 
 
-def along_contour(found: Surface) -> Surface:
-    """The edges one after the other along each contour."""
+def along_contour(found: Surface, points: Floats) -> Surface:
+    """The edges one after the other along each contour.
+
+    Of two edges in self-contact the later one is the slave. A closed contour begins at its sharpest
+    notch, which meets nothing: so a slit has one side before the other.
+    """
     follower = {int(a): k for k, a in enumerate(found.nodes[:, 0])}
     ends = set(found.nodes[:, 1].tolist())
     starts = [k for k, a in enumerate(found.nodes[:, 0].tolist()) if a not in ends]
     order: list[int] = []
     seen = np.zeros(len(found.nodes), bool)
     for first in [*starts, *range(len(found.nodes))]:
+        contour: list[int] = []
         at: int | None = first
         while at is not None and not seen[at]:
             seen[at] = True
-            order.append(at)
+            contour.append(at)
             at = follower.get(int(found.nodes[at, 1]))
+        if contour and at == first:
+            turn = _turns(points, found.nodes[contour])
+            begin = int(np.argmin(turn))
+            contour = contour[begin:] + contour[:begin]
+        order += contour
     return found.take(np.array(order, np.int64))
+
+
+def _turns(points: Floats, nodes: Ints) -> Floats:
+    """Angle to each edge of a closed contour from the one before it, negative inwards."""
+    along = points[nodes[:, 1]] - points[nodes[:, 0]]
+    before = np.roll(along, 1, axis=0)
+    cross = before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0]
+    turn = np.arctan2(cross, (before * along).sum(axis=1))
+    # The tip of a slit turns by half a turn, of either sign by rounding.
+    return np.asarray(np.where(turn > np.pi - SAME, turn - 2.0 * np.pi, turn))
 
 
 def contact_core(
@@ -173,7 +193,7 @@ def contact_core(
         common["depth"] = depth
     try:
         if item.itself:
-            slave = along_contour(slave)
+            slave = along_contour(slave, mesh.points)
             core = _core.Contact.itself(x, slave.nodes, slave.bulge, slave.thickness, **common)
         elif isinstance(item.master, RigidCurve):
             reference = item.master.reference
@@ -190,6 +210,7 @@ def contact_core(
                 item.master.backward,
                 node,
                 point,
+                turns=item.master.turns,
                 **common,
             )
         else:

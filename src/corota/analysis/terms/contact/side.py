@@ -10,7 +10,7 @@ import numpy as np
 from corota.analysis.terms.contact.tunneling import AT_ONCE, other_side
 from corota.errors import ModelError
 from corota.mesh.parts import part_of_nodes
-from corota.model.contact import RigidCurve, is_gap
+from corota.model.contact import RigidCurve
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,7 +47,7 @@ def check_side(system: NumberedModel, pair: Pair, x: Floats) -> None:
         Naming the pair, the curve and the nearest node.
     """
     curve = getattr(pair.item, "master", None)
-    if not isinstance(curve, RigidCurve) or is_gap(pair.item):
+    if not isinstance(curve, RigidCurve) or not curve.turns:  # no curve, or a gap element
         return
     mesh = system.model.mesh
     pieces = other_side(pair, x, x)[0]
