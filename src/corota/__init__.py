@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from corota import cells, examples, gradients, mesh, plots
+    from corota import cells, examples, gradients, mesh, plots, profiles
     from corota._core import __version__ as __version__
     from corota.analysis.run import solve
     from corota.cells import PeriodicCell
@@ -178,6 +178,7 @@ _HOMES = {
     "on_line": "mesh.geometric",
     "optimize": "gradients",
     "plots": "",
+    "profiles": "",
     "read": "io.formats",
     "read_results": "io.result_reader",
     "resume": "io.resume",
@@ -296,6 +297,7 @@ __all__ = [
     "on_line",
     "optimize",
     "plots",
+    "profiles",
     "read",
     "read_results",
     "resume",

@@ -84,8 +84,10 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     const TURNS: bool = true;
     /// Whether it is a solid of revolution, see [`crate::elements::ring`].
     const RING: bool = false;
-    /// Names of its resultants, at most four; line elements only.
+    /// Names of its resultants; line elements only.
     const OUTPUTS: &'static [&'static str] = &[];
+    /// Names of what it gives beside them where its law has a history.
+    const FLOW_OUTPUTS: &'static [&'static str] = &[];
 
     /// Whether the volume can stay constant (plastic flow, Poisson's ratio of a half) in plane
     /// strain without locking.
@@ -200,7 +202,16 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         let frame = Frame::new(x, u, nlgeom && Self::TURNS);
         integrate::kinematics::<Self, N, M, A>(x, &frame.q, alpha, section, own)
     }
-    /// [`integrate::absorbed`] at displacements `u`.
+    /// [`integrate::absorbed`] at local dofs.
+    fn absorbed_at(
+        x: &Nodal<f64, N, 2>,
+        q: &Nodal<f64, N, M>,
+        section: &Section<N>,
+        history: &mut History<'_>,
+    ) -> f64 {
+        integrate::absorbed::<Self, N, M, A>(x, q, section, history)
+    }
+    /// The same at displacements `u`.
     fn absorbed(
         x: &Nodal<f64, N, 2>,
         u: &Nodal<f64, N, M>,
@@ -209,7 +220,7 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
         nlgeom: bool,
     ) -> f64 {
         let frame = Frame::new(x, u, nlgeom && Self::TURNS);
-        integrate::absorbed::<Self, N, M, A>(x, &frame.q, section, history)
+        Self::absorbed_at(x, &frame.q, section, history)
     }
     /// Energies of what keeps an element of a reduced rule from deforming freely between its points,
     /// each with the stiffness to which it is proportional; `memory` of the state, empty where the
@@ -224,13 +235,12 @@ pub trait Element<const N: usize, const M: usize, const A: usize>:
     ) -> [[T; 2]; 2] {
         [[T::zero(), T::one()]; 2]
     }
-    /// Resultants of line elements with an initial axial strain.
+    /// Resultants of line elements, with the history of an evaluation.
     fn resultants(
         _x: &Nodal<f64, N, 2>,
         _q: &Nodal<f64, N, M>,
         _section: &Section<N>,
-        _own: &PerPoint<'_>,
-        _initial: f64,
+        _history: &mut History<'_>,
     ) -> Resultants {
         Resultants::default()
     }

@@ -1,8 +1,10 @@
 //! Line elements: trusses, beams and springs. They ride in the same
-//! frame, which for two nodes is the chord; their local law is linear in resultants.
+//! frame, which for two nodes is the chord. The local law of springs and elastic beams is one of
+//! resultants; trusses and other beams ask their material, see [`super::fibers`].
 // SPDX-License-Identifier: BSD-3-Clause
 
 use super::element::{Element, Full, Grad, Point, Sample};
+use super::fibers::{self, MODES};
 use crate::base::Real;
 use crate::base::small::{Blocks, Nodal};
 use crate::kinematics::integrate::{History, Local, Section};
@@ -11,22 +13,25 @@ use crate::kinematics::per_point::PerPoint;
 /// Resultants of a line element and what they store.
 #[derive(Clone, Debug, Default)]
 pub struct Resultants {
-    /// In the order of [`Element::OUTPUTS`].
-    pub outputs: [f64; 4],
+    /// In the order of [`Element::OUTPUTS`], then of [`Element::FLOW_OUTPUTS`] and those of the
+    /// law, where it has a history.
+    pub outputs: Vec<f64>,
     /// Axial stress and strain, and the direction of the axis on the reference.
     pub stress: f64,
     pub strain: f64,
     pub axis: [f64; 2],
     /// Stored energy [force*length].
     pub energy: f64,
+    /// Stress, strain and equivalent plastic strain by station and fiber.
+    pub fibers: Vec<[f64; 3]>,
 }
 
 /// A deformation that is linear in the local dofs, with the row that gives it.
-type Row<T, const N: usize, const M: usize> = Nodal<T, N, M>;
+pub type Row<T, const N: usize, const M: usize> = Nodal<T, N, M>;
 
 /// `f += r s`, and with `tangent` `K += r k r^T`, blocks `a <= b`.
 #[inline(always)]
-fn add<T: Real, const N: usize, const M: usize>(
+pub fn add<T: Real, const N: usize, const M: usize>(
     out: &mut Local<T, N, M>,
     row: &Row<T, N, M>,
     force: T,
@@ -65,7 +70,7 @@ fn add_product<T: Real, const N: usize, const M: usize>(
 }
 
 #[inline(always)]
-fn apply<T: Real, const N: usize, const M: usize>(row: &Row<T, N, M>, q: &Nodal<T, N, M>) -> T {
+pub fn apply<T: Real, const N: usize, const M: usize>(row: &Row<T, N, M>, q: &Nodal<T, N, M>) -> T {
     crate::base::small::dot(row, q)
 }
 
@@ -159,32 +164,53 @@ impl Element<2, 2, 0> for Truss {
     ) {
         let (t, length) = axis(x);
         let row = stretch::<T, 2>(t);
-        let k =
-            T::real(moduli::<T, 2>(section, &history.per_point).0 * section.profile[0]) / length;
-        let e = apply(&row, q) - length * history.initial_strain(0, 0);
-        add(out, &row, k * e, &[(k, &row)], tangent);
+        let strain = apply(&row, q) / length - history.initial_strain(0, 0);
+        let (stress, modulus, failed) = fibers::answer(strain, 0, section, history);
+        let area = section.profile[0];
+        let k = modulus.scale(area) / length;
+        add(out, &row, stress.scale(area), &[(k, &row)], tangent);
+        out.failed = failed;
+    }
+    fn absorbed_at(
+        x: &Nodal<f64, 2, 2>,
+        q: &Nodal<f64, 2, 2>,
+        section: &Section<2>,
+        history: &mut History<'_>,
+    ) -> f64 {
+        let (t, length) = axis(x);
+        let strain = apply(&stretch::<f64, 2>(t), q) / length - history.initial_strain::<f64>(0, 0);
+        let at = fibers::state(strain, 0, section, history);
+        (at.energy + at.work) * section.profile[0] * length
     }
     fn resultants(
         x: &Nodal<f64, 2, 2>,
         q: &Nodal<f64, 2, 2>,
         section: &Section<2>,
-        own: &PerPoint<'_>,
-        initial: f64,
+        history: &mut History<'_>,
     ) -> Resultants {
         let (t, length) = axis(x);
         let strain = apply(&stretch::<f64, 2>(t), q) / length;
-        let elastic = strain - initial;
-        let stress = moduli::<f64, 2>(section, own).0 * elastic;
+        let initial: f64 = history.initial_strain(0, 0);
+        let at = fibers::state(strain - initial, 0, section, history);
         let area = section.profile[0];
-        let energy = 0.5 * stress * elastic * area * length;
-        Resultants { outputs: [stress * area, 0.0, 0.0, 0.0], stress, strain, axis: t, energy }
+        let mut outputs = vec![at.stress * area];
+        outputs.extend(at.outputs);
+        Resultants {
+            outputs,
+            stress: at.stress,
+            strain,
+            axis: t,
+            energy: at.energy * area * length,
+            fibers: Vec::new(),
+        }
     }
 }
 
 /// Straight beam of two nodes with shear deformation, exact for loads at its nodes
 /// (Timoshenko; Przemieniecki 1968). Profile: area, second moment, shear area (0: no shear
 /// deformation). Outputs: axial force, shear force, moments at both ends; moments are positive
-/// where they stretch the right side of the way from the first node to the second.
+/// where they stretch the right side of the way from the first node to the second; with fibers the
+/// plastic rotations of both halves.
 #[derive(Clone, Copy)]
 pub struct Beam;
 
@@ -218,7 +244,9 @@ impl Element<2, 3, 0> for Beam {
     const CELL: &'static str = "line2";
     const LINE: bool = true;
     const OUTPUTS: &'static [&'static str] = &["N", "V", "M1", "M2"];
+    const FLOW_OUTPUTS: &'static [&'static str] = &["PR1", "PR2"];
     const ALPHA_B: f64 = 1.0;
+    const MEMORY: usize = MODES;
     bar!(Full, [[T::zero(); 4]; 3]);
 
     /// Deflection of the axis by the difference of the end rotations, exact without shear force:
@@ -237,28 +265,66 @@ impl Element<2, 3, 0> for Beam {
     ) {
         let (t, length) = axis(x);
         let row = stretch::<T, 3>(t);
+        let [r, s] = bendings(t, length);
+        let initial = history.initial_strain(0, 0);
+        if !section.fibers.is_empty() {
+            let rows = [&row, &r, &s];
+            let deformed = fibers::deformed(rows, q, length, initial);
+            deformed.law_into(rows, section, history, tangent, out);
+            return;
+        }
         let k =
             T::real(moduli::<T, 2>(section, &history.per_point).0 * section.profile[0]) / length;
-        let e = apply(&row, q) - length * history.initial_strain(0, 0);
+        let e = apply(&row, q) - length * initial;
         add(out, &row, k * e, &[(k, &row)], tangent);
-        let [r, s] = bendings(t, length);
         let [d, c] = bending_stiffness(section, &history.per_point, length);
         let turn = [apply(&r, q), apply(&s, q)];
         add(out, &r, d.fma(turn[0], c * turn[1]), &[(d, &r), (c, &s)], tangent);
         add(out, &s, c.fma(turn[0], d * turn[1]), &[(c, &r), (d, &s)], tangent);
     }
+    fn absorbed_at(
+        x: &Nodal<f64, 2, 2>,
+        q: &Nodal<f64, 2, 3>,
+        section: &Section<2>,
+        history: &mut History<'_>,
+    ) -> f64 {
+        let (t, length) = axis(x);
+        let initial = history.initial_strain(0, 0);
+        let (row, [r, s]) = (stretch(t), bendings(t, length));
+        let deformed = fibers::deformed([&row, &r, &s], q, length, initial);
+        let states = deformed.states(0.0, section, history);
+        states.energy + states.work
+    }
     fn resultants(
         x: &Nodal<f64, 2, 2>,
         q: &Nodal<f64, 2, 3>,
         section: &Section<2>,
-        own: &PerPoint<'_>,
-        initial: f64,
+        history: &mut History<'_>,
     ) -> Resultants {
         let (t, length) = axis(x);
-        let strain = apply(&stretch::<f64, 3>(t), q) / length;
+        let (row, [r, s]) = (stretch::<f64, 3>(t), bendings(t, length));
+        let strain = apply(&row, q) / length;
+        let initial = history.initial_strain(0, 0);
+        if !section.fibers.is_empty() {
+            let deformed = fibers::deformed([&row, &r, &s], q, length, initial);
+            let states = deformed.states(initial, section, history);
+            let [axial, first, second] = states.force;
+            let shear = -(first + second) / length;
+            let mut outputs = vec![axial, shear, -first, second];
+            outputs.extend(states.hinges);
+            outputs.extend(states.outputs);
+            return Resultants {
+                outputs,
+                stress: axial / section.profile[0],
+                strain,
+                axis: t,
+                energy: states.energy,
+                fibers: states.values,
+            };
+        }
+        let own = &history.per_point;
         let elastic = strain - initial;
         let stress = moduli::<f64, 2>(section, own).0 * elastic;
-        let [r, s] = bendings(t, length);
         let [d, c] = bending_stiffness(section, own, length);
         let turn = [apply(&r, q), apply(&s, q)];
         // Moments that act on the ends; the inner one at the first end is its opposite.
@@ -266,8 +332,8 @@ impl Element<2, 3, 0> for Beam {
         let axial = stress * section.profile[0];
         let energy = 0.5 * (axial * elastic * length + end[0] * turn[0] + end[1] * turn[1]);
         let shear = -(end[0] + end[1]) / length;
-        let outputs = [axial, shear, -end[0], end[1]];
-        Resultants { outputs, stress, strain, axis: t, energy }
+        let outputs = vec![axial, shear, -end[0], end[1]];
+        Resultants { outputs, stress, strain, axis: t, energy, fibers: Vec::new() }
     }
 }
 
@@ -310,7 +376,7 @@ fn spring_resultants<const N: usize>(section: &Section<N>, e: f64) -> Resultants
             integral(e) - integral(0.0)
         }
     };
-    Resultants { outputs: [force, 0.0, 0.0, 0.0], energy, ..Resultants::default() }
+    Resultants { outputs: vec![force], energy, ..Resultants::default() }
 }
 
 /// Spring along the line between two nodes. Profile: stiffness [force/length].
@@ -362,8 +428,7 @@ impl Element<2, 2, 0> for Spring {
         x: &Nodal<f64, 2, 2>,
         q: &Nodal<f64, 2, 2>,
         section: &Section<2>,
-        _: &PerPoint<'_>,
-        _: f64,
+        _: &mut History<'_>,
     ) -> Resultants {
         let t = axis(x).0;
         let e = apply(&stretch::<f64, 2>(t), q);
@@ -440,8 +505,7 @@ macro_rules! dof_spring {
                 _: &Nodal<f64, $n, 2>,
                 q: &Nodal<f64, $n, $m>,
                 section: &Section<$n>,
-                _: &PerPoint<'_>,
-                _: f64,
+                _: &mut History<'_>,
             ) -> Resultants {
                 spring_resultants(section, apply(&Self::row::<f64>(section), q))
             }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 pub mod element;
+pub mod fibers;
 pub mod line;
 pub mod opt;
 pub mod q4;

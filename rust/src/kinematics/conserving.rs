@@ -21,7 +21,7 @@
 
 use super::corotation::Frame;
 use super::inertia::{Mass, MassKind};
-use super::integrate::{History, Local, Section, absorbed, flowed, local};
+use super::integrate::{History, Local, Section, flowed, local};
 use crate::base::small::{Blocks, Nodal, blocks, nodal};
 use crate::elements::Element;
 use crate::elements::element::Wanted;
@@ -174,7 +174,7 @@ where
     let begin = local::<E, f64, N, M, A>(x, &f0.q, section, history, false);
     let mut energy = [0.0; 2];
     if curved && accounts {
-        energy[0] = absorbed::<E, N, M, A>(x, &f0.q, section, history);
+        energy[0] = E::absorbed_at(x, &f0.q, section, history);
     }
     history.clock = clock;
     let mut end = local::<E, f64, N, M, A>(x, &f1.q, section, history, step.tangent);
@@ -214,7 +214,7 @@ where
     }
     let quadratic = section.law.n_state() > 0 && !flows && section.strain.is_linear();
     if curved && accounts && !quadratic {
-        energy[1] = absorbed::<E, N, M, A>(x, &f1.q, section, history);
+        energy[1] = E::absorbed_at(x, &f1.q, section, history);
         discrete_gradient(x, [&f0.q, &f1.q], energy, &mut mean);
     }
     let between = Between::new(x, step, &f0, &f1);

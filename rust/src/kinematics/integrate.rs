@@ -9,6 +9,7 @@ use super::modes::{condense, relax};
 use super::per_point::PerPoint;
 use crate::base::Real;
 use crate::base::small::{Blocks, Mat, Nodal, blocks, ldlt, ldlt_solve, nodal};
+use crate::elements::fibers::STATIONS;
 use crate::elements::{Element, Operator, Point, Sample};
 use crate::materials::{Clock, Law, Plane, PointState, Response, SolidResponse};
 
@@ -20,7 +21,7 @@ const LEAST_PIVOT: f64 = 1e-6;
 /// tangent of an element. Where all points of a part flow alike, modes that spread the flow unevenly
 /// have no stiffness, and no force drives them: this keeps them where they are. Forces are exact, and
 /// an iteration of Newton gains nine digits still.
-const KEPT: f64 = 1e-9;
+pub const KEPT: f64 = 1e-9;
 /// Most internal components of an element (two for each mode).
 pub(super) const INTERNAL: usize = 4;
 
@@ -39,6 +40,9 @@ pub struct Section<const N: usize> {
     pub profile: [f64; 3],
     /// Pairs of elongation and force of nonlinear springs, rising; empty for linear ones.
     pub table: Vec<[f64; 2]>,
+    /// Distance from the axis to the left, area and initial strain of the fibers of a beam; empty for
+    /// an elastic one, whose profile says all.
+    pub fibers: Vec<[f64; 3]>,
     /// [`Element::parameter`] of the law's moduli.
     pub parameter: f64,
     /// Whether the volume strain is its mean over the element.
@@ -49,6 +53,11 @@ pub struct Section<const N: usize> {
 }
 
 impl<const N: usize> Section<N> {
+    /// Points of an element where its law has a history.
+    pub fn n_histories(&self) -> usize {
+        if self.fibers.is_empty() { self.points.len() } else { STATIONS * self.fibers.len() }
+    }
+
     /// The same section for a geometrically linear analysis.
     pub fn linearized(&self) -> Self {
         Self { strain: LocalStrain::Linear, finite: false, ..self.clone() }
@@ -124,10 +133,11 @@ impl History<'_> {
     /// History of the element as a whole.
     #[inline(always)]
     pub fn memory<const N: usize>(&mut self, section: &Section<N>) -> PointState<'_> {
-        self.point(section.points.len(), section.law.n_state())
+        self.point(section.n_histories(), section.law.n_state())
     }
+    /// History of the law at a point.
     #[inline(always)]
-    fn point(&mut self, p: usize, members: usize) -> PointState<'_> {
+    pub fn point(&mut self, p: usize, members: usize) -> PointState<'_> {
         // An empty history may not be sliced past its end.
         let start = if members == 0 { 0 } else { p * members * self.stride };
         PointState {
@@ -856,7 +866,7 @@ where
 /// Whether the law of any point has flowed since the start of the increment.
 pub fn flowed<const N: usize>(section: &Section<N>, history: &History<'_>) -> bool {
     let Some(member) = section.law.plastic_member() else { return false };
-    (0..section.points.len()).any(|p| {
+    (0..section.n_histories()).any(|p| {
         let at = (p * section.law.n_state() + member) * history.stride;
         history.new[at] > history.old[at]
     })

@@ -5,19 +5,19 @@
 //! strain, back-stress) stays.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::{Law, Plane};
+use super::{Law, State};
 
 #[derive(Clone, Debug)]
 pub struct LawTable {
     name: String,
-    plane: Plane,
+    state: State,
     /// Temperatures, rising, with the parameters of the law there.
     rows: Vec<(f64, Vec<f64>)>,
 }
 
 impl LawTable {
-    pub fn new(name: &str, plane: Plane, rows: &[(f64, Vec<f64>)]) -> Result<Self, String> {
-        let table = Self { name: name.into(), plane, rows: rows.to_vec() };
+    pub fn new(name: &str, state: State, rows: &[(f64, Vec<f64>)]) -> Result<Self, String> {
+        let table = Self { name: name.into(), state, rows: rows.to_vec() };
         let rising = rows.windows(2).all(|w| w[0].0 < w[1].0);
         let alike = rows.windows(2).all(|w| w[0].1.len() == w[1].1.len());
         if rows.is_empty() || !rising || !alike || !rows.iter().all(|r| r.0.is_finite()) {
@@ -25,7 +25,7 @@ impl LawTable {
                         parameters at each"
                 .into());
         }
-        let members = |row: &(f64, Vec<f64>)| Law::new(name, &row.1, plane).map(|l| l.n_state());
+        let members = |row: &(f64, Vec<f64>)| Law::new(name, &row.1, state).map(|l| l.n_state());
         let counts = rows.iter().map(members).collect::<Result<Vec<_>, _>>()?;
         if counts.windows(2).any(|w| w[0] != w[1]) {
             return Err(format!("{name}: what a point remembers may not depend on temperature"));
@@ -44,11 +44,11 @@ impl LawTable {
             return Err(format!("the temperature {temperature} is not a number"));
         }
         if low == high {
-            return Law::new(&self.name, first, self.plane);
+            return Law::new(&self.name, first, self.state);
         }
         let share = (temperature - t0) / (t1 - t0);
         let mix = first.iter().zip(last).map(|(a, b)| a + share * (b - a));
-        Law::new(&self.name, &mix.collect::<Vec<_>>(), self.plane)
+        Law::new(&self.name, &mix.collect::<Vec<_>>(), self.state)
             .map_err(|why| format!("at the temperature {temperature}: {why}"))
     }
 }
@@ -56,11 +56,14 @@ impl LawTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Plane;
+
+    const FLAT: State = State::Plane(Plane::Stress);
 
     #[test]
     fn parameters_are_linear_between_temperatures_and_constant_outside() {
         let rows = [(20.0, vec![8.0, 0.2]), (120.0, vec![4.0, 0.4])];
-        let table = LawTable::new("elastic", Plane::Stress, &rows).unwrap();
+        let table = LawTable::new("elastic", FLAT, &rows).unwrap();
         for (t, e, nu) in [
             (-50.0, 8.0, 0.2),
             (20.0, 8.0, 0.2),
@@ -84,11 +87,11 @@ mod tests {
             vec![row(0.0, &[8.0, 0.2]), row(1.0, &[-4.0, 0.2])],
         ];
         for rows in bad {
-            assert!(LawTable::new("elastic", Plane::Stress, &rows).is_err());
+            assert!(LawTable::new("elastic", FLAT, &rows).is_err());
         }
         // One back-stress has as many parameters as three more numbers of a yield curve would.
         let one = row(0.0, &[8.0, 0.2, 1.0, 2.0, 0.0, 0.0, 0.1, 0.0]);
         let none = row(1.0, &[8.0, 0.2, 0.0, 2.0, 0.1, 0.1, 1.0, 0.0]);
-        assert!(LawTable::new("mises", Plane::Stress, &[one, none]).is_err());
+        assert!(LawTable::new("mises", FLAT, &[one, none]).is_err());
     }
 }

@@ -33,6 +33,11 @@ impl Material for Elastic {
         let moduli = [[c, c * d, 0.0], [c * d, c, 0.0], [0.0, 0.0, g]];
         Ok(Self { moduli, plane, young: e, nu })
     }
+    fn line(parameters: &[f64]) -> Result<Self, String> {
+        let law = Self::new(parameters, Plane::Stress)?;
+        let (e, g) = (law.young, law.moduli[2][2]);
+        Ok(Self { moduli: [[e, 0.0, 0.0], [0.0, e, 0.0], [0.0, 0.0, g]], ..law })
+    }
     fn is_linear(&self) -> bool {
         true
     }

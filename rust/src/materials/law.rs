@@ -2,7 +2,7 @@
 //! the branch is uniform over the block.
 // SPDX-License-Identifier: BSD-3-Clause
 
-use super::material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
+use super::material::{Material, PointState, Response, SolidResponse, State, TensorOutput};
 use crate::base::small::Mat;
 use crate::base::{Job, Real};
 
@@ -81,9 +81,13 @@ macro_rules! law {
             }
 
             /// Build the material of that name.
-            pub fn new(name: &str, parameters: &[f64], plane: Plane) -> Result<Self, String> {
+            pub fn new(name: &str, parameters: &[f64], state: State) -> Result<Self, String> {
                 $(if name == $name::NAME {
-                    return $name::new(parameters, plane).map(Law::$name);
+                    return match state {
+                        State::Plane(plane) => $name::new(parameters, plane),
+                        State::Line => $name::line(parameters),
+                    }
+                    .map(Law::$name);
                 })+
                 Err(format!("no material named {name:?}; there are {:?}", Self::NAMES))
             }

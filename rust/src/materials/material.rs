@@ -12,6 +12,15 @@ pub enum Plane {
     Strain,
 }
 
+/// Stress state in which a law stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// In a plane.
+    Plane(Plane),
+    /// Along a line: one normal stress, in the first row.
+    Line,
+}
+
 /// History of one point (of one batch of lanes): the committed values are read, the new ones
 /// written. Members lie `stride` apart.
 pub struct PointState<'a> {
@@ -71,6 +80,11 @@ pub trait Material: Sized {
 
     /// Build from numbers in the order that the law's file documents.
     fn new(parameters: &[f64], plane: Plane) -> Result<Self, String>;
+    /// The law of a bar, with one normal stress in the first row: others have no strain and no
+    /// stress. Its moduli are Young's (11) and the shear modulus (33).
+    fn line(_parameters: &[f64]) -> Result<Self, String> {
+        Err(format!("{} is not for trusses and beams", Self::NAME))
+    }
     /// Members of the history at a point.
     fn n_state(&self) -> usize {
         0

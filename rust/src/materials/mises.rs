@@ -504,6 +504,21 @@ impl<F: Flow> Material for J2<F> {
             volume,
         })
     }
+    /// Stress and strain are as large in their sum as in their difference, each of which takes half
+    /// of the norm and of the work.
+    fn line(parameters: &[f64]) -> Result<Self, String> {
+        let law = Self::new(parameters, Plane::Stress)?;
+        let (e, g) = (law.young, law.moduli[2][2]);
+        Ok(Self {
+            moduli: [[e, 0.0, 0.0], [0.0, e, 0.0], [0.0, 0.0, g]],
+            elastic: [e, e, 0.0],
+            relief: [e, e, 0.0],
+            flow: [2.0 / 3.0, 2.0 / 3.0, 0.0],
+            norm: [1.0 / 3.0, 1.0 / 3.0, 0.0],
+            work: [0.5, 0.5, 0.0],
+            ..law
+        })
+    }
     fn n_state(&self) -> usize {
         self.first() + F::MEMBERS
     }

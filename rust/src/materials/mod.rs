@@ -22,7 +22,7 @@ pub mod viscoplastic;
 
 pub use clock::Clock;
 pub use law::Law;
-pub use material::{Material, Plane, PointState, Response, SolidResponse, TensorOutput};
+pub use material::{Material, Plane, PointState, Response, SolidResponse, State, TensorOutput};
 
 /// The one list of materials: call `$then![file::Type, ...]`.
 macro_rules! laws {

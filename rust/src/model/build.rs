@@ -10,7 +10,7 @@ use crate::elements::{Element, Ring};
 use crate::kinematics::integrate::Section;
 use crate::kinematics::local_strain::LocalStrain;
 use crate::materials::by_temperature::LawTable;
-use crate::materials::{Law, Plane};
+use crate::materials::{Law, Plane, State};
 use crate::{for_each_element, for_each_ring};
 use std::sync::Arc;
 
@@ -34,6 +34,8 @@ pub struct BlockInput {
     pub profile: [f64; 3],
     /// Pairs of elongation and force of nonlinear springs.
     pub table: Vec<[f64; 2]>,
+    /// Fibers of beams, see [`Section::fibers`].
+    pub fibers: Vec<[f64; 3]>,
     pub rho: f64,
     /// Density of the nodes, element by element; empty where it is the same everywhere.
     pub nodal_density: Vec<f64>,
@@ -65,8 +67,13 @@ pub struct Block {
 
 impl Block {
     /// Names of the scalars that recovery gives.
-    pub fn outputs(&self) -> &'static [&'static str] {
-        if self.facts.line { self.facts.outputs } else { self.law.outputs() }
+    pub fn outputs(&self) -> Vec<&'static str> {
+        let of_law = self.law.outputs();
+        if !self.facts.line {
+            return of_law.to_vec();
+        }
+        let flow = if self.law.n_state() > 0 { self.facts.flow_outputs } else { &[] };
+        [self.facts.outputs, flow, of_law].concat()
     }
 }
 
@@ -86,7 +93,11 @@ pub fn build(
     where
         E: Element<N, M, A>,
     {
-        let law = Law::new(&input.law, &input.parameters, input.plane)?;
+        let state = if E::LINE { State::Line } else { State::Plane(input.plane) };
+        let law = Law::new(&input.law, &input.parameters, state)?;
+        if E::LINE && E::MEMORY > 0 && law.n_state() > 0 && input.fibers.is_empty() {
+            return Err(format!("{} with {} needs the fibers of its profile", E::NAME, input.law));
+        }
         if input.options.mean_dilatation && (!E::MEAN_DILATATION || input.plane == Plane::Stress) {
             return Err(format!(
                 "mean dilatation is for quadrilaterals without incompatible modes in plane strain, \
@@ -97,7 +108,11 @@ pub fn build(
         }
         let section = Section {
             points: E::points(&E::rule()),
-            strain: LocalStrain::new(&input.local_strain)?,
+            strain: if E::LINE {
+                LocalStrain::Linear
+            } else {
+                LocalStrain::new(&input.local_strain)?
+            },
             thickness: input.thickness,
             parameter: match input.options.beta0 {
                 Some(beta0) => E::parameter_of(beta0)
@@ -109,6 +124,7 @@ pub fn build(
             ring: input.ring,
             profile: input.profile,
             table: input.table.clone(),
+            fibers: input.fibers.clone(),
             mean_dilatation: input.options.mean_dilatation,
             finite: true,
         };
@@ -119,7 +135,7 @@ pub fn build(
         }
         let table = match input.by_temperature.as_slice() {
             [] => None,
-            rows => Some(LawTable::new(&input.law, input.plane, rows)?),
+            rows => Some(LawTable::new(&input.law, state, rows)?),
         };
         let shape = section.points.iter().flat_map(|p| p.n).collect();
         let mass_points = E::points(&E::mass_rule());

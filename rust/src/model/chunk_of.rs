@@ -70,7 +70,7 @@ where
         let section = &shared.section;
         let members = section.law.n_state();
         let memory = if members > 0 { E::MEMORY } else { 0 };
-        let state = (section.points.len() * members + memory) * stride;
+        let state = (section.n_histories() * members + memory) * stride;
         let rates = if M == 3 { 2 * N * nodes.len() } else { 0 };
         let mut slots = Vec::with_capacity(nodes.len() * N * (N + 1) / 2);
         for element in &nodes {
@@ -303,7 +303,7 @@ where
         super::recover::strains(self, context, alpha, out);
     }
     fn give(&mut self, values: &[f64]) {
-        let per_element = self.shared.section.points.len() * self.shared.section.law.n_state();
+        let per_element = self.shared.section.n_histories() * self.shared.section.law.n_state();
         for e in 0..self.nodes.len() {
             let start = self.elements[e] as usize * per_element;
             for m in 0..per_element {
@@ -318,7 +318,7 @@ where
             return 0.0;
         }
         let mut largest = 0.0f64;
-        for p in 0..self.shared.section.points.len() {
+        for p in 0..self.shared.section.n_histories() {
             let start = (p * law.n_state() + member) * self.stride;
             for e in start..start + self.nodes.len() {
                 largest = largest.max(self.new[e] - self.old[e]);
@@ -333,7 +333,7 @@ where
             return 0.0;
         }
         let mut largest = 0.0f64;
-        for p in 0..self.shared.section.points.len() {
+        for p in 0..self.shared.section.n_histories() {
             let start = (p * law.n_state() + member) * self.stride;
             for v in &self.new[start..start + self.nodes.len()] {
                 largest = largest.max(*v);

@@ -120,6 +120,7 @@ fn case(facts: &Facts, law: &str, strain: &str, nlgeom: bool) -> Case {
         },
         profile: [0.7, 0.1, 0.4],
         table: if strain == "logarithmic" { TABLE.to_vec() } else { Vec::new() },
+        fibers: vec![],
         rho: 1.0,
         nodal_density: Vec::new(),
         by_temperature: Vec::new(),

@@ -46,6 +46,9 @@ pub struct Fields {
     /// Energy that the initial strain takes: minus the derivative of the energy density by its
     /// rows, and the stress through the thickness of the law, `[n, p, 5]`; zero where there is none.
     pub heat: Vec<f64>,
+    /// Stress, strain and equivalent plastic strain by station and fiber of beams that have some,
+    /// `[n, stations, fibers, 3]`.
+    pub fibers: Vec<f64>,
     /// Largest local strain component.
     pub largest_strain: f64,
 }
@@ -71,6 +74,7 @@ impl Fields {
             dissipated: vec![0.0; n],
             stabilized: Vec::new(),
             heat: Vec::new(),
+            fibers: Vec::new(),
             largest_strain: 0.0,
         }
     }
@@ -104,6 +108,11 @@ impl Fields {
         if !part.heat.is_empty() {
             self.heat.resize(5 * self.volume.len(), 0.0);
             copy(&mut self.heat, &part.heat);
+        }
+        if !part.fibers.is_empty() {
+            let width = part.fibers.len() / elements.len();
+            self.fibers.resize(width * self.rotation.len(), 0.0);
+            copy(&mut self.fibers, &part.fibers);
         }
         for (to, from) in self.outputs.iter_mut().zip(&part.outputs) {
             copy(to, from);
@@ -148,7 +157,7 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
     let section = chunk.shared.section(context.nlgeom);
     let members = section.law.n_state();
     let n_points = section.points.len();
-    let memory = members * n_points;
+    let memory = members * section.n_histories();
     let kept = memory + if members > 0 { E::MEMORY } else { 0 };
     let mut new = vec![0.0; kept];
     if !chunk.initial_from(0).is_empty() {
@@ -185,8 +194,8 @@ pub(super) fn chunk<E, const N: usize, const M: usize, const A: usize>(
         let forces = answer.force;
         out.forces[e * N * M..(e + 1) * N * M].copy_from_slice(forces.as_flattened());
         if E::LINE {
-            let axial = initial.first().copied().unwrap_or(0.0);
-            let found = E::resultants(&x, &frame.q, section, &own, axial);
+            let found = E::resultants(&x, &frame.q, section, &mut history);
+            out.fibers.extend_from_slice(found.fibers.as_flattened());
             if let Some(heat) = out.heat.get_mut(5 * e) {
                 *heat = found.stress;
             }

@@ -86,6 +86,8 @@ pub struct Facts {
     pub turns: bool,
     /// Names of resultants of line elements.
     pub outputs: &'static [&'static str],
+    /// What they give beside these where the law has a history.
+    pub flow_outputs: &'static [&'static str],
 }
 
 /// All registered elements.
@@ -104,12 +106,13 @@ pub fn facts() -> Vec<Facts> {
             bending_cells: E::BENDING_CELLS,
             weighted: E::parameter_of(1.0).is_some(),
             about_mean: E::ABOUT_MEAN,
-            stabilized: E::MEMORY > 0,
+            stabilized: E::MEMORY > 0 && !E::LINE,
             revolved: false,
             line: E::LINE,
             spring: E::SPRING,
             turns: E::TURNS,
             outputs: E::OUTPUTS,
+            flow_outputs: E::FLOW_OUTPUTS,
         }
     }
     let mut all = Vec::new();

@@ -33,6 +33,7 @@ fn sheet(n: usize, shuffled: bool) -> Problem {
         sides: Vec::new(),
         profile: [0.0; 3],
         table: Vec::new(),
+        fibers: vec![],
         rho: 1.0,
         nodal_density: Vec::new(),
         by_temperature: Vec::new(),

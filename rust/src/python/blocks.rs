@@ -48,6 +48,10 @@ pub fn block_inputs(blocks: &Bound<'_, PyList>) -> PyResult<Vec<BlockInput>> {
                 Some(v) => v.extract()?,
                 None => Vec::new(),
             },
+            fibers: match d.get_item("fibers")? {
+                Some(v) => v.extract()?,
+                None => Vec::new(),
+            },
             rho: get("rho")?.extract()?,
             nodal_thickness: numbers(d, "nodal_thickness")?,
             sides: numbers(d, "sides")?,

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 use crate::base::Dual;
-use crate::materials::{Clock, Law, Plane, PointState};
+use crate::materials::{Clock, Law, Plane, PointState, State};
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+/// State of stress from its name.
+fn stress_state(name: &str) -> PyResult<State> {
+    if name == "line" { Ok(State::Line) } else { plane(name).map(State::Plane) }
+}
 
 /// Plane from its name.
 pub fn plane(name: &str) -> PyResult<Plane> {
@@ -38,7 +43,8 @@ fn material_path<'py>(
     start: f64,
     lasting: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let law = Law::new(law, &parameters, plane(plane_name)?).map_err(PyValueError::new_err)?;
+    let law =
+        Law::new(law, &parameters, stress_state(plane_name)?).map_err(PyValueError::new_err)?;
     let members = law.n_state();
     let mut old = state.as_slice()?.to_vec();
     old.resize(members, 0.0);

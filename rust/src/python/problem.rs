@@ -4,6 +4,7 @@
 use super::blocks::block_inputs;
 use super::memory;
 use crate::base::Lanes;
+use crate::elements::fibers::STATIONS;
 use crate::kinematics::inertia::MassKind;
 use crate::loads::body::Field;
 use crate::materials::{Clock, Law};
@@ -47,7 +48,7 @@ impl PyProblem {
     ///
     /// ``points`` (n, 2); ``blocks`` a list of dicts with element, law, parameters, plane,
     /// local_strain, thickness, rho, nodes (flat uint32), and
-    /// where wanted profile (3 numbers), table (pairs), mean_dilatation (bool), beta0 (float or None),
+    /// where wanted profile (3 numbers), table (pairs), fibers (triples), mean_dilatation (bool), beta0 (float or None),
     /// nodal_thickness, nodal_density and sides (flat as nodes; shares of the edges) and by_temperature (pairs of a temperature
     /// and parameters; see ``set_temperatures``); ``extra_dofs`` (n,) uint8 or empty.
     #[new]
@@ -575,6 +576,11 @@ impl PyProblem {
             if !f.stabilized.is_empty() {
                 d.set_item("stabilized", f.stabilized.into_pyarray(py).reshape([n, 3, 2])?)?;
             }
+            if !f.fibers.is_empty() {
+                let count = f.fibers.len() / (n * STATIONS * 3);
+                let fibers = f.fibers.into_pyarray(py).reshape([n, STATIONS, count, 3])?;
+                d.set_item("fibers", fibers)?;
+            }
             d.set_item("dissipated_energy", f.dissipated.iter().sum::<f64>())?;
             d.set_item("largest_strain", f.largest_strain)?;
             d.set_item("points", rows(f.points, 2)?)?;
@@ -592,7 +598,8 @@ impl PyProblem {
             for (name, output) in block.outputs().iter().zip(f.outputs) {
                 values.set_item(name, scalar(output)?)?;
             }
-            for (kind, tensor) in block.law.tensors().iter().zip(f.tensors) {
+            let tensors = if block.facts.line { &[] } else { block.law.tensors() };
+            for (kind, tensor) in tensors.iter().zip(f.tensors) {
                 values.set_item(kind.name, rows(tensor, 4)?)?;
             }
             values.set_item("STH", scalar(f.thickness)?)?;

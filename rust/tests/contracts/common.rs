@@ -9,7 +9,7 @@ use corota::kinematics::corotation::Frame;
 use corota::kinematics::integrate::{History, Section, local};
 use corota::kinematics::local_strain::LocalStrain;
 use corota::kinematics::per_point::PerPoint;
-use corota::materials::{Law, Plane};
+use corota::materials::{Law, Plane, State};
 
 /// Small random generator (`SplitMix64`), so that failures repeat.
 pub struct Random(u64);
@@ -143,7 +143,7 @@ pub fn section<E, const N: usize, const M: usize, const A: usize>(
 where
     E: Element<N, M, A>,
 {
-    let law = Law::new("elastic", &[7.0, 0.3], plane).expect("valid constants");
+    let law = Law::new("elastic", &[7.0, 0.3], State::Plane(plane)).expect("valid constants");
     Section {
         points: E::points(&E::rule()),
         plane,
@@ -152,6 +152,7 @@ where
         thickness: 1.3,
         profile: [0.0; 3],
         table: Vec::new(),
+        fibers: Vec::new(),
         parameter: E::parameter(&law.moduli()),
         law,
         finite: true,

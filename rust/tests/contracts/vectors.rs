@@ -7,7 +7,7 @@ use corota::elements::Element;
 use corota::for_each_planar_element;
 use corota::kinematics::integrate::Section;
 use corota::kinematics::local_strain::LocalStrain;
-use corota::materials::{Law, Plane};
+use corota::materials::{Law, Plane, State};
 use serde_json::Value;
 
 const AGREE: f64 = 1e-10;
@@ -22,7 +22,8 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(case: &Value) {
     let number = |key: &str| case[key].as_f64().expect("a number");
     assert_eq!(case["plane"], "stress");
-    let law = Law::new("elastic", &[number("E"), number("nu")], Plane::Stress).expect("valid");
+    let law = Law::new("elastic", &[number("E"), number("nu")], State::Plane(Plane::Stress))
+        .expect("valid");
     let section = Section {
         points: E::points(&E::rule()),
         strain: local_strain(&case["local_strain"]),
@@ -30,6 +31,7 @@ fn check<E: Element<N, M, A>, const N: usize, const M: usize, const A: usize>(ca
         thickness: number("thickness"),
         profile: [0.0; 3],
         table: Vec::new(),
+        fibers: Vec::new(),
         parameter: E::parameter(&law.moduli()),
         law,
         mean_dilatation: false,

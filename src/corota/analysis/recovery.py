@@ -93,6 +93,7 @@ def _own(
             own["volume"],
             own["values"],
             own["forces"],
+            own.get("fibers"),
         )
         add_derived(found)
         fields.append(found)

@@ -56,6 +56,10 @@ def core_input(
     """The block in the format of the core; masses need the initial temperatures of the nodes."""
     section, material = block.section, block.section.material
     own: dict[str, Any] = {}
+    if section.fibers and not material.linear:
+        first = material.first if isinstance(material, MaterialTable) else material
+        soft = float(first.compliance()[0, 0])
+        own["fibers"] = [[y, area, -stress * soft] for y, area, stress in section.fibers]
     if section.nodal_thickness is not None:
         own["nodal_thickness"] = section.thickness_at(block.nodes, points).ravel()
     if block.sides is not None:
@@ -179,7 +183,13 @@ def _check_line(model: Model, block: BlockOfCells, turns: bool) -> None:
     if not section.material.for_lines:
         raise ModelError(
             f"element {labels[block.cells[0]]}: {section.element} takes isotropic elastic "
-            f"material, not {section.material.law!r}",
+            f"material or plasticity of von Mises, not {section.material.law!r}",
+            section.where,
+        )
+    if section.element == "BEAM" and not (section.material.linear or section.fibers):
+        raise ModelError(
+            f"element {labels[block.cells[0]]}: a plastic beam needs the shape of its "
+            "cross-section: profile= (*BEAM SECTION)",
             section.where,
         )
     ends = model.mesh.points[block.nodes]

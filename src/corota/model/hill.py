@@ -52,6 +52,8 @@ class Hill(Mises):
 
     oriented = True
 
+    for_lines = False
+
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.rate is not None or self.back_stresses:

@@ -86,6 +86,7 @@ class JohnsonCook(LawOfTheCore):
 
     law = "viscoplastic"
     depends_on_time = True
+    for_lines = True
     elastic_constants = 2
 
     def __post_init__(self) -> None:

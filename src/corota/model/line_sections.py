@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
     from corota.model.materials import Material
     from corota.model.sections import Section
+    from corota.profiles import Profile
 
     Ints = NDArray[np.int64]
 
@@ -38,7 +39,7 @@ class LineSections:
         Parameters
         ----------
         cells : str or array_like of int, shape (n,)
-        material : Elastic
+        material : Elastic, Mises or JohnsonCook
         area : float
             Cross-section [length^2].
         height : float, optional
@@ -51,9 +52,10 @@ class LineSections:
         cells: str | ArrayLike,
         *,
         material: Material,
-        area: float,
-        inertia: float,
-        shear_area: float = 0.0,
+        profile: Profile | None = None,
+        area: float | None = None,
+        inertia: float | None = None,
+        shear_area: float | None = None,
         height: float = 0.0,
     ) -> None:
         """Make two-node lines straight beams; their nodes get a rotation.
@@ -61,22 +63,47 @@ class LineSections:
         Parameters
         ----------
         cells : str or array_like of int, shape (n,)
-        material : Elastic
-        area : float
+        material : Elastic, Mises or JohnsonCook
+        profile : Profile, optional
+            Cross-section, such as ``ct.profiles.rectangle(2.0, 10.0)``; plastic beams need one.
+            Instead of it:
+        area : float, optional
             Cross-section [length^2].
-        inertia : float
+        inertia : float, optional
             Second moment of the cross-section [length^4].
         shear_area : float, optional
-            Shear area [length^2]; 0 for no shear deformation.
+            Shear area [length^2]; 0, the default without a profile, for no shear deformation.
         height : float, optional
             Height of the cross-section in the plane [length]: where its surfaces come into contact.
-            By default that of the rectangle with this area and second moment.
+            By default that of the profile, or of the rectangle with this area and second moment.
+
+        Raises
+        ------
+        InputError
+            If numbers are missing or outside their range.
         """
+        fibers: tuple[tuple[float, float, float], ...] = ()
+        fiber = 0.0
+        if profile is not None:
+            if area is not None or inertia is not None:
+                raise InputError("give a beam either a profile, or its area and inertia")
+            area, inertia = profile.area, profile.inertia
+            shear_area = profile.shear_area if shear_area is None else shear_area
+            height, fiber = height or profile.height, profile.fiber
+            fibers = profile.rows
+        if area is None or inertia is None:
+            raise InputError("a beam needs a profile, or its area and inertia")
+        shear_area = shear_area or 0.0
         if not (np.isfinite(inertia) and inertia > 0.0 and 0.0 <= shear_area < np.inf):
             raise InputError(
                 f"a beam needs inertia > 0 and shear_area >= 0, not {inertia} and {shear_area}"
             )
-        self._line(cells, "BEAM", material, (area, inertia, shear_area), height)
+        if not (material.linear or fibers):
+            raise InputError(
+                "a plastic beam needs the shape of its cross-section: "
+                "profile=ct.profiles.rectangle(width, height), or another one"
+            )
+        self._line(cells, "BEAM", material, (area, inertia, shear_area), height, fibers, fiber)
 
     def spring(self, cells: str | ArrayLike, stiffness: ArrayLike, dofs: str | None = None) -> None:
         """Make lines or points springs.
@@ -124,6 +151,8 @@ class LineSections:
         material: Material,
         profile: tuple[float, float, float],
         height: float,
+        fibers: tuple[tuple[float, float, float], ...] = (),
+        fiber: float = 0.0,
     ) -> None:
         from copy import deepcopy
 
@@ -134,5 +163,14 @@ class LineSections:
         if not (np.isfinite(height) and height >= 0.0):
             raise InputError(f"the height of a section must be >= 0, not {height}")
         where, law = self._cells(cells), deepcopy(material)
-        found = Section(where, element, law, profile[0], profile=profile, height=height)
+        found = Section(
+            where,
+            element,
+            law,
+            profile[0],
+            profile=profile,
+            height=height,
+            fibers=fibers,
+            fiber=fiber,
+        )
         self.sections.append(found)

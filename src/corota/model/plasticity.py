@@ -113,6 +113,7 @@ class Mises(LawOfTheCore):
 
     elastic_constants = 2
     law = "mises"
+    for_lines = True
 
     def __post_init__(self) -> None:
         self._check_isotropic(self.E, self.nu)

@@ -63,6 +63,9 @@ class Section(Brief):
         the dofs of both ends.
     table : tuple of pairs of float
         Elongation (or angle) and force of nonlinear springs, rising; empty for linear ones.
+    fibers : tuple of triples of float
+        Distance from the axis, area and initial stress of the fibers of a beam, see
+        :class:`corota.profiles.Profile`; plastic beams need them.
     height : float
         Height of the cross-section of a beam or truss in the plane [length], for contact; 0 for
         that of the rectangle with the same area and second moment.
@@ -87,6 +90,7 @@ class Section(Brief):
     beta0: float | None = field(default=None, kw_only=True)
     profile: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), kw_only=True)
     table: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
+    fibers: tuple[tuple[float, float, float], ...] = field(default=(), kw_only=True, repr=False)
     height: float = field(default=0.0, kw_only=True)
     #: Distance of the outer fibers of a beam from its axis [length], 0 if it is not known.
     fiber: float = field(default=0.0, kw_only=True, compare=False)

@@ -39,7 +39,7 @@ PIXELS_FROM = 60000
 
 
 #: Variables of line elements only.
-LINE_ONLY = ("N", "V", "M1", "M2")
+LINE_ONLY = ("N", "V", "M1", "M2", "PR1", "PR2")
 #: Cells' edges are drawn by default where cells are larger than this share of the picture.
 EDGES_FROM = 0.008
 

@@ -41,6 +41,9 @@ class PointFields(Brief):
     forces : ndarray, shape (n, k, m), or None
         Forces (and moments, m = 3) of the k nodes on each element in global axes; None if they were
         not recorded [force, force*length].
+    fibers : ndarray, shape (n, s, f, 3), or None
+        Axial stress, total strain and equivalent plastic strain of plastic beams at the stations
+        along the axis, the first and the last at the nodes, and at the fibers of the profile.
     """
 
     element: str
@@ -51,6 +54,7 @@ class PointFields(Brief):
     volume: Floats
     values: dict[str, Floats]
     forces: Floats | None = None
+    fibers: Floats | None = None
 
 
 @dataclass(repr=False)

@@ -178,6 +178,8 @@ _ROWS = (
     _number("N", "axial force", "force"),
     _number("M1", "moment at the first end", "force*length"),
     _number("M2", "moment at the second end", "force*length"),
+    _number("PR1", "plastic rotation of the first half", "rad"),
+    _number("PR2", "plastic rotation of the second half", "rad"),
 )  # fmt: skip
 #: The rows by their names.
 TABLE: dict[str, Variable] = {row.name: row for row in _ROWS}

@@ -175,6 +175,7 @@ def _join(group: list[PointFields]) -> PointFields:
         put([g.volume for g in group]),
         {name: put([g.values[name] for g in group]) for name in names},
         put([g.forces for g in group]),
+        None if one.fibers is None else put([g.fibers for g in group]),
     )
 
 

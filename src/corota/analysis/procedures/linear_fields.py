@@ -70,7 +70,10 @@ def _combine(base: PointFields, ahead: PointFields, behind: PointFields, h: floa
     forces = base.forces
     if forces is not None and ahead.forces is not None and behind.forces is not None:
         forces = forces + (ahead.forces - behind.forces) / (2.0 * h)
-    return replace(base, points=points, values=values, forces=forces)
+    fibers = base.fibers
+    if fibers is not None and ahead.fibers is not None and behind.fibers is not None:
+        fibers = fibers + (ahead.fibers - behind.fibers) / (2.0 * h)
+    return replace(base, points=points, values=values, forces=forces, fibers=fibers)
 
 
 def _second(base: Floats | float, ahead: Floats | float, behind: Floats | float, h: float):  # type: ignore[no-untyped-def]

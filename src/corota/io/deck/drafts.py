@@ -389,6 +389,8 @@ class LineDraft:
     material: str = ""
     elastic: Elastic | None = None
     profile: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    #: Distance, area and initial stress of the fibers of a beam.
+    fibers: tuple[tuple[float, float, float], ...] = ()
     #: Distance of the outer fibers from the axis, 0 if they are not alike.
     fiber: float = 0.0
     rows: list[Row] = field(default_factory=list)

@@ -230,29 +230,44 @@ def _picked(
     return place, owners, values
 
 
-def _at_fibers(model: Model, block: PointFields) -> Floats | None:
-    """Stress of beams at the outer fibers, shape (n, 4, 4); none if these are not known.
+#: Values of the fibers of plastic beams.
+FIBER_VALUES = ("S", "E", "PEEQ")
+
+
+def _at_fibers(model: Model, block: PointFields, name: str) -> Floats | None:
+    """Values of beams at the outer fibers, shape (n, 4, ...); none if these are not known.
 
     At the first end on the right of the way to the second and on the left, then at the second.
+    Elastic beams give the stress alone.
     """
-    if "M1" not in block.values or not len(block.cells):
+    if name not in FIBER_VALUES or "M1" not in block.values or not len(block.cells):
+        return None
+    if block.fibers is not None:
+        column = FIBER_VALUES.index(name)
+        stress = block.fibers[:, [0, 0, -1, -1], [0, -1, 0, -1], column]
+        if name == "PEEQ":
+            return stress
+    elif name != "S":
         return None
     cell = int(block.cells[0])
-    beams = [s for s in model.sections if s.element == "BEAM" and s.fiber > 0.0]
-    section = next((s for s in beams if cell in cells_of(model.mesh, s.cells)), None)
-    if section is None:
-        return None
     number, _ = model.mesh.locate(cell)
+    if block.fibers is None:
+        beams = [s for s in model.sections if s.element == "BEAM" and s.fiber > 0.0]
+        section = next((s for s in beams if cell in cells_of(model.mesh, s.cells)), None)
+        if section is None:
+            return None
+        area, inertia, _ = section.profile
+        axial = block.values["N"][:, :1] / area
+        bending = [block.values[m][:, :1] * section.fiber / inertia for m in ("M1", "M2")]
+        stress = np.hstack([axial + sign * b for b in bending for sign in (1.0, -1.0)])
     rows = block.cells - model.mesh.offsets[number]
     place = model.mesh.points[model.mesh.cells[number].nodes[rows]]
     along = place[:, 1] - place[:, 0]
     angle = np.arctan2(along[:, 1], along[:, 0]) + block.frame_rotation
     c, s = np.cos(angle), np.sin(angle)
-    area, inertia, _ = section.profile
-    axial = block.values["N"][:, :1] / area
-    bending = [block.values[name][:, :1] * section.fiber / inertia for name in ("M1", "M2")]
-    stress = np.hstack([axial + sign * b for b in bending for sign in (1.0, -1.0)])
-    direction = np.stack([c * c, s * s, np.zeros_like(c), c * s], axis=1)
+    # Of strain the shear is that of engineering.
+    shear = 2.0 if name == "E" else 1.0
+    direction = np.stack([c * c, s * s, np.zeros_like(c), shear * c * s], axis=1)
     return np.asarray(stress[:, :, None] * direction[:, None, :])
 
 
@@ -262,7 +277,7 @@ def _at_points(
     """Cell, point number (from 1) and value of every point of a set, in the set's order."""
 
     def take(block: PointFields) -> Floats | None:
-        if name == "S" and (fibers := _at_fibers(model, block)) is not None:
+        if (fibers := _at_fibers(model, block, name)) is not None:
             return fibers
         # Variables that a material does not have, such as plastic strain, are zero.
         return block.values.get(name, np.zeros_like(block.volume))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota import profiles
 from corota.arrays import distinct
 from corota.errors import InputError
 from corota.io.deck.drafts import LineDraft
@@ -27,9 +28,8 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints
     from corota.model.materials import Material
     from corota.model.model import Model
+    from corota.profiles import Profile
 
-#: Shear areas as fractions of the area (Cowper 1966, without Poisson's ratio).
-RECTANGLE, CIRCLE, TUBE = 5.0 / 6.0, 0.9, 0.5
 #: Degrees of freedom of decks in the plane, and their index here.
 PLANAR = {1: 0, 2: 1, 6: 2}
 
@@ -66,10 +66,14 @@ def _numbers(deck: Deck, card: Card, row: Row, names: Iterable[str]) -> list[flo
     return found
 
 
-def _out_of_plane(deck: Deck, card: Card, rows: list[Row]) -> bool | None:
-    """Whether the first axis of the section is normal to the plane; ``None`` after an error."""
+def _out_of_plane(deck: Deck, card: Card, rows: list[Row]) -> float | None:
+    """Component of the first axis of the section normal to the plane; ``None`` after an error.
+
+    With -1, the default, the second axis points to the left of the way from the first to the second
+    node; with 0 the first axis lies in the plane.
+    """
     if len(rows) < 2:
-        return True
+        return -1.0
     names = ("nx", "ny", "nz")
     values = [deck.real(card, rows[1], i, name, 0.0) for i, name in enumerate(names)]
     if None in values:
@@ -79,7 +83,7 @@ def _out_of_plane(deck: Deck, card: Card, rows: list[Row]) -> bool | None:
     if min(flat, size) > 1e-6 * max(flat, size) or max(flat, size) == 0.0:
         deck.row_error(card, rows[1], 0, "the first axis must lie in the plane or be normal to it")
         return None
-    return size > flat
+    return math.copysign(1.0, z) if size > flat else 0.0
 
 
 def _common(deck: Deck, card: Card, most: int) -> list[Row] | None:
@@ -117,7 +121,6 @@ def beam_section(deck: Deck, card: Card) -> None:
         return
     row = rows[0]
     names = SIZES[kind]
-    height = 0.0  # that of a rectangle follows from its profile
     if kind == "CIRC" and not row.get(1) and deck.dialect == "abaqus":
         deck.note(f"{row.where}: one number of a circle is its radius, as in Abaqus")
         radius = _numbers(deck, card, row, ("the radius",))
@@ -138,36 +141,59 @@ def beam_section(deck: Deck, card: Card) -> None:
         sizes = _numbers(deck, card, row, names)
     if sizes is None:
         return
-    fiber = 0.0
+    profile = _profile(deck, card, row, kind, sizes, normal)
+    if elset and material and profile is not None:
+        numbers = (profile.area, profile.inertia, profile.shear_area)
+        # The height of a rectangle follows from its numbers.
+        height = 0.0 if kind == "RECT" else profile.height
+        fiber = profile.fiber if kind in ("RECT", "CIRC", "PIPE") else 0.0
+        draft = LineDraft(
+            "beam",
+            card,
+            elset,
+            material,
+            profile=numbers,
+            fibers=profile.rows,
+            height=height,
+            fiber=fiber,
+        )
+        deck.scope.lines.append(draft)
+
+
+def _profile(
+    deck: Deck, card: Card, row: Row, kind: str, sizes: list[float], normal: float
+) -> Profile | None:
+    """Cross-section of ``*BEAM SECTION``; ``None`` after an error."""
+    if kind in ("RECT", "CIRC"):
+        across, depth = sizes if normal else sizes[::-1]
+        if kind == "RECT":
+            return profiles.rectangle(across, depth)
+        return profiles.circle(depth, width=across)
     if kind == "PIPE":
-        fiber = sizes[0]
-        outer, inner = sizes[0], sizes[0] - sizes[1]
-        if inner < 0.0:
+        if sizes[1] > sizes[0]:
             deck.row_error(card, row, 1, "the thickness exceeds the radius")
-            return
-        area = math.pi * (outer**2 - inner**2)
-        profile = (area, 0.25 * math.pi * (outer**4 - inner**4), TUBE * area)
-        height = 2.0 * outer
-    elif kind == "BOX":
-        # Walls right, top, left, bottom of a box of width a and height b along the two axes.
+            return None
+        return profiles.pipe(*sizes)
+    # Rectangles by width, height and center along the two axes.
+    if kind == "BOX":
+        # Walls right, top, left, bottom of a box of width a and height b.
         a, b, right, top, left, bottom = sizes
+        if a <= left + right or b <= top + bottom:
+            deck.row_error(card, row, 2, "the walls fill the box")
+            return None
+        inside, middle = a - left - right, 0.5 * (left - right)
         walls = [
             (right, b, 0.5 * (a - right), 0.0),
             (left, b, 0.5 * (left - a), 0.0),
-            (a - left - right, top, 0.5 * (left - right), 0.5 * (b - top)),
-            (a - left - right, bottom, 0.5 * (left - right), 0.5 * (bottom - b)),
+            (inside, top, middle, 0.5 * (b - top)),
+            (inside, bottom, middle, 0.5 * (bottom - b)),
         ]
-        if a <= left + right or b <= top + bottom:
-            deck.row_error(card, row, 2, "the walls fill the box")
-            return
-        profile = _of_walls(walls, normal)
-        height = b if normal else a
-    elif kind == "I":
+    else:
         # Height, then width of the lower and the upper flange and the three thicknesses.
         at, tall, low, high, t_low, t_high, web = sizes
         if tall <= t_low + t_high:
             deck.row_error(card, row, 1, "the flanges fill the height")
-            return
+            return None
         mid = tall - t_low - t_high
         walls = [
             (low, t_low, 0.0, 0.5 * t_low),
@@ -183,41 +209,11 @@ def beam_section(deck: Deck, card: Card) -> None:
                 "the axis of a beam passes through its nodes: the node must be at the center, "
                 f"{center:g}",
             )
-            return
-        profile = _of_walls(walls, normal)
-        height = tall if normal else max(low, high)
-    else:
-        across, depth = sizes if normal else sizes[::-1]
-        fiber = 0.5 * depth
-        if kind == "RECT":
-            area = across * depth
-            profile = (area, area * depth**2 / 12.0, RECTANGLE * area)
-        else:
-            area = 0.25 * math.pi * across * depth
-            profile = (area, area * depth**2 / 16.0, CIRCLE * area)
-            height = depth
-    if elset and material:
-        draft = LineDraft(
-            "beam", card, elset, material, profile=profile, height=height, fiber=fiber
-        )
-        deck.scope.lines.append(draft)
-
-
-def _of_walls(
-    walls: list[tuple[float, float, float, float]], normal: bool
-) -> tuple[float, float, float]:
-    """Area, second moment and shear area of rectangles: width, height, and center (x, y).
-
-    The first axis is normal to the plane: bending is along the height; else along the width.
-    """
-    if not normal:
-        walls = [(h, w, y, x) for w, h, x, y in walls]
-    area = sum(w * h for w, h, _, _ in walls)
-    center = sum(w * h * y for w, h, _, y in walls) / area
-    inertia = sum(w * h**3 / 12.0 + w * h * (y - center) ** 2 for w, h, _, y in walls)
-    # The walls that are higher than wide carry the shear force.
-    shear = sum(w * h for w, h, _, _ in walls if h > w) or RECTANGLE * area
-    return area, inertia, shear
+            return None
+    # The second axis points to the left, unless the first points out of the plane.
+    side = 1.0 if normal <= 0.0 else -1.0
+    parts = [(w, side * y, h) if normal else (h, x, w) for w, h, x, y in walls]
+    return profiles.of_rectangles([(w, y - 0.5 * h, y + 0.5 * h) for w, y, h in parts])
 
 
 def beam_general_section(deck: Deck, card: Card) -> None:
@@ -237,7 +233,7 @@ def beam_general_section(deck: Deck, card: Card) -> None:
         return
     normal = _out_of_plane(deck, card, rows)
     area = _numbers(deck, card, rows[0], ("the area",))
-    column = 1 if normal else 3
+    column = 3 if normal == 0.0 else 1
     inertia = deck.real(card, rows[0], column, "the second moment of area")
     moduli = _numbers(deck, card, rows[2], ("Young's modulus", "the shear modulus"))
     if normal is None or area is None or inertia is None or moduli is None:
@@ -309,7 +305,9 @@ def truss_section(
     """Trusses of a ``*SOLID SECTION``, whose number is their area."""
     if not material.for_lines:
         deck.error(
-            draft.card, draft.card.at("MATERIAL"), "trusses take isotropic *ELASTIC material only"
+            draft.card,
+            draft.card.at("MATERIAL"),
+            "trusses take isotropic *ELASTIC material, with *PLASTIC, only",
         )
         return None
     area = draft.thickness
@@ -331,7 +329,9 @@ def _section(
     if material is None:
         return None
     if not material.for_lines:
-        deck.error(card, card.at("MATERIAL"), "beams take isotropic *ELASTIC material only")
+        deck.error(
+            card, card.at("MATERIAL"), "beams take isotropic *ELASTIC material, with *PLASTIC, only"
+        )
         return None
     area, inertia, shear = draft.profile
     if type_ in ("B23", "B33"):
@@ -344,6 +344,7 @@ def _section(
         area,
         where=card.where,
         profile=profile,
+        fibers=draft.fibers,
         height=draft.height,
         fiber=draft.fiber,
     )

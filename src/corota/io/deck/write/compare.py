@@ -193,6 +193,9 @@ def _section(model: Model, section: Section) -> dict[str, Any]:
         # Lines have neither plane nor local strain; a general section has its own material.
         for name in ("plane", "local_strain", "orientation"):
             del found[name]
+        if section.material.linear:
+            # An elastic beam is known by its numbers.
+            del found["fibers"]
     if section.element.startswith("SPRING"):
         return found
     material = _material(section.material)

@@ -6,12 +6,19 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from corota.errors import UnsupportedError
-from corota.io.deck.cards.lines import PLANAR, RECTANGLE
+from corota.io.deck.cards.lines import PLANAR
 from corota.model.materials import Elastic
+from corota.profiles import RECTANGLE, rectangle
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from corota.model.sections import Section
+
+    Floats = NDArray[np.float64]
 
 #: Element types of decks by our names.
 LINE_TYPES = {
@@ -52,8 +59,11 @@ def line_cards(section: Section, elset: str, material: str) -> str:
 
 def _beam(section: Section, elset: str, material: str) -> str:
     area, inertia, shear = (float(v) for v in section.profile)
-    if math.isclose(shear, RECTANGLE * area, rel_tol=1e-12):
-        depth = math.sqrt(12.0 * inertia / area)
+    depth = math.sqrt(12.0 * inertia / area)
+    # An elastic beam is known by its numbers, a plastic one by its fibers.
+    fibers = np.array(section.fibers)
+    known = section.material.linear or _alike(fibers, rectangle(area / depth, depth).fibers)
+    if known and math.isclose(shear, RECTANGLE * area, rel_tol=1e-12):
         head = f"*BEAM SECTION, ELSET={elset}, MATERIAL={material}, SECTION=RECT\n"
         return head + f"{area / depth!r}, {depth!r}\n0., 0., -1.\n"
     law = section.material
@@ -68,7 +78,14 @@ def _beam(section: Section, elset: str, material: str) -> str:
     raise UnsupportedError(
         f"a beam with area {area:g}, second moment {inertia:g} and shear area {shear:g} has no "
         "card in a deck: take a shear area of 5/6 of the area, or none, or keep the model in Python"
+        if section.material.linear
+        else "of plastic beams decks take rectangles without initial stress, in the default "
+        "layers, with their shear area: keep the model in Python"
     )
+
+
+def _alike(one: Floats, other: Floats) -> bool:
+    return one.shape == other.shape and np.allclose(one, other, rtol=1e-9, atol=0.0)
 
 
 __all__ = ["LINE_TYPES", "line_cards"]
