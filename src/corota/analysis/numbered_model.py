@@ -96,6 +96,8 @@ class NumberedModel:
         if self.communicator.size > 1:
             # All processes number the dofs of all elements.
             extra = np.maximum(extra if len(extra) else 0, carried).astype(np.uint8)
+        #: Dofs of each node beside those of its elements.
+        self.extra_dofs = extra
         try:
             self.core = _core.Problem(mesh.points, inputs, extra)
         except ValueError as error:

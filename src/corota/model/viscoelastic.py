@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
+    Complex = NDArray[np.complex128]
 
 #: Numbers of the parents' laws in the core.
 PARENTS = ("elastic", "polynomial", "ogden", "arruda_boyce", "hyperfoam")
@@ -172,6 +173,26 @@ class Viscoelastic(SinglePoint):
         g, k, tau = np.array(self.terms, dtype=np.float64).T
         gone = -np.expm1(-t / tau)
         return 1.0 - gone @ g, 1.0 - gone @ k
+
+    def complex_moduli(self, rate: ArrayLike) -> tuple[Complex, Complex]:
+        """Shear and bulk modulus in harmonic motion over the instantaneous ones.
+
+        Parameters
+        ----------
+        rate : array_like
+            Circular frequencies [rad/time].
+
+        Returns
+        -------
+        tuple of ndarray
+            Real parts are the storage, imaginary parts the loss moduli.
+        """
+        g, k, tau = np.array(self.terms, dtype=np.float64).T
+        w = np.asarray(rate, dtype=np.float64)[..., None]
+        # Nothing relaxes in an infinite time.
+        left = 0.0 if self._factor == np.inf else 1.0 / (1.0 + 1j * w * tau * self._factor)
+        left = np.broadcast_to(left, (*w.shape[:-1], len(tau)))
+        return 1.0 - left @ g, 1.0 - left @ k
 
     @property
     def _factor(self) -> float:

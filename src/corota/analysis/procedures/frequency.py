@@ -16,6 +16,7 @@ import numpy as np
 
 from corota.analysis.linear.eigen import quadratic_modes, symmetric_modes, unsymmetric_modes
 from corota.analysis.procedures.motion_start import check_density
+from corota.analysis.terms.complex_stiffness import relaxing_note
 from corota.analysis.terms.linearized import LinearMotion
 from corota.errors import ModelError
 from corota.model.paths import Modes
@@ -75,6 +76,8 @@ def frequency_step(
             )
     if not len(values):
         raise ModelError(f"no free dof in frequency step {number} has mass", step.where)
+    if note := relaxing_note(system):
+        state.notes.append(f"frequency step {number}: {note}")
     modes = _modes(lin, values, shapes, number, step.complex_modes or not lin.symmetric)
     state.modes.append(modes)
     state.linear = lin

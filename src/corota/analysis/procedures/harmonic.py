@@ -14,6 +14,7 @@ from corota.analysis.linear.factor import Factor
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.modal import supported
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
+from corota.analysis.terms.complex_stiffness import ComplexStiffness
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.linearized import LinearMotion, spin
 from corota.errors import ModelError, SingularError
@@ -92,11 +93,20 @@ class HarmonicStepper:
             own = modes.factors
         self.lin, self.frequencies = lin, step.sweep(own)
         self.loads, self.moves = _amplitudes(system, lin, step, number, self.frequencies)
+        rates = 2.0 * math.pi * np.asarray(self.frequencies)
+        self.relaxed = ComplexStiffness(lin, rates)
         self.answer: Answer
         if step.direct:
-            self.answer = _direct(lin, step, number)
+            self.answer = _direct(lin, step, number, self.relaxed)
         else:
-            self.answer = _by_modes(system, state, step, number, self.loads, self.moves)
+            self.answer = _by_modes(
+                system, state, step, number, self.loads, self.moves, self.relaxed
+            )
+        if self.relaxed:
+            state.notes.append(
+                f"in harmonic step {number} viscoelastic materials have their complex moduli; "
+                "stress and energy of the elements are those of the instantaneous ones"
+            )
         self.fields = LinearFields(system, lin.u)
         self.taken = 0
 
@@ -125,6 +135,8 @@ class HarmonicStepper:
         state.u = lin.u + response.real
         state.v, state.a = (1j * w * response).real, -(w**2) * response.real
         forces = (lin.stiffness - w**2 * lin.mass) @ z + 1j * w * (lin.damping(step.rayleigh) @ z)
+        if self.relaxed:
+            forces = forces + self.relaxed.at(w) @ z
         state.at = supported(lin, forces.real, lin.at.external + load.real)
         state.step_time = f
         state.recover = lambda: self.fields.at(response.real)
@@ -169,7 +181,13 @@ def _amplitudes(
 
 
 def _by_modes(
-    system: System, state: State, step: SteadyState, number: int, loads: Complex, moves: Complex
+    system: System,
+    state: State,
+    step: SteadyState,
+    number: int,
+    loads: Complex,
+    moves: Complex,
+    relaxed: ComplexStiffness,
 ) -> Answer:
     """Response by superposition of the modes of the last frequency step."""
     patterns = [Patterns(system.n_dofs), Patterns(system.n_dofs)]
@@ -186,6 +204,10 @@ def _by_modes(
         scale = np.maximum(np.abs(np.diag(model.stiffness)), w**2)
         c, s = forces.T @ load, constrained.T @ move
         rhs = model.load @ c + (w**2 * model.carried - 1j * w * model.dragged) @ s
+        if relaxed:
+            change = relaxed.at(w)
+            matrix = matrix + model.shapes.T @ (model.lin.sub(change) @ model.shapes)
+            rhs = rhs - model.shapes.T @ (model.lin.coupled(change, model.static) @ s)
         if (np.abs(np.diag(matrix)) <= RESONANCE * scale).any():
             raise _resonance(step, number, w)
         try:
@@ -198,7 +220,7 @@ def _by_modes(
     return answer
 
 
-def _direct(lin: LinearMotion, step: SteadyState, number: int) -> Answer:
+def _direct(lin: LinearMotion, step: SteadyState, number: int, relaxed: ComplexStiffness) -> Answer:
     """Response of the whole model: a real system of twice the size at each frequency."""
     c = lin.damping(step.rayleigh)
     k, m, damping = (lin.sub(x) for x in (lin.stiffness, lin.mass, c))
@@ -215,16 +237,23 @@ def _direct(lin: LinearMotion, step: SteadyState, number: int) -> Answer:
         h = lin.restrict(move)
         z: Complex = h.copy()
         dynamic = lin.stiffness - w**2 * lin.mass
+        lossy, loss = damped, w * damping
+        if relaxed:
+            change = relaxed.at(w)
+            dynamic = dynamic + change
+            part = lin.sub(change)
+            lossy, loss = True, loss + part.imag
         rhs = _complex_gather(lin, load) - (dynamic @ h + 1j * w * (c @ h))[lin.active]
         a = k - w**2 * m
+        if relaxed:
+            a = a + part.real
         try:
-            if not damped or w == 0.0:
+            if not lossy or w == 0.0:
                 factor = lin.factor(a, lin.symmetric)
                 both = factor.solve(np.asfortranarray(np.stack([rhs.real, rhs.imag], axis=1)))
                 x = both[:, 0] + 1j * both[:, 1]
             else:
-                b = w * damping
-                whole = sp.block_array([[a, -b], [-b, -a]], format="csr")
+                whole = sp.block_array([[a, -loss], [-loss, -a]], format="csr")
                 whole = whole[order][:, order].tocsc()
                 factor = Factor(whole, symmetric, node, multiplier, threads)
                 both = factor.solve(np.concatenate([rhs.real, -rhs.imag])[order])

@@ -13,6 +13,7 @@ from corota.analysis.newton import ElementFailure
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes
+from corota.analysis.terms.complex_stiffness import relaxing_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,6 +53,8 @@ def modal_step(
     ModelError
         If there are no modes.
     """
+    if note := relaxing_note(system):
+        state.notes.append(f"modal step {number}: {note}; a Dynamic step relaxes them")
     loop = IncrementLoop(system, step, number, state, observers, save)
     loop.run(ModalStepper(loop, step, stops))
     state.recover = None
