@@ -98,7 +98,7 @@ def _run(command: str, args: object, terminal: Terminal) -> int:
         # At the end of a chain of imports, calls within NumPy's cross the end of a block of
         # Python's stack a thousand times, and each time the system has to map another one.
         import_module("numpy")
-        run = import_module(f"corota.cli.{command}").run
+        run = import_module(f"corota.cli.{command.replace('-', '_')}").run
         if command not in READING:
             collect_garbage()
         return int(run(args, terminal))

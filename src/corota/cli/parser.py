@@ -45,6 +45,11 @@ class Help(argparse.HelpFormatter):
 class Overview(Help, argparse.RawDescriptionHelpFormatter):
     """The same, with line breaks as they are."""
 
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog)
+        # The names of commands are indented twice, which the base class does not count.
+        self._action_max_length = max(map(len, COMMANDS)) + 4
+
 
 class Parser(argparse.ArgumentParser):
     """Parser that ends with exit code 64 and a pointer to the help."""
@@ -231,6 +236,19 @@ def _demo(parser: argparse.ArgumentParser) -> None:
 
 def _check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("deck", help="input deck (.inp) or mesh (.msh)")
+    _reading(parser)
+
+
+def _check_material(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", help="input deck (.inp), or Python file (.py) with materials")
+    parser.add_argument("--name", default="", help="one material by its name; else all")
+    parser.add_argument("--plane", choices=("stress", "strain", "both"), default="both")
+    parser.add_argument(
+        "--strain",
+        type=float,
+        help="largest strain (default: ten times that of first yield, or 0.02)",
+    )
+    parser.add_argument("--plot", metavar="FILE", help="picture of stress against strain")
     _reading(parser)
 
 
@@ -506,6 +524,7 @@ COMMANDS = {
     "mesh": ("Mesh the outline of a drawing (.dxf) or of a planar face (.step).", _mesh),
     "demo": ("Run a built-in example; needs no file and no network.", _demo),
     "check": ("Check a deck or mesh without solving it.", _check),
+    "check-material": ("Drive material laws through strain paths.", _check_material),
     "plot": ("Draw results (.vtkhdf), or a model with --model.", _plot),
     "report": ("Write an HTML report from the files of a job.", _report),
     "watch": ("Watch a run in progress, in a browser or in the terminal.", _watch),
