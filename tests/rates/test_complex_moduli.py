@@ -89,7 +89,7 @@ def test_resonance_of_a_damped_flexure(terms: Any) -> None:
     model.section("all", element="Q8R", material=material, thickness=thick)
     model.fix("left", x=0.0, y=None)
     model.fix("left", x=None, y=1.0)
-    step = ct.SteadyState(lowest=60.0, highest=160.0, points=21, direct=True)
+    step = ct.SteadyState(lowest=60.0, highest=160.0, points=51, direct=True)
     results = ct.solve(model, step)
     tip = int(np.argmin(np.hypot(*(mesh.points - [length, 0.5 * height]).T)))
     found, expected = [], []

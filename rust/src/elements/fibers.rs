@@ -12,6 +12,7 @@ use super::line::{Row, add, apply};
 use crate::base::Real;
 use crate::base::small::{Mat, ldlt, ldlt_solve};
 use crate::kinematics::integrate::{History, KEPT, Local, Section};
+use std::cmp::Ordering;
 
 /// Points along a beam.
 pub const STATIONS: usize = 5;
@@ -135,6 +136,45 @@ struct Kinematics<T> {
     curvature: T,
     by_strain: [T; ALL],
     by_curvature: [T; ALL],
+}
+
+/// Remove what is left of the modes' force by its linear part, and the modes.
+#[allow(clippy::too_many_arguments)]
+#[inline(always)]
+fn condense<T: Real>(
+    sums: &Sums<T>,
+    factor: &Mat<T, MODES>,
+    mut modes: [T; MODES],
+    step: [T; MODES],
+    section: &Section<2>,
+    history: &mut History<'_>,
+    failed: T::Mask,
+) -> ([T; BASIC], Mat<T, BASIC>, T::Mask) {
+    let zero = T::zero();
+    let mut memory = history.memory(section);
+    for m in 0..MODES {
+        modes[m] += -step[m];
+        memory.set(m, modes[m]);
+    }
+    let (mut force, mut stiffness) = ([zero; BASIC], [[zero; BASIC]; BASIC]);
+    for b in 0..BASIC {
+        let mut column = [zero; MODES];
+        force[b] = sums.force[b];
+        for m in 0..MODES {
+            column[m] = sums.stiffness[BASIC + m][b];
+            force[b] = (-column[m]).fma(step[m], force[b]);
+        }
+        ldlt_solve(factor, MODES, &mut column);
+        for a in b..BASIC {
+            let mut v = sums.stiffness[a][b];
+            for m in 0..MODES {
+                v = (-sums.stiffness[BASIC + m][a]).fma(column[m], v);
+            }
+            stiffness[a][b] = v;
+            stiffness[b][a] = v;
+        }
+    }
+    (force, stiffness, failed)
 }
 
 impl<T: Real> Deformed<T> {
@@ -287,7 +327,7 @@ impl<T: Real> Deformed<T> {
             let open = T::real(0.5).lt(T::select(end, zero, T::one()));
             if !T::any(open) || round == MAX_ITERATIONS {
                 let failed = T::or(sums.failed, open);
-                return self.condense(&sums, &factor, modes, step, section, history, failed);
+                return condense(&sums, &factor, modes, step, section, history, failed);
             }
             let better = along.lt(start.scale(-OVERSHOT));
             let small = T::and(better, work.lt(square.scale(SMALL).max(zero_work)));
@@ -309,46 +349,6 @@ impl<T: Real> Deformed<T> {
             }
             round += 1;
         }
-    }
-
-    /// Remove what is left of the modes' force by its linear part, and the modes.
-    #[allow(clippy::too_many_arguments)]
-    #[inline(always)]
-    fn condense(
-        &self,
-        sums: &Sums<T>,
-        factor: &Mat<T, MODES>,
-        mut modes: [T; MODES],
-        step: [T; MODES],
-        section: &Section<2>,
-        history: &mut History<'_>,
-        failed: T::Mask,
-    ) -> ([T; BASIC], Mat<T, BASIC>, T::Mask) {
-        let zero = T::zero();
-        let mut memory = history.memory(section);
-        for m in 0..MODES {
-            modes[m] += -step[m];
-            memory.set(m, modes[m]);
-        }
-        let (mut force, mut stiffness) = ([zero; BASIC], [[zero; BASIC]; BASIC]);
-        for b in 0..BASIC {
-            let mut column = [zero; MODES];
-            force[b] = sums.force[b];
-            for m in 0..MODES {
-                column[m] = sums.stiffness[BASIC + m][b];
-                force[b] = (-column[m]).fma(step[m], force[b]);
-            }
-            ldlt_solve(factor, MODES, &mut column);
-            for a in b..BASIC {
-                let mut v = sums.stiffness[a][b];
-                for m in 0..MODES {
-                    v = (-sums.stiffness[BASIC + m][a]).fma(column[m], v);
-                }
-                stiffness[a][b] = v;
-                stiffness[b][a] = v;
-            }
-        }
-        (force, stiffness, failed)
     }
 
     /// Force and stiffness of the nodes, by the rows of the basic deformations.
@@ -434,9 +434,13 @@ impl Deformed<f64> {
             }
             let plastic =
                 (at.curvature - moment / (young * inertia)) * station.weight * self.length;
-            for (end, part) in [1.0 - station.at, station.at].into_iter().enumerate() {
-                found.hinges[end] += plastic * if part == 0.5 { 0.5 } else { part.round() };
-            }
+            let first = match p.cmp(&(STATIONS / 2)) {
+                Ordering::Less => 1.0,
+                Ordering::Equal => 0.5,
+                Ordering::Greater => 0.0,
+            };
+            found.hinges[0] += plastic * first;
+            found.hinges[1] += plastic * (1.0 - first);
         }
         found
     }
