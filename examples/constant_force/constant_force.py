@@ -1,6 +1,6 @@
 """A constant-force flexure, found by its shape with exact gradients.
 
-A curved beam is clamped at one end and guided at the other, which moves down by 4 mm. A straight
+A curved beam is clamped at one end and guided at the other, which moves down by 3 mm. A straight
 beam would resist more and more; a curved one snaps. Between both lies a shape whose force stays the
 same over most of the way: it protects what it presses on, without a sensor. The rise of the center
 line and the depth at four stations are found by :func:`corota.optimize`; each design is one
@@ -22,13 +22,14 @@ import corota as ct
 from corota import gradients
 
 #: Span, way of the guided end, wanted force [mm, N]; sheet [mm] of nylon [MPa].
-SPAN, WAY, FORCE = 40.0, 4.0, 3.0
+SPAN, WAY, FORCE = 40.0, 3.0, 1.0
 SHEET, YOUNG, POISSON = 5.0, 1800.0, 0.4
 #: Increments of the way, and the first whose force counts.
 INCREMENTS, FIRST = 10, 4
-#: Rise of the center line and depths at four stations [mm]: start and bounds.
-START = (2.5, 0.8, 0.8, 0.8, 0.8)
-BOUNDS = ((0.2, 6.0), *(((0.4, 1.6),) * 4))
+#: Rise of the center line and depths at four stations [mm]: start and bounds. The clamped end is
+#: thin: shapes that are stiff at both ends have even forces too, but buckle on the way.
+START = (5.0, 0.5, 0.7, 0.9, 1.1)
+BOUNDS = ((0.2, 8.0), (0.4, 0.6), *(((0.4, 1.6),) * 3))
 
 
 def flexure(x: np.ndarray, cells: int = 16) -> ct.Model:
@@ -48,7 +49,7 @@ def flexure(x: np.ndarray, cells: int = 16) -> ct.Model:
     )
     model = ct.Model(mesh, name="constant force")
     material = ct.Elastic(E=YOUNG, nu=POISSON)
-    model.section("all", element="Q8", material=material, thickness=SHEET)
+    model.section("all", element="Q8R", material=material, thickness=SHEET)
     model.fix("left")
     model.fix("right", y=-WAY)
     model.steps = [ct.Static(increments=INCREMENTS, fixed_increments=True)]
@@ -102,6 +103,7 @@ def main(arguments: list[str]) -> int:
     for way, before, after, finer in rows:
         print(f"{way:5.2f} {before:9.4f} {after:9.4f} {finer:9.4f}")
     results = ct.solve(flexure(found.x, 32))
+    print("stable on the whole way:", bool(results.history("stable").min() > 0.0))
     results.plot("MISES", path=given.out / "shape.png")
     return 0
 

@@ -77,8 +77,11 @@ def examine(model: Model) -> tuple[list[Diagnostic], int]:
         found += check_cells(model) + check_units(model)
         if complete and model.steps:
             found, code = _by_start(model, found)
-        elif complete and _plain(model):
-            found += check_rigid(model)
+        else:
+            text = "there are no steps, so the start of a run is not tried: check(step) tries it"
+            found.append(Diagnostic("note", text))
+            if complete and _plain(model):
+                found += check_rigid(model)
     elif model.mesh.n_cells:
         # A mesh alone is not checked as a model.
         found += [replace(d, severity="note") for d in check_sections(model)[0]]

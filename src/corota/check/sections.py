@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from corota.model.sections import Section
     from corota.model.steps import Step
 
+#: Cells up to which a run looks for elements that lock.
+MOST_CELLS = 100_000
 #: Squared outline over area above which a part counts as slender (a strip 4 times its width).
 SLENDER = 25.0
 
@@ -49,6 +51,23 @@ def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
             verb = f"and {len(bad) - 1} others have" if len(bad) > 1 else "has"
             found.append(Diagnostic("error", f"element {labels[bad[0]]} {verb} {text}", hint=hint))
     return found, fits and bool((count == 1).all()) and mesh.n_cells > 0
+
+
+def locking(model: Model) -> list[Diagnostic]:
+    """Sections whose elements lock, as :func:`corota.check.check` finds them, before a run.
+
+    Meshes of more than :data:`MOST_CELLS` are left to the check.
+    """
+    if model.mesh.n_cells > MOST_CELLS:
+        return []
+    return [
+        diagnostic
+        for section in model.sections
+        for diagnostic in _locking(
+            model.mesh, section, cells_of(model.mesh, section.cells), model.steps
+        )
+        if diagnostic.severity == "warning"
+    ]
 
 
 def _wrong_shape(mesh: Mesh, section: Section, cells: Ints) -> Diagnostic | None:

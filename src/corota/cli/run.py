@@ -17,6 +17,7 @@ from corota.cli.progress import Progress, duration
 from corota.cli.reading import read_input
 from corota.cli.together import together
 from corota.errors import CorotaError, ModelError
+from corota.model import elements
 from corota.results.observer import BaseObserver
 
 if TYPE_CHECKING:
@@ -131,6 +132,10 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
         f"{counted(mesh.n_nodes, 'node')}, {counted(mesh.n_cells, 'element')}, "
         f"{counted(len(model.steps), 'step')}, read in {duration(read)}"
     )
+    if any(elements.find(section.element).bending_cells for section in model.sections):
+        from corota.check.sections import locking
+
+        model.notes += [f"{found.message}: {found.hint}" for found in locking(model)]
     for note in model.notes:
         terminal.line(f"  note: {note}")
     if not model.steps:

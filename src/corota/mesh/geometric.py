@@ -178,7 +178,7 @@ def is_area(name: str) -> bool:
 def _name(kind: str, *numbers: float) -> str:
     if len(numbers) != len(_ARGUMENTS[kind].split(",")):
         raise InputError(f"{kind} takes {_ARGUMENTS[kind]}: points are pairs of numbers")
-    return f"{kind}({', '.join(f'{float(v)!r}' for v in numbers)})"
+    return f"{kind}({', '.join(f'{float(v):.9g}' for v in numbers)})"
 
 
 def _size(points: Floats) -> float:

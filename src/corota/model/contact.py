@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     from corota.mesh.data import Mesh
 
-    Reference = int | tuple[float, float] | None
+    Reference = int | str | tuple[float, float] | None
 
 #: Largest friction coefficient: no pressure lets surfaces slip with it.
 MOST_FRICTION = 1e6
@@ -50,6 +50,7 @@ class RigidCurve(Brief):
         Rows x0, y0, x1, y1, cx, cy, sweep in the reference configuration: a straight line from
         (x0, y0) to (x1, y1) where sweep is 0, else an arc about (cx, cy) from (x0, y0) through
         the angle sweep [rad], counter-clockwise if positive.
+<<<<<<< HEAD
     reference : int, tuple of float or None
         Node (index) that carries the curve: it can be moved, rotated, loaded or fixed like any
         node; its
@@ -57,6 +58,12 @@ class RigidCurve(Brief):
     turns : bool
         Whether the curve turns with its node. Otherwise it moves along with it only, and the node
         needs no rotation.
+=======
+    reference : int, str, tuple of float or None
+        Node that carries the curve, by its index or the name of a set that has it alone: it can be
+        moved, rotated, loaded or fixed like any node; its reaction is that of the curve. A point,
+        or None: the curve is fixed.
+>>>>>>> 8dd61088 (How-to pages: cable clip, detent, hose clamp, constant force, crushed tube, drop of a corner)
     """
 
     segments: Floats

@@ -339,8 +339,11 @@ class Model(Loading, LineSections, InitialFields, Stages):
         given = None if weights is None else np.asarray(weights, dtype=np.float64)
         self.constraints.append(Coupling(where, self._node(reference), kind, chosen, given))
 
-    def rigid(self, nodes: str | ArrayLike, reference: int) -> None:
-        """Make nodes (a set, a list of sets, indices) one rigid body with a reference node."""
+    def rigid(self, nodes: str | ArrayLike, reference: int | str) -> None:
+        """Make nodes (a set, a list of sets, indices) one rigid body with a reference node.
+
+        The reference node is given by its index, or by the name of a set that has it alone.
+        """
         self.constraints.append(
             Coupling(self._nodes(nodes), self._node(reference), name="rigid body")
         )
@@ -446,13 +449,15 @@ class Model(Loading, LineSections, InitialFields, Stages):
     ) -> None:
         """Define contact of two surfaces, or of one and a rigid curve; see ``docs/contact.md``.
 
-        A surface is an edge set, a cell set of beams or trusses, or, as slave, a node set.
+        A surface is an edge set, or a list of edge sets that are one surface, a cell set of beams
+        or trusses, or, as slave, a node set.
 
         The parameters are those of :class:`corota.model.contact.ContactPair`; the same set twice
-        gives
-        self-contact.
+        gives self-contact.
         """
         other = master if isinstance(master, RigidCurve) else self._surface(master)
+        if isinstance(other, RigidCurve) and isinstance(other.reference, str):
+            other = replace(other, reference=self._node(other.reference))
         self.contacts.append(
             ContactPair(
                 self._surface(slave),
@@ -573,6 +578,11 @@ class Model(Loading, LineSections, InitialFields, Stages):
         self.loads += force.on(self.mesh)
 
     def _node(self, node: object) -> int:
+        if isinstance(node, str):
+            nodes = self.mesh.nodes_of(self.mesh.set_name(node))
+            if len(nodes) != 1:
+                raise InputError(f"one node is expected; {node!r} has {len(nodes)}")
+            return int(nodes[0])
         return selection.one(node, "node", self.mesh.n_nodes)
 
     def _nodes(self, where: str | ArrayLike) -> str | Ints:

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -96,7 +97,10 @@ def shared_label(names: Sequence[str], units: Units) -> str:
 
 
 def axis_label(name: str, units: Units | None = None) -> str:
-    """Name of a history with its meaning and unit."""
+    """Name of a history with its meaning and unit; a factor stands before it."""
+    multiple = re.fullmatch(r"\((-|-?[\d.e+-]+ \* )([^()]+(?:\([^()]*\))?)\)", name)
+    if multiple:
+        return multiple[1] + axis_label(multiple[2], units)
     named_units = units or Units()
     variable, _, place = name.partition(" at ")
     what = described(variable, named_units)

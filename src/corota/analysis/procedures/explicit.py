@@ -222,6 +222,7 @@ class ExplicitStepper:
         state.a = np.where(constrained, given_a, a)
         state.reaction = np.where(constrained, residual + mass * given_a, 0.0)
         scalars = {"kinetic energy": first, "external work": account.work}
+        scalars |= momenta(system, mass, state.u, state.v)
         loop.show_start(scalars | self.contact.sums())
 
     def _increment(self) -> float:
