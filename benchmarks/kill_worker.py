@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from corota.analysis.parallel.communicator import ALONE
 from corota.cli import main as corota
 from corota.cli.run import carry_out
 from corota.cli.terminal import Terminal
@@ -165,9 +166,12 @@ def _model(case: Case, folder: Path, every: int, resume: bool) -> int:
         if resume:
             saved, _ = newest(folder / JOB)
             model, steps = model_of(saved, case.build() if saved.model is None else None)
-            return carry_out(model, steps, files_of(saved), terminal, args, begin, saved.state)
+            files = files_of(saved)
+            return carry_out(
+                model, steps, files, terminal, args, begin, saved.state, communicator=ALONE
+            )
         files = JobFiles(folder, JOB, checkpoint_every=every, checkpoint_seconds=0.0)
-        return carry_out(case.build(), None, files, terminal, args, begin)
+        return carry_out(case.build(), None, files, terminal, args, begin, communicator=ALONE)
     except CorotaError as error:
         terminal.error(str(error))
         return error.exit_code
@@ -212,16 +216,16 @@ def _arm(strike: Strike) -> Counter[str]:
             end()
         append(self, text)
 
-    def half_numbers(self: Any, file: Any, writes: Any) -> None:
+    def half_numbers(self: Any, file: Any, pages: Any) -> None:
         if due("apply"):
-            kept = writes[: len(writes) // 2]
-            apply(self, file, kept)
-            if len(writes) > len(kept):
-                offset, data = writes[len(kept)]
-                apply(self, file, [(offset, data[: len(data) // 2])])
+            numbers = sorted(pages)
+            half = len(numbers) // 2
+            apply(self, file, {n: pages[n] for n in numbers[:half]})
+            for n in numbers[half : half + 1]:
+                apply(self, file, {n: pages[n][: len(pages[n]) // 2]})
             file.flush()
             end()
-        apply(self, file, writes)
+        apply(self, file, pages)
 
     atomic_file.TextFile.append = half_text  # type: ignore[method-assign]
     atomic_file.AtomicFile._apply = half_numbers  # type: ignore[method-assign]
