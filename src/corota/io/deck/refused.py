@@ -75,7 +75,6 @@ UNSUPPORTED: dict[str, str] = {
             "CONTACTEXCLUSIONS",
             "CONTACTINITIALIZATIONDATA",
             "CONTACTINITIALIZATIONASSIGNMENT",
-            "GAP",
         ),
         _CONTACT,
     ),
