@@ -65,8 +65,8 @@ def test_faults_are_named(law: ct.UserMaterial, fault: str) -> None:
 
 def test_a_law_that_makes_energy_is_named() -> None:
     """Stress that runs ahead of a turning strain: an antisymmetric part does work in a cycle."""
-    turning = C + np.array([[0.0, 0.0, -200.0], [0.0, 0.0, 0.0], [200.0, 0.0, 0.0]])
-    both = [check_material(linear(m)).created for m in (turning, turning.T)]
+    spinning = C + np.array([[0.0, 0.0, -200.0], [0.0, 0.0, 0.0], [200.0, 0.0, 0.0]])
+    both = [check_material(linear(m)).created for m in (spinning, spinning.T)]
     assert min(both) < 1e-12
     assert max(both) > 0.1
 

@@ -41,29 +41,22 @@ METHODS: dict[str, dict[str, Any]] = {
 class RigidCurve(Brief):
     """A rigid curve of straight lines and arcs; the deformable body lies to its left.
 
-        Its outward normal, from the rigid body towards the deformable one, points to the left of the
-        direction of travel, in Python as in decks.
+    Its outward normal, from the rigid body towards the deformable one, points to the left of the
+    direction of travel, in Python as in decks.
 
-        Parameters
-        ----------
-        segments : ndarray, shape (n, 7)
-            Rows x0, y0, x1, y1, cx, cy, sweep in the reference configuration: a straight line from
-            (x0, y0) to (x1, y1) where sweep is 0, else an arc about (cx, cy) from (x0, y0) through
-            the angle sweep [rad], counter-clockwise if positive.
-    <<<<<<< HEAD
-        reference : int, tuple of float or None
-            Node (index) that carries the curve: it can be moved, rotated, loaded or fixed like any
-            node; its
-            reaction is that of the curve. A point, or None: the curve is fixed.
-        turns : bool
-            Whether the curve turns with its node. Otherwise it moves along with it only, and the node
-            needs no rotation.
-    =======
-        reference : int, str, tuple of float or None
-            Node that carries the curve, by its index or the name of a set that has it alone: it can be
-            moved, rotated, loaded or fixed like any node; its reaction is that of the curve. A point,
-            or None: the curve is fixed.
-    >>>>>>> 8dd61088 (How-to pages: cable clip, detent, hose clamp, constant force, crushed tube, drop of a corner)
+    Parameters
+    ----------
+    segments : ndarray, shape (n, 7)
+        Rows x0, y0, x1, y1, cx, cy, sweep in the reference configuration: a straight line from
+        (x0, y0) to (x1, y1) where sweep is 0, else an arc about (cx, cy) from (x0, y0) through
+        the angle sweep [rad], counter-clockwise if positive.
+    reference : int, str, tuple of float or None
+        Node that carries the curve, by its index or the name of a set that has it alone: it can be
+        moved, rotated, loaded or fixed like any node; its reaction is that of the curve. A point,
+        or None: the curve is fixed.
+    turns : bool
+        Whether the curve turns with its node. Otherwise it moves along with it only, and the node
+        needs no rotation.
     """
 
     segments: Floats

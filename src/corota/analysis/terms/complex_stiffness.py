@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: shares up to 0.9.
 RATIOS = 14
 #: Relative difference of ratios that is rounding.
-ALIKE = 1e-9
+RATIO_TOLERANCE = 1e-9
 #: Largest Poisson's ratio of the elastic elements.
 LARGEST_NU = 0.4999999
 
@@ -47,7 +47,7 @@ class ComplexStiffness:
     ----------
     lin : LinearMotion
     rates : ndarray, shape (k,)
-        All circular frequencies that will be asked for [rad/time].
+        All circular frequencies of the response [rad/time].
     """
 
     def __init__(self, lin: LinearMotion, rates: Floats) -> None:
@@ -88,7 +88,7 @@ class _Part:
         ratios = np.log(np.append(k / g * self.bulk, self.bulk) / self.shear)
         low, high = ratios.real.min(), ratios.real.max()
         middle, half = 0.5 * (low + high), 0.5 * (high - low) + np.abs(ratios.imag).max()
-        count = 1 if half < ALIKE else RATIOS
+        count = 1 if half < RATIO_TOLERANCE else RATIOS
         angles = (np.arange(count) + 0.5) * math.pi / count
         #: Chebyshev points and their barycentric weights.
         self.nodes = middle + half * np.cos(angles)
@@ -103,7 +103,7 @@ class _Part:
 
     def _at(self, shear: complex, bulk: complex) -> Complex:
         distance = np.log(bulk / shear) - self.nodes
-        hit = np.abs(distance) < ALIKE * max(1.0, float(np.abs(self.nodes).max()))
+        hit = np.abs(distance) < RATIO_TOLERANCE * max(1.0, float(np.abs(self.nodes).max()))
         share = hit.astype(complex) if hit.any() else self.weights / distance
         found: Complex = shear * (share / share.sum() @ self.values)
         return found
