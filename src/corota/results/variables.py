@@ -234,6 +234,8 @@ def match_name(name: str, valid: list[str]) -> str:
 
     near = get_close_matches(wanted.upper(), valid, n=1)
     hint = f"; did you mean {near[0]}?" if near else "."
+    if known := meaning(wanted.upper()):
+        hint = f": this analysis has no {known}."
     raise InputError(f"no result variable named {name!r}{hint} There are: {', '.join(valid)}")
 
 

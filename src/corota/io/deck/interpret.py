@@ -92,7 +92,10 @@ def _unknown(deck: Deck, card: Card) -> None:
         _answered(deck, card, UNSUPPORTED[card.keyword])
         deck.error(card, card.where, "the card is not supported", hint=UNSUPPORTED[card.keyword])
         return
-    hint = nearest(card.keyword, [*KEYWORDS, *IGNORED, *UNSUPPORTED, "INCLUDE"])
+    # A card that is read comes before one that is refused.
+    hint = nearest(card.keyword, [*KEYWORDS, "INCLUDE"]) or nearest(
+        card.keyword, [*IGNORED, *UNSUPPORTED]
+    )
     if deck.lenient:
         deck.warning(card, card.where, f"unknown keyword {card.spelled} is ignored", hint=hint)
     else:

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
 
+#: Nodes that a note lists.
+MAX_LISTED = 8
 #: Additional iterations allowed for contact.
 MAX_EXTRA_CONTACT_ITERATIONS = 24
 #: Iterations without progress before an increment is cut: few that take more converge.
@@ -418,15 +420,20 @@ class ContactEquations:
                 f"no contact is closed, and {self.loose}: the position of that body is "
                 "undetermined until contact or a support constrains it"
             )
+        dropped: dict[str, list[str]] = {}
         for number in sorted(self.border.dropped - self.contact_term.reported_constraints):
             pair = next(p for p in reversed(self.contact_term.pairs) if p.first <= number)
             constraint = (number - pair.first) % pair.n
-            if constraint >= pair.of_nodes:
-                continue  # a facet between two nodes that are closed as well
+            if constraint < pair.of_nodes:  # not a facet between two nodes that are closed as well
+                label = str(self.contact_term.label(pair, constraint))
+                dropped.setdefault(pair.name, []).append(label)
+        for name, labels in dropped.items():
+            some = ", ".join(labels[:MAX_LISTED])
+            more = f" and {len(labels) - MAX_LISTED} more" if len(labels) > MAX_LISTED else ""
             notes.append(
-                f"contact pair {pair.name!r}: the constraint at node "
-                f"{self.contact_term.label(pair, constraint)} is redundant and was dropped: "
-                "supports, ties or other contact constraints fix the node in that direction"
+                f"contact pair {name!r}: the constraint at node {some}{more} is redundant and was "
+                "dropped: supports, ties or other contact constraints fix the node in that "
+                "direction; the results are not affected"
             )
         self.contact_term.reported_constraints |= self.border.dropped
         return notes
