@@ -69,7 +69,14 @@ LOOK = (
     ".prev-next-footer a,.prev-next-info,.prev-next-title{overflow:visible;white-space:normal}"
 )
 #: Modules of the reference.
-MODULES = ("corota.mesh", "corota.plots", "corota.examples", "corota.gradients", "corota.cells")
+MODULES = (
+    "corota.mesh",
+    "corota.plots",
+    "corota.examples",
+    "corota.gradients",
+    "corota.cells",
+    "corota.profiles",
+)
 #: Pages of the repository that have a place in the site.
 ROOT_PAGES = {
     "changelog": "CHANGELOG.md",

@@ -35,7 +35,7 @@ SCALARS: dict[str, tuple[str, str]] = {
     "attempts": ("attempts at the increment, cut-backs included", ""),
     "residual": ("largest residual over the scale of forces", ""),
     "negative pivots": ("negative eigenvalues of the tangent", ""),
-    "stable": ("1 where the equilibrium is stable, else 0", ""),
+    "stable": ("1 where the equilibrium is stable, else 0; not determined with friction", ""),
     "arc length": ("1 in increments that arc length took over from load control", ""),
     "limit point": ("1 at a limit point of a path", ""),
     "bifurcation point": ("1 at a bifurcation point of a path", ""),
