@@ -113,7 +113,7 @@ def test_derivatives_of_smoothed_masters(method, offset):
 
 
 def test_distance_to_a_round_master_hardly_depends_on_the_place():
-    """Over a circle of radius 1: of arcs and splines less than the sagitta of a polygon."""
+    """Over a circle of radius 1 the polygon's distance varies by its sagitta, the spline's not."""
     spread = []
     for shapes in (False, True):
         gaps = []
@@ -128,7 +128,7 @@ def test_distance_to_a_round_master_hardly_depends_on_the_place():
             gaps.append(float((raw["total_gap"][seen] / raw["total_area"][seen]).min()))
         spread.append(np.ptp(gaps))
     sagitta = 1.0 - np.cos(np.pi / 24)
-    assert spread[0] < 0.01 * sagitta
+    assert spread[0] > 0.5 * sagitta
     assert spread[1] < 0.05 * sagitta
 
 

@@ -38,6 +38,6 @@ def test_the_extras_are_those_of_the_page_on_installing() -> None:
     manifest = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     table = manifest.split("[project.optional-dependencies]")[1].split("\n[")[0]
     extras = set(re.findall(r"^(\w+) = ", table, re.MULTILINE))
-    assert extras == {"plot", "mesh", "pardiso", "data", "view", "petsc", "all"}
+    assert extras == {"plot", "mesh", "pardiso", "data", "view", "petsc", "optimize", "all"}
     page = (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
     assert extras <= set(re.findall(r"`corota\[(\w+)\]`", page))

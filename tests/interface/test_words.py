@@ -89,7 +89,11 @@ def test_other_words_are_answered_with_the_nearest(model: ct.Model) -> None:
     with pytest.raises(ct.InputError, match="a term is"):
         model.equation((0, 1.0))  # type: ignore[arg-type]
     with pytest.raises(ct.InputError, match="node is given by its index"):
-        model.rigid("left", "tip")  # type: ignore[arg-type]
+        model.rigid("left", 1.5)  # type: ignore[arg-type]
+    with pytest.raises(ct.InputError, match="did you mean 'top'"):
+        model.rigid("left", "tip")
+    with pytest.raises(ct.InputError, match="one node is expected; 'top' has"):
+        model.rigid("left", "top")
 
 
 @pytest.mark.parametrize("given", ["steel", None, [1.0]])

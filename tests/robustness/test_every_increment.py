@@ -94,7 +94,11 @@ def goes_on(build, every=1):
         for a, b in zip(behind, rest.frames, strict=True):
             assert not frame_differences(a, b), checkpoint.where
         assert ended == error
-        assert rest.notes == results.notes
+        # A peak is one of the increments that this run has made.
+        first, second = (
+            [n for n in found.notes if "resolves the peak" not in n] for found in (rest, results)
+        )
+        assert first == second
 
 
 @pytest.mark.parametrize("name", DECKS)

@@ -36,7 +36,10 @@ impl Contact {
         distances: Distances,
         corners: bool,
     ) -> Self {
+        // A node that slides over the joint of two arcs meets a kink of some thousandths of a radian,
+        // at which its direction alternates; integrals have none.
         if let Some(Surface::Edges(faces)) = &mut master
+            && entry.integrates
             && !entry.joins
         {
             bulge(faces, x);

@@ -3,30 +3,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.arrays import distinct
 from corota.errors import Diagnostic, InputError
-from corota.mesh.data import EDGES
-from corota.mesh.parts import cells_of, part_of_cells
+from corota.mesh.parts import cells_of
 from corota.model import elements
-from corota.model.local_strain import ADVICE
-from corota.model.material_table import MaterialTable
-from corota.model.materials import Elastic
+from corota.model.locking import locking_in
 
 if TYPE_CHECKING:
-    from corota.mesh.data import Floats, Ints, Mesh
+    from corota.mesh.data import Ints, Mesh
     from corota.model.model import Model
     from corota.model.sections import Section
-    from corota.model.steps import Step
-
-#: Cells up to which a run looks for elements that lock.
-MOST_CELLS = 100_000
-#: Squared outline over area above which a part counts as slender (a strip 4 times its width).
-SLENDER = 25.0
 
 
 def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
@@ -40,7 +29,7 @@ def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
         count[cells] += 1
         wrong = _wrong_shape(mesh, section, cells)
         fits = fits and wrong is None
-        found += [wrong] if wrong else _locking(mesh, section, cells, model.steps)
+        found += [wrong] if wrong else locking_in(mesh, section, cells, model.steps)
     labels = mesh.cell_labels
     for code, text, hint in (
         (count == 0, "no section", "give one to every cell"),
@@ -51,23 +40,6 @@ def check_sections(model: Model) -> tuple[list[Diagnostic], bool]:
             verb = f"and {len(bad) - 1} others have" if len(bad) > 1 else "has"
             found.append(Diagnostic("error", f"element {labels[bad[0]]} {verb} {text}", hint=hint))
     return found, fits and bool((count == 1).all()) and mesh.n_cells > 0
-
-
-def locking(model: Model) -> list[Diagnostic]:
-    """Sections whose elements lock, as :func:`corota.check.check` finds them, before a run.
-
-    Meshes of more than :data:`MOST_CELLS` are left to the check.
-    """
-    if model.mesh.n_cells > MOST_CELLS:
-        return []
-    return [
-        diagnostic
-        for section in model.sections
-        for diagnostic in _locking(
-            model.mesh, section, cells_of(model.mesh, section.cells), model.steps
-        )
-        if diagnostic.severity == "warning"
-    ]
 
 
 def _wrong_shape(mesh: Mesh, section: Section, cells: Ints) -> Diagnostic | None:
@@ -86,90 +58,3 @@ def _wrong_shape(mesh: Mesh, section: Section, cells: Ints) -> Diagnostic | None
                 section.where,
             )
     return None
-
-
-def _locking(mesh: Mesh, section: Section, cells: Ints, steps: list[Step]) -> list[Diagnostic]:
-    found = []
-    name = section.element
-    material = section.material
-    if isinstance(material, MaterialTable):
-        material = max((m for _, m in material.table), key=lambda m: getattr(m, "nu", 0.0))
-    element = elements.find(name)
-    state = "axisymmetry" if section.axisymmetric else "plane strain"
-    ratio = material.nu if isinstance(material, Elastic) else 0.0
-    if material.local_strain:
-        compliance = material.compliance()
-        ratio = float(-compliance[0, 1] / compliance[0, 0])
-    if (
-        section.plane != "stress"
-        and ratio > 0.49
-        and not element.free_volume
-        and not section.mean_dilatation
-    ):
-        found.append(
-            Diagnostic(
-                "warning",
-                f"{name} locks in {state} at Poisson's ratio {ratio:.6g}",
-                section.where,
-                hint="use Q4S or Q8R, or the mean dilatation (DILATATION=MEAN) of quadrilaterals",
-            )
-        )
-    if (
-        section.local_strain != "logarithmic"
-        and material.default_strain == "logarithmic"
-        and any(s.nlgeom for s in steps)
-    ):
-        found.append(
-            Diagnostic(
-                "note",
-                f"{material.name or 'a material'} may flow under the {section.local_strain} local "
-                f"strain. {ADVICE}",
-                section.where,
-            )
-        )
-    if element.bending_cells:
-        found += _bending(mesh, section, cells)
-    return found
-
-
-def _bending(mesh: Mesh, section: Section, cells: Ints) -> list[Diagnostic]:
-    part = part_of_cells(mesh)
-    area, outline = _area(mesh), np.zeros(part.max(initial=-1) + 1)
-    edges = mesh.boundary_edges()
-    for cell, nodes in zip(edges[:, 0], mesh.edge_nodes(edges), strict=True):
-        outline[part[cell]] += math.dist(mesh.points[nodes[0]], mesh.points[nodes[1]])
-    areas = np.bincount(part, area, len(outline))
-    name = section.element
-    element = elements.find(name)
-    triangle = element.n_nodes == 3
-    for number in distinct(part[cells]):
-        mine = cells[part[cells] == number]
-        if outline[number] ** 2 < SLENDER * areas[number]:
-            continue
-        width = 2.0 * areas[number] / outline[number]
-        factor = 2.0 if triangle else 1.0
-        size = float(np.sqrt(factor * area[mine].mean()))
-        if width < element.bending_cells * size:
-            better = "OPT or T6" if triangle else "Q4I or Q4D"
-            return [
-                Diagnostic(
-                    "warning",
-                    f"{name} is too stiff in bending: about {max(width / size, 1.0):.0f} cells "
-                    f"through the width of the part of element {mesh.cell_labels[mine[0]]}",
-                    section.where,
-                    hint=f"use {better}, or at least {element.bending_cells} cells",
-                )
-            ]
-    return []
-
-
-def _area(mesh: Mesh) -> Floats:
-    parts = [np.zeros(0)]
-    for block in mesh.cells:
-        if not EDGES[block.kind]:
-            parts.append(np.zeros(len(block)))
-            continue
-        count = 3 if block.kind.startswith("tri") else 4
-        x, y = mesh.points[block.nodes[:, :count]].transpose(2, 0, 1)
-        parts.append(0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(axis=1))
-    return np.concatenate(parts)

@@ -133,7 +133,7 @@ def _run(args: Any, terminal: Terminal, communicator: Communicator) -> int:
         f"{counted(len(model.steps), 'step')}, read in {duration(read)}"
     )
     if any(elements.find(section.element).bending_cells for section in model.sections):
-        from corota.check.sections import locking
+        from corota.model.locking import locking
 
         model.notes += [f"{found.message}: {found.hint}" for found in locking(model)]
     for note in model.notes:
