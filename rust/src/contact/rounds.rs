@@ -1,4 +1,4 @@
-//! Straight element edges of a round master are arcs.
+//! Straight element edges of a round master are arcs where gaps are integrals.
 //!
 //! A polygon on a circle lies up to h^2 / 8 R inside it, or outside in a hollow: rounds that fit, but whose
 //! nodes are not opposite, would overlap or gape. Such an edge is therefore the parabola through
