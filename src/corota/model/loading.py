@@ -70,7 +70,7 @@ class Loading:
         nodes : str, sequence of str or array_like of int
             Node, edge or cell set, a list of them, node indices, or a mask of nodes.
         x, y : float or None
-            Displacement at the end of a step [length]; both are 0 unless told otherwise. ``x=0.0``
+            Displacement at the end of a step [length]; both are 0 by default. ``x=0.0``
             alone fixes y as well, with a warning: write ``y=None`` to leave it free.
         rotation : float, bool or None
             ``True`` fixes the drilling rotation, a number prescribes it [rad]. Nodes of beams, of

@@ -433,7 +433,7 @@ class ContactEquations:
             notes.append(
                 f"contact pair {name!r}: the constraint at node {some}{more} is redundant and was "
                 "dropped: supports, ties or other contact constraints fix the node in that "
-                "direction; the results are not affected"
+                "direction and carry its force"
             )
         self.contact_term.reported_constraints |= self.border.dropped
         return notes
