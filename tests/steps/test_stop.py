@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import pytest
@@ -43,5 +44,18 @@ def test_every_procedure_stops_after_the_increment(name: str) -> None:
     steps = STEPS[name]
     observer = StopAt(len(steps))
     with pytest.raises(ct.Interrupted, match=f"stopped at step {len(steps)}, "):
+        ct.solve(model, steps, observers=[observer], threads=1)
+    assert observer.frames[-1] == (len(steps), 2)
+
+
+@pytest.mark.parametrize("name", ["static", "implicit", "explicit", "modal"])
+def test_every_procedure_stops_at_its_increments(name: str) -> None:
+    model = ct.Model(ct.mesh.rectangle(4.0, 1.0, nx=4, ny=1))
+    model.section("all", element="Q4I", material=ct.Elastic(E=100.0, nu=0.3, rho=1e-3))
+    model.fix("left")
+    model.force("right", y=-0.01)
+    steps = [dataclasses.replace(step, max_increments=2) for step in STEPS[name]]
+    observer = StopAt(0)
+    with pytest.raises(ct.ConvergenceError, match=f"step {len(steps)} used its 2 increments"):
         ct.solve(model, steps, observers=[observer], threads=1)
     assert observer.frames[-1] == (len(steps), 2)

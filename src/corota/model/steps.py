@@ -530,6 +530,8 @@ class ModalDynamic(Step):
     def __post_init__(self) -> None:
         if self.increments:
             self.first_increment = self.period / self.increments
+        if self.max_increments == 1000:
+            self.max_increments = 10_000_000
         super().__post_init__()
         check_damping(self.damping, self.rayleigh, self.where)
 

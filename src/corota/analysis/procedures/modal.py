@@ -70,7 +70,7 @@ class ModalStepper:
     step : ModalDynamic
     """
 
-    kind, advice = "", ""
+    kind, advice = "", "allow more (INC=), or take larger increments"
 
     def __init__(self, loop: IncrementLoop, step: ModalDynamic, stops: list[float]) -> None:
         self.system, self.state, self.step = loop.system, loop.state, step

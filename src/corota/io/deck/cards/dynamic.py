@@ -34,8 +34,8 @@ INTEGRATORS = {
 }
 #: Values of ``SCHEME=``, which is our own parameter.
 SCHEMES = {"HHT": "hht", "ENERGYMOMENTUM": "energy_momentum"}
-#: Increments of an explicit step without INC.
-EXPLICIT_INCREMENTS = 10_000_000
+#: Increments of an explicit or modal step without INC.
+UNLIMITED_INCREMENTS = 10_000_000
 #: Largest tolerance of the local error: the displacement itself.
 ANY_ERROR = 1.0
 
@@ -94,7 +94,7 @@ def dynamic(deck: Deck, card: Card) -> None:
         )
         return
     if explicit and not now.card.has("INC"):
-        now.max_increments = EXPLICIT_INCREMENTS
+        now.max_increments = UNLIMITED_INCREMENTS
     quasi_static = use == "QUASI-STATIC" and not explicit
     if use != "TRANSIENTFIDELITY" and not explicit:
         what = (
@@ -161,6 +161,8 @@ def modal_dynamic(deck: Deck, card: Card) -> None:
     if now is None:
         return
     now.make = ModalDynamic
+    if not now.card.has("INC"):
+        now.max_increments = UNLIMITED_INCREMENTS
     now.options = {"rayleigh": deck.damping, "ramp": _grows(now)}
     step_times(deck, card, now)
 
