@@ -11,7 +11,7 @@ import pytest
 
 import corota as ct
 from corota.errors import InputError
-from corota.mesh.data import N_NODES
+from corota.mesh.kinds import N_NODES
 from corota.mesh.shape_functions import shape_functions
 from corota.results.probe import Interpolation, natural
 

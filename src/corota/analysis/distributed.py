@@ -21,7 +21,7 @@ import corota._core as _core
 from corota.analysis.distributed_forces import STATIC_MASS, BodyLoad, Pressure, Traction
 from corota.arrays import distinct
 from corota.errors import InputError, ModelError
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.model import axisymmetry, elements
 from corota.model.loads import BodyForce, EdgeLoad, NodalForce
 

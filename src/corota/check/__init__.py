@@ -8,13 +8,14 @@ from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from corota.check.cells import SHAPED, check_cells
+from corota.check.cells import check_cells
 from corota.check.data import check_data
 from corota.check.rigid import check_rigid
 from corota.check.sections import check_sections
 from corota.check.start import refusal
 from corota.check.units import check_units
 from corota.errors import Diagnostic, SingularError
+from corota.mesh.kinds import PLANAR
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,4 +113,4 @@ def _by_start(model: Model, found: list[Diagnostic]) -> tuple[list[Diagnostic], 
 def _plain(model: Model) -> bool:
     """Whether supports and common nodes alone constrain the model's bodies."""
     joined = model.constraints or model.axes or model.contacts or model.ties
-    return not joined and all(block.kind in SHAPED for block in model.mesh.cells)
+    return not joined and all(block.kind in PLANAR for block in model.mesh.cells)

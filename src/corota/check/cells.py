@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.errors import Diagnostic
+from corota.mesh.kinds import PLANAR
 from corota.mesh.quality import STRAIGHT, aspect_ratio, corner_sines, jacobians
 from corota.model.joints import constrained_nodes, joined_nodes
 
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
     from corota.mesh.data import Ints, Mesh
     from corota.model.model import Model
 
-#: Kinds of cells that have an area.
-SHAPED = ("tri3", "tri6", "quad4", "quad8", "quad9")
 #: Corners flatter than 10 degrees, or turned by more than 170.
 FLAT_SINE = 0.17
 #: Smallest over largest Jacobian of a cell that is far from its regular shape.
@@ -36,7 +35,7 @@ def check_cells(model: Model) -> list[Diagnostic]:
     used = np.zeros(mesh.n_nodes, bool)
     for block in mesh.cells:
         used[block.nodes] = True
-        if block.kind not in SHAPED:
+        if block.kind not in PLANAR:
             continue  # a line has no angles
         points = mesh.points[block.nodes]
         jacobian = jacobians(block.kind, points)

@@ -12,22 +12,15 @@ import numpy as np
 
 from corota.errors import FileError, InputError, UnsupportedError
 from corota.mesh.data import Cells, Mesh
+from corota.mesh.kinds import KINDS, PLANAR
 from corota.mesh.plane import into_plane
-from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
+from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, classify
 
 if TYPE_CHECKING:
     import os
 
-#: Kinds by meshio's names; other cells are ignored.
-KINDS = {
-    "triangle": "tri3",
-    "triangle6": "tri6",
-    "quad": "quad4",
-    "quad8": "quad8",
-    "quad9": "quad9",
-}
-#: Line elements and points by meshio's names; they are written, not read.
-LINES = {"line2": "line", "line3": "line3", "point1": "vertex"}
+#: Planar kinds by meshio's names; other cells are ignored.
+NAMES = {KINDS[name].meshio: name for name in PLANAR}
 
 #: Cell numbers of formats, and the names of their sets.
 TAGS = {"nastran:ref": "PID", "medit:ref": "REF", "su2:tag": "TAG", "gmsh:physical": "Physical"}
@@ -67,7 +60,7 @@ def from_meshio(found: Any, path: str) -> Mesh:
     if points.shape[1] == 3:
         used = np.zeros(len(points), bool)
         for block in found.cells:
-            if block.type in KINDS:
+            if block.type in NAMES:
                 used[np.asarray(block.data, dtype=np.int64).ravel()] = True
         placed = into_plane(points, used)
         if placed is None:
@@ -80,7 +73,7 @@ def from_meshio(found: Any, path: str) -> Mesh:
     total = 0
     lines: dict[int, Any] = {}
     for block in found.cells:
-        kind = KINDS.get(block.type, "")
+        kind = NAMES.get(block.type, "")
         if block.type in ("line", "line3"):
             lines[len(starts)] = np.asarray(block.data, dtype=np.int64)[:, :2]
         starts.append(total if kind else -1)
@@ -95,7 +88,7 @@ def from_meshio(found: Any, path: str) -> Mesh:
             if (shape == code).any():
                 row = int(np.flatnonzero(shape == code)[0])
                 raise InputError(f"{path}: {block.type} {row} (from 0) {text}")
-        nodes[shape == CLOCKWISE] = nodes[shape == CLOCKWISE][:, REVERSED[kind]]
+        nodes[shape == CLOCKWISE] = nodes[shape == CLOCKWISE][:, KINDS[kind].reversal]
         cells.append(Cells(kind, nodes, np.arange(total + 1, total + len(nodes) + 1)))
         total += len(nodes)
     if not cells:
@@ -164,7 +157,7 @@ def _take_labels(found: Any, mesh: Mesh) -> None:
         mesh.node_labels = np.asarray(data, dtype=np.int64).ravel()
     parts = (getattr(found, "cell_data", None) or {}).get("element label")
     if parts is not None:
-        own = [p for p, block in zip(parts, found.cells, strict=False) if block.type in KINDS]
+        own = [p for p, block in zip(parts, found.cells, strict=False) if block.type in NAMES]
         if len(np.unique(np.concatenate(own))) == mesh.n_cells:
             for cells, labels in zip(mesh.cells, own, strict=True):
                 cells.labels = np.asarray(labels, dtype=np.int64).ravel()
@@ -174,13 +167,12 @@ def to_meshio(mesh: Mesh) -> Any:
     """Convert to a ``meshio.Mesh``; see :meth:`corota.mesh.Mesh.to_meshio`."""
     if find_spec("meshio") is None:
         raise UnsupportedError("this needs meshio, which is not installed: pip install meshio")
-    names = {kind: name for name, kind in KINDS.items()} | LINES
     blocks: list[tuple[str, Any]] = []
     labels: list[Any] = []
     starts: list[tuple[int, int]] = []
     for offset, cells in zip(mesh.offsets, mesh.cells, strict=False):
         if len(cells):
-            blocks.append((names[cells.kind], cells.nodes))
+            blocks.append((KINDS[cells.kind].meshio, cells.nodes))
             labels.append(cells.labels)
             starts.append((int(offset), len(cells)))
     sets: dict[str, list[Any]] = {}

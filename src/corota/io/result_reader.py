@@ -18,7 +18,7 @@ from corota.io.regular_file import parse_json
 from corota.io.vtk.grid import VTK_TYPES
 from corota.io.vtk.parts import whole
 from corota.mesh import Cells, Mesh
-from corota.mesh.data import N_NODES
+from corota.mesh.kinds import N_NODES
 from corota.model.model import Model
 from corota.model.units import Units
 from corota.results.extremes import places_of

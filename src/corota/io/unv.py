@@ -12,6 +12,7 @@ import numpy as np
 from corota.errors import InputError, Location
 from corota.io.meshio_bridge import from_meshio
 from corota.io.regular_file import read_bytes
+from corota.mesh.kinds import KINDS
 
 if TYPE_CHECKING:
     import os
@@ -19,18 +20,10 @@ if TYPE_CHECKING:
 
     from corota.mesh.data import Mesh
 
-#: Element numbers of the format: plane stress, plane strain, plate, membrane, axisymmetric, shell.
-_KINDS = {
-    **dict.fromkeys((11, 21, 22), "line"),
-    24: "line3",
-    **dict.fromkeys((41, 51, 61, 74, 81, 91), "triangle"),
-    **dict.fromkeys((42, 52, 62, 72, 82, 92), "triangle6"),
-    **dict.fromkeys((44, 54, 64, 71, 84, 94), "quad"),
-    **dict.fromkeys((45, 55, 65, 75, 85, 95), "quad8"),
-}
+#: Kinds by the element numbers of the format.
+_KINDS = {number: kind for kind in KINDS.values() for number in kind.unv}
 #: Beams have a line of their own before their nodes.
 _BEAMS = (11, 21, 22, 23, 24)
-_SIZES = {"line": 2, "line3": 3, "triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8}
 #: Data sets of groups that hold two members a line, four numbers each.
 _GROUPS = (2429, 2430, 2432, 2435, 2452, 2467, 2477)
 _MOST = 100
@@ -110,12 +103,12 @@ def _elements(lines: list[str], at: int, stop: int, found: _Found) -> int:
         raise ValueError(f"element {label} has {len(nodes)} nodes, not {count}")
     kind = _KINDS.get(number)
     if kind is not None:
-        if count != _SIZES[kind]:
+        if count != kind.count:
             raise ValueError(f"element {label} of type {number} has {count} nodes")
         # Nodes are in cyclic order: each mid-side node follows its corner.
-        if kind in ("triangle6", "quad8", "line3"):
+        if kind.name in ("tri6", "quad8", "line3"):
             nodes = nodes[::2] + nodes[1::2]
-        found.cells.setdefault(kind, []).append((label, nodes))
+        found.cells.setdefault(kind.meshio, []).append((label, nodes))
     return at
 
 

@@ -12,9 +12,10 @@ from corota.mesh.assembly import add_node, assembly  # the module has the name o
 
 if TYPE_CHECKING:
     from corota.mesh.change import merge, move, renumber, to_quadratic, to_triangles
-    from corota.mesh.data import EDGES, N_NODES, Cells, Mesh
+    from corota.mesh.data import Cells, Mesh
     from corota.mesh.files import read
     from corota.mesh.generate import annulus, distort, mapped, rectangle
+    from corota.mesh.kinds import EDGES, N_NODES
     from corota.mesh.random_fields import random_field
 
 # A convenience: a function of a higher layer, which loads at its first call.
@@ -22,8 +23,8 @@ outline = lazy("corota.outline.mesher:outline")
 
 #: Module of each name.
 _HOMES = {
-    "EDGES": "data",
-    "N_NODES": "data",
+    "EDGES": "kinds",
+    "N_NODES": "kinds",
     "Cells": "data",
     "Mesh": "data",
     "annulus": "generate",

@@ -10,7 +10,8 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.errors import InputError
-from corota.mesh.data import EDGES, Cells, Mesh
+from corota.mesh.data import Cells, Mesh
+from corota.mesh.kinds import EDGES
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:

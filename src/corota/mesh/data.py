@@ -14,6 +14,7 @@ from corota.display import CELLS_DRAWN, Brief, picture, table
 from corota.errors import InputError
 from corota.lazy import lazy
 from corota.mesh import geometric, selection
+from corota.mesh.kinds import EDGES, N_NODES, SIDES
 from corota.names import choose, did_you_mean, listed, match
 
 if TYPE_CHECKING:
@@ -28,35 +29,6 @@ mesh_grid = lazy("corota.io.vtk.pyvista_bridge:mesh_grid")
 mesh_of = lazy("corota.io.meshio_bridge:from_meshio")
 to_meshio = lazy("corota.io.meshio_bridge:to_meshio")
 
-#: Local node numbers of the edges of each cell kind: (first, last[, middle]).
-#: Corners counter-clockwise, then mid-sides 1-2, 2-3, ..., then the center.
-EDGES: dict[str, tuple[tuple[int, ...], ...]] = {
-    "tri3": ((0, 1), (1, 2), (2, 0)),
-    "tri6": ((0, 1, 3), (1, 2, 4), (2, 0, 5)),
-    "quad4": ((0, 1), (1, 2), (2, 3), (3, 0)),
-    "quad8": ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7)),
-    "quad9": ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7)),
-    "line2": (),
-    "line3": (),
-    "point1": (),
-}
-
-#: The same with lines, whose two sides are the line forwards and backwards: sets of edges may name
-#: them.
-SIDES = {**EDGES, "line2": ((0, 1), (1, 0))}
-
-#: Number of nodes of each cell kind.
-N_NODES = {
-    "tri3": 3,
-    "tri6": 6,
-    "quad4": 4,
-    "quad8": 8,
-    "quad9": 9,
-    "line2": 2,
-    "line3": 3,
-    "point1": 1,
-}
-
 
 @dataclass(repr=False)
 class Cells(Brief):
@@ -65,7 +37,7 @@ class Cells(Brief):
     Parameters
     ----------
     kind : str
-        A key of :data:`EDGES`.
+        A key of :data:`corota.mesh.kinds.KINDS`.
     nodes : ndarray of int, shape (n_cells, n_nodes)
         Indices into the points, from 0.
     labels : ndarray of int, shape (n_cells,)

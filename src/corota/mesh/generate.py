@@ -13,6 +13,7 @@ from corota.arrays import distinct
 from corota.errors import InputError
 from corota.mesh.change import merge, placed_middles
 from corota.mesh.data import Cells, Mesh
+from corota.mesh.kinds import N_NODES, PLANAR
 from corota.renamed import accept_old_names
 
 if TYPE_CHECKING:
@@ -242,8 +243,8 @@ CELL = 200.0
 def _check(nx: int, ny: int, cell: str, diagonal: str) -> None:
     if nx < 1 or ny < 1:
         raise InputError(f"a mesh needs at least one cell each way, not {nx} x {ny}")
-    if cell not in ("tri3", "tri6", "quad4", "quad8", "quad9"):
-        raise InputError(f"unknown cell {cell!r}; known: tri3, tri6, quad4, quad8, quad9")
+    if cell not in PLANAR:
+        raise InputError(f"unknown cell {cell!r}; known: {', '.join(PLANAR)}")
     if diagonal not in ("right", "left", "alternate"):
         raise InputError(f"unknown diagonal {diagonal!r}; known: right, left, alternate")
     if nx * ny * CELL > 1e8:
@@ -298,8 +299,7 @@ def _build(lattice: Floats, nx: int, ny: int, cell: Kind, diagonal: Diagonal) ->
     if cell.startswith("tri"):
         cells, edges = _triangles(nodes9, (i + j).ravel(), cell, diagonal, sides)
     else:
-        count = {"quad4": 4, "quad8": 8, "quad9": 9}[cell]
-        cells = nodes9[:, _LATTICE[:count]]
+        cells = nodes9[:, _LATTICE[: N_NODES[cell]]]
         edges = [
             np.stack([cells_of, np.full(len(cells_of), side)], axis=1)
             for side, cells_of in enumerate(sides)

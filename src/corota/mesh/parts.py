@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.arrays import distinct
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

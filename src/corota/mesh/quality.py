@@ -7,29 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.mesh.kinds import KINDS
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.mesh.data import Floats, Ints
 
-#: Order in which the nodes of a clockwise cell become counter-clockwise; the first stays.
-REVERSED: dict[str, list[int]] = {
-    "tri3": [0, 2, 1],
-    "tri6": [0, 2, 1, 5, 4, 3],
-    "quad4": [0, 3, 2, 1],
-    "quad8": [0, 3, 2, 1, 7, 6, 5, 4],
-    "quad9": [0, 3, 2, 1, 7, 6, 5, 4, 8],
-}
-
 #: Smallest corner sine, relative to the lengths of its sides, that counts as not straight.
 STRAIGHT = 1e-12
 
 GOOD, CLOCKWISE, FOLDED, FLAT = 0, 1, 2, 3
-
-
-def n_corners(kind: str) -> int:
-    """Count the corners of a cell kind."""
-    return 3 if kind.startswith("tri") else 4
 
 
 def corner_sines(kind: str, points: Floats) -> Floats:
@@ -55,7 +43,7 @@ def corner_sines(kind: str, points: Floats) -> Floats:
 
 def _sides(kind: str, points: Floats) -> tuple[Floats, Floats, Floats]:
     """Components and lengths of the sides from each corner to the next, (n_cells, n_corners)."""
-    count = n_corners(kind)
+    count = KINDS[kind].n_corners
     following = [*range(1, count), 0]
     dx = points[:, following, 0] - points[:, :count, 0]
     dy = points[:, following, 1] - points[:, :count, 1]
@@ -85,7 +73,7 @@ def classify(kind: str, points: Floats) -> Ints:
     found[left & right] = FOLDED
     found[~left & ~right] = FLAT
     sides = _sides(kind, points)[2]
-    found[_closed(sides).sum(axis=1) > n_corners(kind) - 3] = FLAT
+    found[_closed(sides).sum(axis=1) > KINDS[kind].n_corners - 3] = FLAT
     if kind != "tri3":
         jacobian = jacobians(kind, points)
         sign = np.where(found == CLOCKWISE, -1.0, 1.0)[:, None]
@@ -124,50 +112,7 @@ def aspect_ratio(kind: str, points: Floats) -> Floats:
 
 
 def _gradients(kind: str) -> Floats:
-    """Differentiate the shape functions at integration points: (n_points, 2, n_nodes)."""
-    if kind.startswith("tri"):
-        inner = np.array([[1 / 6, 1 / 6], [2 / 3, 1 / 6], [1 / 6, 2 / 3]])
-        return np.stack([_triangle(kind, r, s) for r, s in inner])
-    g = np.sqrt(0.6) if kind != "quad4" else np.sqrt(1 / 3)
-    at = (-g, 0.0, g) if kind != "quad4" else (-g, g)
-    return np.stack([_quadrilateral(kind, r, s) for s in at for r in at])
-
-
-def _triangle(kind: str, r: float, s: float) -> Floats:
-    t = 1.0 - r - s
-    if kind == "tri3":
-        return np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
-    return np.array(
-        [
-            [1 - 4 * t, 4 * r - 1, 0.0, 4 * (t - r), 4 * s, -4 * s],
-            [1 - 4 * t, 0.0, 4 * s - 1, -4 * r, 4 * r, 4 * (t - s)],
-        ]
-    )
-
-
-def _quadrilateral(kind: str, r: float, s: float) -> Floats:
-    a = np.array([-1.0, 1.0, 1.0, -1.0])
-    b = np.array([-1.0, -1.0, 1.0, 1.0])
-    if kind == "quad4":
-        return np.stack([a * (1 + b * s), b * (1 + a * r)]) / 4
-    if kind == "quad8":
-        corner = np.stack(
-            [a * (1 + b * s) * (2 * a * r + b * s), b * (1 + a * r) * (2 * b * s + a * r)]
-        )
-        middle = np.array(
-            [
-                [-r * (1 - s), (1 - s * s) / 2, -r * (1 + s), -(1 - s * s) / 2],
-                [-(1 - r * r) / 2, -s * (1 + r), (1 - r * r) / 2, -s * (1 - r)],
-            ]
-        )
-        return np.concatenate([corner / 4, middle], axis=1)
-    x = np.array([-1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0])
-    y = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, 0.0])
-    return np.stack([_line(x, r, 1) * _line(y, s, 0), _line(x, r, 0) * _line(y, s, 1)])
-
-
-def _line(nodes: Floats, r: float, order: int) -> Floats:
-    """Quadratic Lagrange functions on -1, 0, 1 (or their derivative) of the given nodes."""
-    if order == 0:
-        return np.where(nodes == 0.0, 1 - r * r, (r * r + nodes * r) / 2)
-    return np.where(nodes == 0.0, -2 * r, r + nodes / 2)
+    """Differentiate the shape functions at the kind's points: (n_points, 2, n_nodes)."""
+    gradients = KINDS[kind].gradients
+    assert gradients is not None
+    return np.stack([gradients(r, s) for r, s in KINDS[kind].points])

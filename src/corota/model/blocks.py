@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.errors import ModelError
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.model import elements
 from corota.model.material_table import MaterialTable
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from corota.arrays import distinct
 from corota.errors import Diagnostic
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.mesh.parts import cells_of, part_of_cells
 from corota.model import elements
 from corota.model.local_strain import ADVICE

@@ -12,7 +12,7 @@ import numpy as np
 from corota.display import Brief
 from corota.errors import InputError
 from corota.lazy import lazy
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.mesh.shape_functions import shape_functions
 from corota.names import choose
 from corota.results.history import History

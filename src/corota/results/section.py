@@ -14,7 +14,7 @@ from corota.arrays import distinct
 from corota.display import Brief
 from corota.errors import InputError
 from corota.lazy import lazy
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.mesh.parts import parts_without
 from corota.mesh.shape_functions import shape_functions
 from corota.model import elements

@@ -8,22 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from corota.mesh.kinds import KINDS
 from corota.results.table import variables
 
 #: Our kinds: type number in the file, and nodes of it that the type has.
-ELEMENTS = {
-    "tri3": (7, 3),
-    "tri6": (8, 6),
-    "quad4": (9, 4),
-    "quad8": (10, 8),
-    "quad9": (10, 8),  # the format has none with a node in the middle
-    "line2": (11, 2),
-    "line3": (12, 3),
-}
-#: Nodes of each type number.
-NODES = {1: 8, 2: 6, 3: 4, 4: 20, 5: 15, 6: 10, 7: 3, 8: 6, 9: 4, 10: 8, 11: 2, 12: 3}
-#: Type number to our kind.
-KINDS = {7: "tri3", 8: "tri6", 9: "quad4", 10: "quad8", 11: "line2", 12: "line3"}
+ELEMENTS = {name: kind.frd for name, kind in KINDS.items() if kind.frd}
+#: Nodes of each type number; the first six are solids.
+NODES = {1: 8, 2: 6, 3: 4, 4: 20, 5: 15, 6: 10, **dict(ELEMENTS.values())}
+#: Type number to our kind: the one that has just its nodes.
+NAMES = {number: name for name, (number, count) in ELEMENTS.items() if count == KINDS[name].count}
 
 
 @dataclass(frozen=True)
@@ -95,6 +88,6 @@ def blocks() -> list[Block]:
 
 
 __all__ = [
-    "CONTACT", "DISP", "ELEMENTS", "FORC", "KINDS", "NDTEMP", "NODES", "PDISP", "STRESS",
+    "CONTACT", "DISP", "ELEMENTS", "FORC", "NAMES", "NDTEMP", "NODES", "PDISP", "STRESS",
     "TOSTRAIN", "VELO", "Block", "blocks",
 ]  # fmt: skip

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import FileError, UnsupportedError
-from corota.io.frd.layout import KINDS, NODES
+from corota.io.frd.layout import NAMES, NODES
 from corota.io.regular_file import read_bytes
 from corota.io.vtk.frame_arrays import tensor_arrays
 from corota.mesh import Cells, Mesh
@@ -179,7 +179,7 @@ class _Reader:
         self, labels: Ints, points: Floats, elements: list[tuple[int, int, list[int]]]
     ) -> Results:
         flat = np.abs(points[:, 2]).max(initial=0.0) == 0.0
-        if not flat or any(kind not in KINDS for _, kind, _ in elements):
+        if not flat or any(kind not in NAMES for _, kind, _ in elements):
             raise UnsupportedError(
                 f"{self.source.path}: not a planar mesh; CalculiX writes one with OUTPUT=2D on "
                 "*NODE FILE"
@@ -196,7 +196,7 @@ class _Reader:
         for kind in dict.fromkeys(k for _, k, _ in elements):
             own = [(label, nodes) for label, k, nodes in elements if k == kind]
             table = index(np.array([nodes for _, nodes in own]))
-            cells.append(Cells(KINDS[kind], table, np.array([label for label, _ in own])))
+            cells.append(Cells(NAMES[kind], table, np.array([label for label, _ in own])))
         mesh = Mesh(points[:, :2], cells, node_labels=labels)
         results = Results(Model(mesh, self.source.path.stem))
         results.notes.append("RF of a .frd file holds reactions and loads together")

@@ -14,7 +14,7 @@ from corota._core import parse_reals
 from corota.errors import InputError, Location, UnsupportedError
 from corota.io.deck import numerals
 from corota.io.deck.lexer import decode
-from corota.mesh.data import N_NODES
+from corota.mesh.kinds import KINDS, N_NODES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,19 +22,9 @@ if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints
 
 #: Cell kinds by Gmsh's element number.
-NAMES = {
-    1: "line2",
-    2: "tri3",
-    3: "quad4",
-    8: "line3",
-    9: "tri6",
-    10: "quad9",
-    15: "point1",
-    16: "quad8",
-}
+NAMES = {kind.gmsh: name for name, kind in KINDS.items()}
 #: Lines, triangles and quadrilaterals of third and higher order.
 HIGHER = (*range(20, 29), *range(36, 53), *range(62, 71))
-_DIMENSION = {"line2": 1, "line3": 1, "point1": 0}
 _LABEL_LIMIT = 2**53
 _PHYSICAL = re.compile(r'\s*(\d{1,15})\s+(\d{1,15})\s+"(.*)"\s*\Z', re.ASCII)
 
@@ -51,7 +41,7 @@ class Block:
     @property
     def dimension(self) -> int:
         """0 for points, 1 for lines, 2 for cells."""
-        return _DIMENSION.get(self.kind, 2)
+        return KINDS[self.kind].dimension
 
 
 @dataclass(slots=True)

@@ -14,8 +14,9 @@ from corota.io.deck.lexer import READ
 from corota.io.gmsh.parse import NAMES, Parsed, Reader
 from corota.io.regular_file import read_bytes, require_regular
 from corota.mesh.data import Cells, Mesh
+from corota.mesh.kinds import KINDS
 from corota.mesh.plane import into_plane
-from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, REVERSED, classify
+from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, classify
 
 if TYPE_CHECKING:
     from corota.mesh.data import Floats, Ints
@@ -134,7 +135,7 @@ def _turned(
     turned = shape == CLOCKWISE
     if turned.any():
         nodes = nodes.copy()
-        nodes[turned] = nodes[turned][:, REVERSED[kind]]
+        nodes[turned] = nodes[turned][:, KINDS[kind].reversal]
         notes.append(f"{int(turned.sum())} clockwise {kind} cells are turned")
     return nodes
 

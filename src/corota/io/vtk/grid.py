@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.mesh.kinds import KINDS
 from corota.results.averaging import section_of_cells
 from corota.results.rigid import moved, rigid_curves, rigid_lines
 
@@ -21,16 +22,7 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int64]
 
 #: VTK cell types of our kinds; node orders agree.
-VTK_TYPES = {
-    "tri3": 5,
-    "tri6": 22,
-    "quad4": 9,
-    "quad8": 23,
-    "quad9": 28,
-    "line2": 3,
-    "line3": 21,
-    "point1": 1,
-}
+VTK_TYPES = {name: kind.vtk for name, kind in KINDS.items()}
 #: VTK cell type of a rigid curve.
 POLY_LINE = 4
 

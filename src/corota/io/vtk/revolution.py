@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.errors import InputError
+from corota.mesh.kinds import KINDS
 from corota.model.axisymmetry import is_axisymmetric
 from corota.results.arrays import require
 
@@ -22,14 +23,6 @@ if TYPE_CHECKING:
 
 #: Angle between two sections [degrees], at most.
 STEP = 5.0
-#: Triangles and quadrilaterals that cells consist of, with the nodes that they have.
-PARTS: dict[str, list[tuple[int, ...]]] = {
-    "tri3": [(0, 1, 2)],
-    "tri6": [(0, 3, 5), (1, 4, 3), (2, 5, 4), (3, 4, 5)],
-    "quad4": [(0, 1, 2, 3)],
-    "quad8": [(0, 4, 7), (1, 5, 4), (2, 6, 5), (3, 7, 6), (4, 5, 6, 7)],
-    "quad9": [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)],
-}
 #: VTK types of a triangle and a quadrilateral that are swept: wedge and hexahedron.
 SWEPT = {3: 13, 4: 12}
 
@@ -72,7 +65,7 @@ class Revolution:
         cells: dict[int, list[Ints]] = {3: [], 4: []}
         owners: dict[int, list[Ints]] = {3: [], 4: []}
         for offset, block in zip(mesh.offsets, mesh.cells, strict=False):
-            for part in PARTS.get(block.kind, ()):
+            for part in KINDS[block.kind].pieces:
                 cells[len(part)].append(block.nodes[:, part])
                 owners[len(part)].append(np.arange(len(block)) + offset)
         chain, types, index = [], [], []

@@ -14,7 +14,7 @@ from corota.errors import FileError
 from corota.io.regular_file import read_bytes
 from corota.io.vtk.grid import POLY_LINE, VTK_TYPES
 from corota.mesh import Cells, Mesh
-from corota.mesh.data import N_NODES
+from corota.mesh.kinds import N_NODES
 from corota.model.model import Model
 from corota.results.results import Frame, Results
 from corota.results.table import CONTACT, TABLE

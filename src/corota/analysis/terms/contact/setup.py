@@ -12,7 +12,7 @@ from corota.analysis.terms.contact.lines import line_core, line_surface, node_su
 from corota.analysis.terms.contact.smoothing import smoothed
 from corota.analysis.terms.contact.surface import Surface
 from corota.errors import ModelError
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.mesh.parts import part_of_cells
 from corota.model import elements
 from corota.model.contact import ContactPair, RigidCurve, Tie, joint_thickness

@@ -14,7 +14,8 @@ from corota.errors import Diagnostic, Location
 from corota.io.deck.elements import ELEMENTS, LINE_ELEMENTS, LINES, collapsed
 from corota.io.deck.lexer import key
 from corota.mesh.data import Cells, Mesh
-from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, REVERSED, classify
+from corota.mesh.kinds import KINDS
+from corota.mesh.quality import CLOCKWISE, FLAT, FOLDED, GOOD, classify
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -292,7 +293,7 @@ class MeshBuilder:
                 self._bad_shapes(block, shape)
                 good &= (shape != FLAT) & (shape != FOLDED)
                 turned = shape == CLOCKWISE
-                nodes[turned] = nodes[turned][:, REVERSED[kind]]
+                nodes[turned] = nodes[turned][:, KINDS[kind].reversal]
                 if turned.any():
                     n_turned += int(turned.sum())
                     example = example or int(block.labels[np.flatnonzero(turned)[0]])
@@ -410,7 +411,7 @@ class MeshBuilder:
             good &= ~same
             same &= (shape != FLAT) & (shape != FOLDED)
             turned = same & (shape == CLOCKWISE)
-            triangles[turned] = triangles[turned][:, REVERSED[kind]]
+            triangles[turned] = triangles[turned][:, KINDS[kind].reversal]
             if same.any():
                 found.append(
                     Placed(

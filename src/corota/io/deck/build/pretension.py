@@ -19,7 +19,7 @@ from corota.io.deck import numerals
 from corota.io.deck.build.mesh import views_in
 from corota.io.deck.build.ties import single_node
 from corota.io.deck.deck import nearest
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 from corota.model.constraints import Equation, LocalAxes
 from corota.model.loads import Fixed, InitialTemperature, InitialVelocity, Temperature
 

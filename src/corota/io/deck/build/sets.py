@@ -15,7 +15,7 @@ from corota.io.deck.build.mesh import view_of
 from corota.io.deck.deck import nearest
 from corota.io.deck.elements import WITH_SIDES
 from corota.io.deck.lexer import key
-from corota.mesh.data import EDGES
+from corota.mesh.kinds import EDGES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -23,7 +23,7 @@ from corota.io.deck.elements import (
 )
 from corota.io.deck.lexer import Card, Chunk, Row, key, split_row
 from corota.lazy import lazy
-from corota.mesh.data import N_NODES
+from corota.mesh.kinds import N_NODES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

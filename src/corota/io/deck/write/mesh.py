@@ -7,6 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from corota.io.atomic_file import replace_text
+from corota.mesh.kinds import KINDS, PLANAR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from corota.mesh import Mesh
 
 #: Element type written for each cell kind.
-TYPES = {"tri3": "CPS3", "tri6": "CPS6", "quad4": "CPS4", "quad8": "CPS8", "quad9": "Q9"}
+TYPES = {name: KINDS[name].deck for name in PLANAR}
 #: Entries on a line of a set.
 PER_LINE = 10
 
