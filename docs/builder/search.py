@@ -46,6 +46,7 @@ WORDS = {
     "howto/from_calculix": "calculix, ccx",
     "howto/thermal_bow": "bimetal",
     "howto/user_material": "umat, user material",
+    "howto/user_term": "uel, user element, magnetic damper, eddy current",
     "howto/sweep": "optimization, parameters, design of experiments",
     "axisymmetry": "axisymmetric, turned parts, solid of revolution",
     "cells": "homogenization, Bloch, metamaterial, lattice, unit cell",

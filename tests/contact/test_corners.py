@@ -238,10 +238,10 @@ def test_the_message_of_a_run_that_stops_names_a_corner_under_a_pressure_law() -
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
     term = system.contact_term
-    assert sunk_corner(term) == ""
+    assert sunk_corner(system) == ""
     term.u = np.zeros(system.n_dofs)
     term.u[system.dofs(model.mesh.nodes_of("square"), 1)] = -DEEP
-    assert "sharp corner of the master at node" in sunk_corner(term)
+    assert "sharp corner of the master at node" in sunk_corner(system)
 
 
 @pytest.mark.parametrize(

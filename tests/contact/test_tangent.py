@@ -27,7 +27,7 @@ def problem(method, law):
     model.contact("up.top", circle, method=method, friction=0.3)
     system = System(model, Multifrontal())
     system.begin(ct.Static(), 0.0, np.zeros(system.n_dofs), None)
-    return ContactEquations(system, system)
+    return ContactEquations(system)
 
 
 @pytest.mark.parametrize("law", [None, ct.PressureLaw("linear", 20.0)])

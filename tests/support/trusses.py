@@ -73,6 +73,9 @@ class Truss:
             matrix[dof, dof] += stiffness
         return State(force, step_time * self.load, matrix)
 
+    def rows(self, u, step_time):
+        return self.evaluate(u, step_time).internal
+
     def residual_norms(self, at, u):
         scale = max(np.abs(at.internal).max(), np.abs(at.external).max(), 1e-300)
         residual = np.where(self.constrained, 0.0, np.abs(at.residual)) / scale

@@ -318,13 +318,8 @@ class DistributedLoads:
 
     def _check_contact(self, fluid: PenetratingPressure, item: EdgeLoad) -> None:
         """Refuse a fluid whose edges are no slave surface: their contact pressure is not known."""
-        system: Any = self.system
-        slaves, masters = (np.zeros_like(fluid.on_chain) for _ in range(2))
-        for pair in system.contact_term.pairs:
-            if not pair.tied:
-                slaves[pair.slave.node_list] = True
-                if pair.master is not None:
-                    masters[pair.master.node_list] = True
+        system: Any = self.system  # the equations
+        slaves, masters = (system.nodes_of_terms(role) for role in ("slave", "master"))
         if (fluid.on_chain & masters & ~slaves).any():
             raise ModelError(
                 "the edges of a fluid that penetrates are a master surface of contact: give those "

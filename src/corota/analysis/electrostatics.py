@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.failure import ElementFailure
 from corota.analysis.following_forces import edge_shapes
-from corota.analysis.newton import ElementFailure
 from corota.errors import ModelError
 
 if TYPE_CHECKING:

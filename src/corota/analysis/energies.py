@@ -89,7 +89,7 @@ class Energies:
         in the first increment, as if an external force had balanced them.
         """
         if self._driving is None or (step.procedure == "static" and self.scheme != "static"):
-            self._driving = internal - self.system.contact_term.force
+            self._driving = internal - self.system.multiplier_force()
         self.scheme = getattr(step, "scheme", "static")
         if step.procedure == "static":
             self.set_kinetic(0.0)
@@ -136,7 +136,7 @@ class Energies:
         for term in self.system.terms:
             for name, energy in term.energies().items():
                 terms[name] = terms.get(name, 0.0) + energy
-        stored = terms.pop("ALLSE", 0.0)
+        stored, pressed = terms.pop("ALLSE", 0.0), terms.pop("ALLPW", 0.0)
         inside = (
             {"ALLIE": self.internal, "ALLTH": 0.0}
             if sums is None
@@ -158,7 +158,6 @@ class Energies:
         }
         gained = ("ALLIE", "ALLKE", "ALLVD", "ALLFD", "ALLSD", "ALLCL")
         own["ETOTAL"] = sum(own[k] for k in gained) - own["ALLWK"] - own["ALLTH"]
-        pressed = self.system.contact_term.pressure_work
         if self.impact is not None or pressed:
             own["ALLPW"] = pressed + (self.impact or 0.0)
             own["ETOTAL"] -= own["ALLPW"]
@@ -242,7 +241,7 @@ class Balance:
         account.set_kinetic(first[0])
         self.energy, self.mass, self.momenta = first[0], first[4], first[1:4]
         self._inside = self._outside = 0.0
-        self._contact = system.contact_term.force
+        self._contact = system.multiplier_force()
         account.drive(now.external, now.reaction() - self._contact)
 
     def _kinetic(self, now: MotionState) -> list[float]:
@@ -288,7 +287,8 @@ class Balance:
     def add_to(self, scalars: dict[str, Any]) -> None:
         """Write momenta and the scheme's own sums into a frame's scalars."""
         account = self.account
-        scalars.update(self.system.contact_term.work_sums(account.contact))
+        if self.system.n_multipliers:
+            scalars["contact work"] = account.contact
         px, py, angular = self.momenta
         scalars.update(
             {

@@ -17,6 +17,7 @@ from corota.analysis.linear.unsymmetric import FullMatrix
 from corota.analysis.newton import ResidualNorms
 from corota.analysis.numbered_model import NumberedModel
 from corota.analysis.recovery import recover
+from corota.analysis.rule import REST, Rule
 from corota.analysis.scales import Scales
 from corota.analysis.terms.conditions import Conditions
 from corota.analysis.terms.contact.contact import ContactTerm
@@ -28,12 +29,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.linear.solvers import LinearSolver
-    from corota.analysis.terms.term import Term
+    from corota.analysis.terms.term import Role, Term
     from corota.model.model import Model
     from corota.model.steps import Step
     from corota.results.results import PointFields
 
     Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
 
 #: Procedures that find the equilibrium of their own theory.
@@ -84,6 +86,27 @@ class System(NumberedModel):
         """Whether forces of terms may begin and end within an increment."""
         return any(term.opens for term in self.terms)
 
+    @property
+    def n_multipliers(self) -> int:
+        """Unknowns besides the dofs."""
+        return sum(term.unknowns for term in self.terms)
+
+    def multiplier_force(self, u: Floats | None = None, values: Floats = NOWHERE) -> Floats:
+        """Force of the committed multipliers, shape (n_dofs,); see :class:`Term`."""
+        forces = [term.multiplier_force(u, values) for term in self.terms]
+        return sum((f for f in forces if f is not None), start=np.zeros(self.n_dofs))
+
+    def nodes_of_terms(self, role: Role) -> NDArray[np.bool_]:
+        """Nodes of the surfaces that terms join, shape (n_nodes,); see :class:`Term`."""
+        out = np.zeros(len(self.per_node), bool)
+        for term in self.terms:
+            out[term.nodes(role)] = True
+        return out
+
+    def gives_way(self) -> str:
+        """What slides or tips beyond the committed state, for messages; or nothing."""
+        return next(filter(None, (term.gives_way() for term in self.terms)), "")
+
     # -- evaluation --------------------------------------------------------------------
 
     def begin(self, step: Step, time: float, u: Floats, reaction: Floats | None) -> None:
@@ -125,35 +148,64 @@ class System(NumberedModel):
             self._spare.append(at.values)
         at.values = NOWHERE
 
-    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
-        """Residual and tangent at a trial state; dependent dofs of `u` are set, in place.
+    def evaluate(self, z: Floats, step_time: float, rule: Rule = REST) -> Evaluation:
+        """Residual and tangent at a trial state; dependent dofs of `z` are set, in place.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n_dofs,) or (n_dofs + n_multipliers,)
+            Displacements at the end of an increment, and multipliers; without these contact and
+            ties do not act.
+        step_time : float
+            Of that end.
+        rule : Rule
+            What the increment makes of it: a time scheme, or statics.
 
         Raises
         ------
         ElementFailure
             If an element is inverted or its material did not converge.
         """
+        u = z[: self.n_dofs]
         self.constraints.complete(u)
         at = self.blank(self.borrow_tangent())
-        self._add_terms(StatePoint(u, step_time), at)
-        at.link = self.constraints.link(u)
+        point = rule.point(u, step_time)
+        self._add_terms(point, at, rule)
+        at.link = rule.link(self.constraints, u)
+        rule.close(point, at)
+        if len(z) > len(u):
+            # Constraints hold at the end of the increment, whatever the rule weighs.
+            end = StatePoint(u, step_time, multipliers=z[self.n_dofs :].copy())
+            self.contact_term.add(end, at)
+        if at.added is not None:
+            self.pattern.add_diagonal(at.values, at.added)
         return at
 
     def blank(self, values: Floats) -> Evaluation:
         """An evaluation to be filled; `values` is the memory of its tangent."""
         return Evaluation(np.empty(self.n_dofs), NOWHERE, np.empty(self.n_dofs), values)
 
-    def _add_terms(self, point: StatePoint, at: Evaluation) -> None:
-        """Add all terms that act on displacements alone; contact has unknowns of its own."""
-        self.elements.add(point, at)
-        if not self.scales.stiffest and len(at.values):
+    def _add_terms(self, point: StatePoint, at: Evaluation, rule: Rule) -> None:
+        """Add all terms without multipliers."""
+        rule.add_elements(self.elements, point, at)
+        if not (self.scales.stiffest or rule.moves) and len(at.values):
             self.scales.measure(at.values)
-        self.add_others(point, at)
-
-    def add_others(self, point: StatePoint, at: Evaluation) -> None:
-        """Add the terms beside the elements."""
         for term in self.terms[1:-1]:
             term.add(point, at)
+
+    def damping_of_terms(self, u: Floats, values: Floats) -> tuple[Ints, Ints, Floats] | None:
+        """Add the derivatives of user terms by velocity to `values`; unsymmetric ones as triplets.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n_dofs,)
+        values : ndarray, shape (nnz,)
+        """
+        still = np.zeros(self.n_dofs)
+        at = Evaluation(still.copy(), still.copy(), still.copy(), values)
+        for term in self.terms[2:-1]:
+            term.add(StatePoint(u, 0.0, still, still, (0.0, 1.0, 0.0)), at)
+        return at.load_stiffness
 
     def with_loads(self, at: Evaluation, u: Floats, step_time: float) -> Evaluation:
         """An evaluation at `u` with the loads of another time; its tangent is a copy."""
@@ -165,7 +217,7 @@ class System(NumberedModel):
     def forces(self, u: Floats, step_time: float) -> Evaluation:
         """Forces at a state without the tangent."""
         at = self.blank(NOWHERE)
-        self._add_terms(StatePoint(u, step_time), at)
+        self._add_terms(REST.point(u, step_time), at, REST)
         return at
 
     def reaction(self, at: Evaluation) -> Floats:
@@ -189,6 +241,11 @@ class System(NumberedModel):
         for term in self.terms:
             term.commit()
         self.scales.commit()
+
+    def revert(self) -> None:
+        """Go back to the committed state."""
+        for term in self.terms:
+            term.revert()
 
     # -- linear algebra ----------------------------------------------------------------
 

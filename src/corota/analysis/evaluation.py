@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from corota.analysis.constraints.none import IDENTITY
+from corota.analysis.terms.contact.gaps import NO_CONTACT, ContactState
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,11 +37,11 @@ class Evaluation:
     link : LinearizedConstraints
         The constraints linearized at the state.
     added : ndarray, shape (n_dofs,), or None
-        Contribution of damping to the diagonal of the tangent, which is not stiffness.
+        Artificial stiffness on the diagonal of the tangent.
     inertia, damping : ndarray, shape (n_dofs,), or None
         Forces of inertia and damping, added to those of the displacement.
-    contact : ContactState or None
-        Of pairs and ties, once their term has been added.
+    contact_state : ContactState
+        Gaps and slips of pairs and ties: the equations of their multipliers.
     inertial_stiffness, momentum : float
         In motion: inertia per displacement [force/length], and the largest of the terms of
         which the acceleration is a difference [force].
@@ -55,7 +56,7 @@ class Evaluation:
     added: Floats | None = None
     inertia: Floats | None = None
     damping: Floats | None = None
-    contact: Any = None
+    contact_state: ContactState = NO_CONTACT
     inertial_stiffness: float = 0.0
     momentum: float = 0.0
 
@@ -63,6 +64,15 @@ class Evaluation:
     def residual(self) -> Floats:
         """Internal minus external force, shape (n_dofs,)."""
         return self.internal - self.external
+
+    def add_damping(self, force: Floats) -> None:
+        """Add a force that dissipates energy."""
+        self.damping = force if self.damping is None else self.damping + force
+
+    def add_spring(self, stiffness: Floats, moved: Floats) -> None:
+        """Add artificial springs at the dofs, shapes (n_dofs,)."""
+        self.internal = self.internal + stiffness * moved
+        self.added = stiffness if self.added is None else self.added + stiffness
 
     def weigh(self, share: float) -> None:
         """Multiply the tangent, in place."""

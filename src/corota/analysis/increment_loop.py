@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from corota.analysis.equations import System
-    from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import Outcome, ResidualNorms
     from corota.analysis.observers import Observers
     from corota.analysis.state import State
@@ -212,7 +211,7 @@ class Attempt:
     """
 
     target: float
-    outcome: Outcome[Evaluation]
+    outcome: Outcome
     contact: ContactIncrement | None
     reason: str = ""
 

@@ -9,16 +9,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from corota.analysis.failure import ElementFailure, GiveUp
+from corota.analysis.rule import REST, Rule
 from corota.errors import SingularError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+
+    from corota.analysis.evaluation import Evaluation
 
     Floats = NDArray[np.float64]
 
@@ -42,37 +46,14 @@ def larger(a: float, b: float) -> float:
     return a if a > b or a != a else b
 
 
-class ElementFailure(Exception):
-    """Elements could not be evaluated at a trial state; a smaller step may help."""
-
-
-class GiveUp(Exception):
-    """No correction of this increment helps; a smaller increment may."""
-
-
-class EvaluationLike(Protocol):
-    """Attributes of an evaluation that the method uses."""
+class Corrections(Protocol):
+    """Evaluation and correction of the equations: of a system, or with contact states."""
 
     @property
-    def residual(self) -> Floats: ...
-    @property
-    def external(self) -> Floats: ...
-    @property
-    def internal(self) -> Floats: ...
-    @property
-    def scale(self) -> Floats: ...
-
-
-E = TypeVar("E", bound=EvaluationLike)
-
-
-class SystemLike(Protocol[E]):
-    """A system of equations: see :class:`corota.analysis.equations.System`."""
-
-    def evaluate(self, u: Floats, step_time: float) -> E: ...
-    def predict(self, at: E, du_prescribed: Floats) -> tuple[Floats, int]: ...
-    def residual_norms(self, at: E, u: Floats) -> ResidualNorms: ...
-    def return_tangent(self, at: E) -> None: ...
+    def evaluate(self) -> Callable[[Floats, float, Rule], Evaluation]: ...
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]: ...
+    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms: ...
+    def return_tangent(self, at: Evaluation) -> None: ...
 
 
 @dataclass
@@ -113,7 +94,7 @@ class Settings:
     tolerance: float = 1e-9
     max_iterations: int = 16
     #: Correct with the last factorization, for an iteration that converges with it.
-    reuse: Callable[[Any], Floats] | None = None
+    reuse: Callable[[Evaluation], Floats] | None = None
     #: Iterations without a clearly smaller residual after which the attempt is given up; 0: never.
     patience: int = 0
     #: Line search in every iteration in which supports do not move.
@@ -123,7 +104,7 @@ class Settings:
 
 
 @dataclass
-class Outcome(Generic[E]):
+class Outcome:
     """Result of an increment.
 
     Parameters
@@ -131,7 +112,7 @@ class Outcome(Generic[E]):
     converged : bool
     u : ndarray, shape (n_dofs,)
         Last trial, equilibrium if converged.
-    at : EvaluationLike
+    at : Evaluation
         Evaluation at `u`.
     iterations : int
     sizes : list of float
@@ -146,7 +127,7 @@ class Outcome(Generic[E]):
 
     converged: bool
     u: Floats
-    at: E | None
+    at: Evaluation | None
     iterations: int = 0
     sizes: list[float] = field(default_factory=list)
     negative: int = -1
@@ -155,19 +136,20 @@ class Outcome(Generic[E]):
 
 
 def newton(
-    system: SystemLike[E],
+    system: Corrections,
     u: Floats,
     prescribed: Floats,
     step_time: float,
     settings: Settings,
-    start: E | None = None,
+    start: Evaluation | None = None,
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
-) -> Outcome[E]:
+    rule: Rule = REST,
+) -> Outcome:
     """Find equilibrium at a time, starting from a displacement.
 
     Parameters
     ----------
-    system : SystemLike
+    system : Corrections
     u : ndarray, shape (n_dofs,)
         Converged displacement of the increment before; not changed.
     prescribed : ndarray, shape (n_dofs,)
@@ -175,10 +157,12 @@ def newton(
     step_time : float
         Time at which loads are taken.
     settings : Settings
-    start : EvaluationLike, optional
+    start : Evaluation, optional
         Evaluation at `u` and `step_time`, if it is known.
     report : callable, optional
         Called with iteration number, residual norms, largest correction and a note.
+    rule : Rule
+        What the increment makes of its unknowns.
 
     Returns
     -------
@@ -190,7 +174,7 @@ def newton(
         If the structure is not constrained.
     """
     try:
-        at = start if start is not None else system.evaluate(u, step_time)
+        at = start if start is not None else system.evaluate(u, step_time, rule)
     except ElementFailure as error:
         return Outcome(False, u, None, reason=str(error))
     outcome = Outcome(False, u, at)
@@ -211,6 +195,7 @@ def newton(
                 du = again(at)
             else:
                 du, outcome.negative = system.predict(at, du_prescribed)
+                du = rule.improve(du, moved)
         except SingularError as error:
             if iteration == 1:
                 raise
@@ -225,7 +210,7 @@ def newton(
             return outcome
         before = size
         strict = settings.search and not moved
-        trial = _search(system, u, du, at, step_time, before, iteration, strict)
+        trial = _search(system, u, du, at, step_time, before, iteration, strict, rule)
         if isinstance(trial, str):
             outcome.reason = trial
             return outcome
@@ -275,6 +260,12 @@ def newton(
     return outcome
 
 
+def _work(du: Floats, at: Evaluation) -> float:
+    """Work of the residual on a correction; unknowns beyond the dofs have none."""
+    residual = at.residual
+    return float(du[: len(residual)] @ residual)
+
+
 def _old_will_do(sizes: list[float], tolerance: float) -> bool:
     """Whether the tangent of the iteration before takes the residual below the tolerance.
 
@@ -288,15 +279,16 @@ def _old_will_do(sizes: list[float], tolerance: float) -> bool:
 
 
 def _search(
-    system: SystemLike[E],
+    system: Corrections,
     u: Floats,
     du: Floats,
-    start: E,
+    start: Evaluation,
     step_time: float,
     before: float,
     iteration: int,
-    strict: bool = False,
-) -> tuple[Floats, E, float] | str:
+    strict: bool,
+    rule: Rule,
+) -> tuple[Floats, Evaluation, float] | str:
     """Take the step; shorten it where elements fail or the residual grows.
 
     Early growth of the residual is accepted: in slender structures it is stretching that
@@ -308,13 +300,13 @@ def _search(
     while length >= SHORTEST:
         trial = u + (du if length == 1.0 else length * du)
         try:
-            at = system.evaluate(trial, step_time)
+            at = system.evaluate(trial, step_time, rule)
         except ElementFailure as error:
             problem = str(error)
             length *= 0.5
             continue
         if strict:
-            first, last = float(du @ start.residual), float(du @ at.residual)
+            first, last = _work(du, start), _work(du, at)
             if not (first < 0.0 and last > SLACK * abs(first)):
                 return trial, at, length
             shorter = length * min(max(first / (first - last), 0.1), 0.9)
@@ -329,7 +321,7 @@ def _search(
         if after <= 2.0 * before:
             return trial, at, length
         # Zero of the work of the residual along the step, by one regula falsi.
-        first, last = float(du @ start.residual), float(du @ at.residual)
+        first, last = _work(du, start), _work(du, at)
         if first < 0.0 < last:
             length = min(max(first / (first - last), 0.1), 0.9)
             system.return_tangent(at)
@@ -338,4 +330,4 @@ def _search(
     return problem
 
 
-__all__ = ["ElementFailure", "GiveUp", "Outcome", "ResidualNorms", "Settings", "larger", "newton"]
+__all__ = ["Outcome", "ResidualNorms", "Settings", "larger", "newton"]

@@ -129,6 +129,10 @@ class PathSystem(Protocol):
         """Residual and tangent."""
         ...
 
+    def rows(self, u: Floats, step_time: float) -> Floats:
+        """Internal forces, and the equations of the other unknowns."""
+        ...
+
     def residual_norms(self, at: Any, u: Floats) -> ResidualNorms:
         """Size of the residual."""
         ...
@@ -214,9 +218,9 @@ class SmoothPath:
         """The unknowns of a committed state."""
         return u
 
-    def plain(self, at: Evaluation) -> Evaluation:
-        """The system's own evaluation."""
-        return at
+    def rows(self, u: Floats, step_time: float) -> Floats:
+        """Forces at the dofs."""
+        return self.evaluate(u, step_time).internal
 
     def restart(self, loose: bool = False, like: Any = None) -> None:
         """Nothing is kept between attempts."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.newton import ElementFailure
+from corota.analysis.failure import ElementFailure
 from corota.results.derived import add_derived
 from corota.results.results import PointFields
 

@@ -16,16 +16,15 @@ from corota.analysis.constraints.none import IDENTITY
 from corota.analysis.end_moments import add_end_moments
 from corota.analysis.energies import Energies
 from corota.analysis.equations import System
+from corota.analysis.failure import ElementFailure
 from corota.analysis.linear.solvers import make_solver
 from corota.analysis.memory import require_libraries
-from corota.analysis.newton import ElementFailure
 from corota.analysis.observers import Observers
 from corota.analysis.parallel.communicator import ALONE
 from corota.analysis.procedures.localization import localized
 from corota.analysis.procedures.registry import PROCEDURES, procedure
 from corota.analysis.state import State
 from corota.analysis.state_tree import Reader, arrays_as_built, copies_as_built, dict_of
-from corota.analysis.terms.contact.output import output as contact_output
 from corota.analysis.terms.contact.peaks import missed_peaks
 from corota.analysis.terms.moving_mass import masses_of_steps
 from corota.display import brief
@@ -415,7 +414,7 @@ class Analysis:
         assert state.energies is not None
         state.energies.begin(step, state.at.internal)
         if number == 1:
-            state.notes += system.contact_term.notes
+            state.notes += [note for term in system.terms for note in term.notes]
             if not step.starts_in_motion:
                 self._save(number, state, 0, 0.0, {})
 
@@ -500,8 +499,12 @@ class Analysis:
         if kind == "dynamic" or (kind == "static" and elements is not None):
             assert state.energies is not None
             state.energies.add_to(scalars, elements, (number, increment))
-        contact, sums, pairs = contact_output(system.contact_term)
-        scalars = {**scalars, **sums, **system.conditions.wetted()}
+        outputs = [term.output() for term in system.terms]
+        contact = next((out.contact for out in outputs if out.contact is not None), None)
+        pairs = {name: table for out in outputs for name, table in out.pairs.items()}
+        for out in outputs:
+            scalars = {**scalars, **out.scalars}
+        scalars |= system.conditions.wetted()
         reaction, held = state.reaction, None
         if reaction is None:
             reaction = system.reaction(state.at)

@@ -106,7 +106,7 @@ class State:
     linear: LinearMotion | None = None
     stages: StageRecorder | None = None
     recover: Callable[[], tuple[list[PointFields], dict[str, float]]] | None = None
-    failed: Outcome[Evaluation] | None = None
+    failed: Outcome | None = None
     loop: dict[str, Any] | None = None
     resumption: Resumption | None = None
 

@@ -115,7 +115,7 @@ def adjoints(
             "critical loads and frequencies of materials with history have no gradient: their "
             "tangent jumps where a point begins to flow"
         )
-    if trajectory.system.contact_term.pairs:
+    if trajectory.system.joined:
         _refuse_with_surfaces(trajectory, leaves)
     for column, leaf in enumerate(leaves):
         frame = leaf.frame if leaf.frame >= 0 else last_frame + 1 + leaf.frame

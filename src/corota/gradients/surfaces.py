@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.terms.contact.contact import ContactState
+    from corota.analysis.terms.contact.gaps import ContactState
     from corota.model.model import Model
 
     Floats = NDArray[np.float64]
@@ -214,12 +214,12 @@ def solve(
 ) -> tuple[Floats, Floats]:
     """Adjoint displacements and multipliers, shapes (n_dofs, m) and (n_multipliers, m)."""
     term = system.contact_term
-    contact = ContactEquations(system, system)
+    contact = ContactEquations(system)
     term._stiff = False
-    found, symmetric = contact.evaluate(np.concatenate([u, surfaces.multipliers]), time), True
-    if found.at.load_stiffness is not None:
-        symmetric = system._add_load_stiffness(found.at)[0]
-        found.at.load_stiffness = None
+    at, symmetric = system.evaluate(np.concatenate([u, surfaces.multipliers]), time), True
+    if at.load_stiffness is not None:
+        symmetric = system._add_load_stiffness(at)[0]
+        at.load_stiffness = None
     if not symmetric:
         raise UnsupportedError(
             "gradients with contact do not include follower loads without a potential (pressure on "
@@ -227,7 +227,7 @@ def solve(
         )
     contact.slip_directions = {pair.first: np.ones(pair.n) for pair in term.pairs}
     right = RightHandSides(np.asfortranarray(rhs), np.asfortranarray(moved), np.zeros(rhs.shape[1]))
-    z, y, _ = contact._solve(found, [s.copy() for s in surfaces.states], right)
+    z, y, _ = contact._solve(at, [s.copy() for s in surfaces.states], right)
     return z, y
 
 

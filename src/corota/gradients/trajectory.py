@@ -216,7 +216,7 @@ class Trajectory:
             at = system.forces(u, increment.time)
             at.link = system.constraints.link(u)
             gaps = np.zeros(0)
-            if system.contact_term.pairs:
+            if system.n_multipliers:
                 if increment.surfaces is None:
                     increment.surfaces = find(system, u, increment.time, at)
                 gaps = add_forces(system, u, increment.time, at, increment.surfaces)

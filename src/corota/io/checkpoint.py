@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
 
 #: First line of a file; the number is that of the format.
-MAGIC = "corota checkpoint 1\n"
+MAGIC = "corota checkpoint 2\n"
 #: Bytes of the block before the HDF5 part.
 HEAD = 512
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.constraints.relations import Relation
-from corota.analysis.newton import ElementFailure
+from corota.analysis.failure import ElementFailure
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

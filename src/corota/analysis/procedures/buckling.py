@@ -100,7 +100,7 @@ def _check_unloaded(system: System, step: Buckle) -> None:
 
 def _solve(system: System, step: Buckle, number: int, u: Floats) -> tuple[Floats, Floats]:
     force, move, loads = _perturbation(system, step, number, u)
-    if system.contact_term.n:
+    if system.n_multipliers:
         # With multipliers the stiffness is indefinite.
         factors, shapes = factors_with_contact(system, u, force, move, loads, step.modes)
         return factors, _largest_one(system, shapes)

@@ -139,7 +139,7 @@ class DynamicStepper(NewtonStepper):
             return
         now = self.now
         scalars: dict[str, float] = {}
-        self.ends.start(now, system.contact_term.force)
+        self.ends.start(now, system.multiplier_force())
         state.u, state.v, state.a = now.u, now.v, now.a
         state.at, state.reaction = self.ends.at, self.ends.reaction
         self.energy_balance.add_to(scalars)
@@ -185,7 +185,6 @@ class DynamicStepper(NewtonStepper):
         driven = _driven(system, prescribed, target, dt)
         self.motion = _motion(system, step, self.inertia, now, dt, driven, self.viscous)
         outcome, contact = solve_increment(
-            self.motion,
             system,
             guess,
             prescribed,
@@ -193,6 +192,7 @@ class DynamicStepper(NewtonStepper):
             self.settings,
             self.report,
             last_chance=step.fixed_increments,
+            rule=self.motion,
         )
         reason = "" if outcome.converged else outcome.reason or "no convergence"
         self.error = 0.0

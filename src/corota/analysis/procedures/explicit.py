@@ -12,6 +12,7 @@ import numpy as np
 from corota.analysis.energies import LARGE_ERROR
 from corota.analysis.increment_loop import Accepted, IncrementLoop
 from corota.analysis.procedures.motion_start import initial_velocity
+from corota.analysis.rule import AtVelocity
 from corota.analysis.terms.contact.forward import forward_contact
 from corota.analysis.terms.damping import material_pairs
 from corota.analysis.terms.inertia import Inertia
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.term import StatePoint
     from corota.model.steps import Dynamic
 
     Floats = NDArray[np.float64]
@@ -144,6 +146,15 @@ def explicit_step(loop: IncrementLoop, step: Dynamic, stops: list[float]) -> Non
         )
 
 
+class CentralDifference(AtVelocity):
+    """The end of an increment; terms see the velocity of its middle, half an increment late."""
+
+    def close(self, point: StatePoint, at: Evaluation) -> None:
+        """Count forces of velocities among the internal ones."""
+        if at.damping is not None:
+            at.internal = at.internal + at.damping
+
+
 class ExplicitStepper:
     """Increments of central differences, all of one size; some of many are shown.
 
@@ -185,7 +196,7 @@ class ExplicitStepper:
         given_v, given_a = system.conditions.supports.rates(0.0, dt)
         state.v[constrained] = given_v[constrained]
         self.u = state.u.copy()
-        self.at = system.evaluate(self.u, 0.0)
+        self.at = system.evaluate(self.u, 0.0, CentralDifference(state.v))
         self.moving = ~constrained & (mass > 0.0)
         self.idle = ~constrained & ~self.moving
         self.inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=self.moving)
@@ -290,7 +301,7 @@ class ExplicitStepper:
             constrained, system.conditions.supports.at(time, self.u) - self.u, dt * self.v
         )
         self.u = self.u + du
-        self.at = at = system.evaluate(self.u, time)
+        self.at = at = system.evaluate(self.u, time, CentralDifference(self.v))
         system.commit()
         _refuse_pushed(system, self.idle, at)
         # Prescribed dofs have the rates of their amplitude, as in the implicit schemes.
@@ -300,7 +311,11 @@ class ExplicitStepper:
         residual = at.residual - force
         a = -self.inverse * residual
         account.add_work(du, at.external, residual)
-        self.internal += float(0.5 * (before.internal + at.internal) @ du)
+        damped = 0.0
+        if before.damping is not None and at.damping is not None:
+            damped = float(0.5 * (before.damping + at.damping) @ du)
+            account.viscous += damped
+        self.internal += float(0.5 * (before.internal + at.internal) @ du) - damped
         whole = np.where(constrained, given_v, self.v + 0.5 * dt * a)
         # Supports accelerate the mass that moves with them.
         moved = 0.5 * float((mass * whole**2)[constrained].sum())
@@ -359,7 +374,7 @@ class ExplicitStepper:
         moved = np.where(
             constrained, system.conditions.supports.at(time, self.u) - self.u, lag * self.v
         )
-        at = system.evaluate(self.u + moved, time)
+        at = system.evaluate(self.u + moved, time, CentralDifference(self.v))
         residual = at.residual - self.force
         acceleration = -self.inverse * residual
         given_v, given_a = system.conditions.supports.rates(time, self.dt)

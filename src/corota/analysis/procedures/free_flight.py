@@ -44,7 +44,7 @@ class FreeFlight:
             held[distinct(link.direct.tocoo().col)] = True
         nodes = np.zeros(len(part), bool)
         nodes[system.node_of_dof[held]] = True
-        nodes[system.contact_term.tied_nodes] = True
+        nodes |= system.nodes_of_terms("tied")
         bound_parts = np.zeros(part.max(initial=-1) + 2, bool)
         bound_parts[part[nodes]] = True
         bound_parts[-1] = True  # nodes without elements

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.evaluation import Evaluation
+from corota.analysis.failure import ElementFailure
 from corota.analysis.increment_loop import Accepted, IncrementLoop
-from corota.analysis.newton import ElementFailure
 from corota.analysis.procedures.linear_fields import LinearFields
 from corota.analysis.procedures.motion_start import initial_velocity
 from corota.analysis.procedures.reduced import Patterns, Reduced, last_modes

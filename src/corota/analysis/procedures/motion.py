@@ -1,8 +1,4 @@
-"""The equations of an increment of a time scheme, for Newton's method.
-
-It offers the same methods as the static system, with the inertia and the weights of the
-scheme put into residual and tangent; so there is one Newton's method.
-"""
+"""Increments of time schemes: rates of the unknowns, and weights of the forces at both ends."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -14,16 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from corota.analysis.acceleration import Acceleration
+from corota.analysis.rule import Rule
 from corota.analysis.terms.inertia import MotionState
 from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.constraints.elimination import Constraints, LinearizedConstraints
     from corota.analysis.equations import System
     from corota.analysis.evaluation import Evaluation
-    from corota.analysis.newton import ResidualNorms
     from corota.analysis.terms.damping import Damping
+    from corota.analysis.terms.elements import Elements
     from corota.analysis.terms.inertia import Inertia
     from corota.model.schemes import Scheme
 
@@ -47,8 +45,8 @@ class Driven:
     a: Floats
 
 
-class Motion:
-    """One increment of a time scheme: what Newton's method needs besides an evaluation.
+class Motion(Rule):
+    """One increment of a time scheme.
 
     Parameters
     ----------
@@ -66,6 +64,8 @@ class Motion:
         State of the last evaluation.
     """
 
+    moves = True
+
     def __init__(
         self,
         system: System,
@@ -80,21 +80,9 @@ class Motion:
         self.damping = damping
         self.end = start
 
-    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
-        """Newton correction."""
-        return self.system.predict(at, du_prescribed)
-
-    def residual_norms(self, at: Evaluation, u: Floats) -> ResidualNorms:
-        """Size of the residual."""
-        return self.system.residual_norms(at, u)
-
-    def return_tangent(self, at: Evaluation) -> None:
-        """Take the memory of a tangent back."""
-        self.system.return_tangent(at)
-
 
 class NewmarkMotion(Motion):
-    """One increment of a scheme with Newmark's relations, for Newton's method.
+    """One increment of a scheme with Newmark's relations.
 
     The equation of motion holds at the end of the increment, with the true acceleration there;
     Newmark's relations take a filtered one, A (Arnold & Bruels 2007):
@@ -163,22 +151,24 @@ class NewmarkMotion(Motion):
         carried[constrained] = a[constrained]
         return v, a, carried
 
-    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
-        """Residual and effective tangent of the equation of motion."""
+    def point(self, u: Floats, step_time: float) -> StatePoint:
+        """The end of the increment; its weights are still to be multiplied by that of the end."""
+        v, a, self._carried = self._rates(u)
+        return StatePoint(u, step_time, v, a, (1.0, self.c_v, self.c_a))
+
+    def close(self, point: StatePoint, at: Evaluation) -> None:
+        """Weigh both ends of the increment."""
         share = 1.0 - self.scheme.alpha_f
-        at = self.system.evaluate(u, step_time)
         at.weigh(share)
-        v, a, carried = self._rates(u)
-        point = StatePoint(u, step_time, v, a, (share, share * self.c_v, share * self.c_a))
+        point = point._replace(weights=(share, share * self.c_v, share * self.c_a))
         for term in (self.inertia, self.damping):
             term.add(point, at)
-        self.inertia.weigh(at, u - self.start.u, point.weights[2])
-        self.end = end = MotionState.of(point, at, carried)
+        self.inertia.weigh(at, point.u - self.start.u, point.weights[2])
+        self.end = end = MotionState.of(point, at, self._carried)
         at.internal = share * (end.internal + end.damping + end.inertia)
         at.external = share * at.external
         if self.begun is not None:
             at.internal += self.begun
-        return at
 
 
 class ConservingMotion(Motion):
@@ -188,12 +178,11 @@ class ConservingMotion(Motion):
     ``2 tan(dphi / 2)``, which also carries the rotational velocities.
     """
 
-    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
-        """Newton correction; the tangent is symmetric, which the exact one is not."""
-        du, negative = super().predict(at, du_prescribed)
-        if not (self.system.joined or du_prescribed.any()):
-            du = self._acceleration.improve(self.end.u, du)
-        return du, negative
+    def improve(self, du: Floats, driven: bool) -> Floats:
+        """A correction that converges faster: the tangent is symmetric, the exact one is not."""
+        if self.system.joined or driven:
+            return du
+        return self._acceleration.improve(self.end.u, du)
 
     @cached_property
     def _acceleration(self) -> Acceleration:
@@ -209,15 +198,13 @@ class ConservingMotion(Motion):
             d[turn] = 2.0 * np.tan(0.5 * d[turn])
         return d
 
-    def evaluate(self, u: Floats, step_time: float) -> Evaluation:
-        """Residual and tangent of the mid-point equation of motion."""
-        system, b, dt = self.system, self.start, self.dt
-        at = system.blank(system.borrow_tangent())
-        system.constraints.complete(u)
-        d, begun = self.increment(u), self._begun
-        v = 2.0 / dt * d - begun
-        a = (v - begun) / dt
-        point = StatePoint(
+    def point(self, u: Floats, step_time: float) -> StatePoint:
+        """The middle of the increment."""
+        b, dt = self.start, self.dt
+        d = self._d = self.increment(u)
+        v = self._v = 2.0 / dt * d - self._begun
+        a = (v - self._begun) / dt
+        return StatePoint(
             0.5 * (u + b.u),
             step_time - 0.5 * dt,
             d / dt,
@@ -225,20 +212,30 @@ class ConservingMotion(Motion):
             weights=(0.5, 1.0 / dt, 2.0 / (dt * dt)),
             between=(b.u, u, dt),
         )
-        force = system.elements.add_conserving(point, begun, self.inertia.kind, at)
-        internal = at.internal.copy()
-        system.add_others(point, at)
-        force += at.internal - internal
+
+    def add_elements(self, elements: Elements, point: StatePoint, at: Evaluation) -> None:
+        """Fill in the forces of the elements and their inertia."""
+        self._force = elements.add_conserving(point, self._begun, self.inertia.kind, at)
+        self._internal = at.internal.copy()
+
+    def link(self, constraints: Constraints, u: Floats) -> LinearizedConstraints:
+        """The constraints over the increment."""
+        return constraints.secant(self.start.u, u)
+
+    def close(self, point: StatePoint, at: Evaluation) -> None:
+        """Add point masses and damping."""
+        assert point.between is not None
+        u, v = point.between[1], self._v
+        force = self._force + (at.internal - self._internal)
         force += self.inertia.add_point_masses(point, at)
-        at.link = system.constraints.secant(b.u, u)
-        self.inertia.weigh(at, d, point.weights[2])
+        self.inertia.weigh(at, self._d, point.weights[2])
         self.damping.add(point, at)
         constrained = self.driven.constrained
+        a = point.a
         v[constrained], a[constrained] = self.driven.v[constrained], self.driven.a[constrained]
         at.inertia = force - at.internal
         self.end = end = MotionState.of(point._replace(u=u, v=v), at)
         at.internal = force + end.damping
-        return at
 
     @cached_property
     def _begun(self) -> Floats:

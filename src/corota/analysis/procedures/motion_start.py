@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from corota.analysis.rule import AtVelocity
 from corota.analysis.terms.damping import Damping
 from corota.analysis.terms.inertia import Inertia, MotionState
 from corota.analysis.terms.term import StatePoint
@@ -50,7 +51,6 @@ def start_motion(
     if state.v is None:
         state.v = initial_velocity(system, state.u)
     support_a = _start_supports(system, step, state)
-    at = system.evaluate(state.u, 0.0)
     u, v = state.u, state.v
     last = state.carried
     goes_on = last is not None and last[0] is u and last[1] is v
@@ -60,10 +60,10 @@ def start_motion(
     # Dependent dofs accelerate as they turn, before their masters do. Where the scheme goes on
     # they keep their own velocities, which are those of its mid-point relations.
     system.constraints.complete_rates(u, v.copy() if goes_on else v, zero)
+    at = system.evaluate(u, 0.0, AtVelocity(v))
     force = inertia.force(u, v, zero)
     # Bodies may rest on each other from a step before.
-    contact = system.contact_term
-    resting = contact.evaluate(u, contact.committed, 0.0, at.values).force
+    resting = system.multiplier_force(u, at.values)
     Damping(inertia, step.rayleigh[0], viscous, u).add(StatePoint(u, 0.0, v), at)
     assert at.damping is not None
     internal, external, damping = at.internal, at.external, at.damping

@@ -12,7 +12,6 @@ import numpy as np
 
 from corota.analysis.increment_loop import Accepted, Attempt, IncrementLoop, NewtonStepper
 from corota.analysis.newton import Outcome, Settings
-from corota.analysis.terms.contact.messages import gives_way
 from corota.analysis.terms.contact.newton import solve_increment
 from corota.errors import ConvergenceError, ModelError, SingularError
 from corota.lazy import lazy
@@ -188,7 +187,7 @@ class StaticStepper(NewtonStepper):
         now, then = (conditions.external(t, u)[0] for t in (self.control.time, target))
         return bool((then - now) @ self.moved < 0.0)
 
-    def check_stability(self, outcome: Outcome[Evaluation], target: float) -> None:
+    def check_stability(self, outcome: Outcome, target: float) -> None:
         """Refuse an unstable equilibrium behind a stable one, unless the step only warns of it.
 
         The inertia is that of the last tangent of Newton's method, which belongs to the iterate
@@ -213,7 +212,7 @@ class StaticStepper(NewtonStepper):
         known: Evaluation | None,
         first: float | None = None,
         before: int = 0,
-    ) -> tuple[Outcome[Evaluation], ContactIncrement | None]:
+    ) -> tuple[Outcome, ContactIncrement | None]:
         """Newton's method from the committed state.
 
         Parameters
@@ -250,7 +249,6 @@ class StaticStepper(NewtonStepper):
             report = _continued(report, before, UNLOADING if first is not None else "")
         try:
             outcome, contact = solve_increment(
-                system,
                 system,
                 state.u,
                 system.conditions.supports.at(target, state.u),
@@ -454,7 +452,7 @@ class StaticStepper(NewtonStepper):
                 moves = driven(system, step, state)
                 if not moves:
                     fails = collapse(system, number, factor, rates, said)
-                way = gives_way(system.contact_term)
+                way = system.gives_way()
                 raise ConvergenceError(
                     f"{fails + '. ' if fails else ''}step {number} stopped at step time "
                     f"{factor * step.period:g} of {step.period:g} (load factor {factor:.6g}): "

@@ -73,11 +73,11 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
         # Unconstrained bodies that did not move are not in a first equilibrium.
         untouched = outcome.converged and first and not contact.presses
         if untouched or not outcome.converged:
-            system.contact_term.restore()
+            system.revert()
             tries.nothing_closed = untouched
             continue
         if early and not contact.near(outcome.u):
-            system.contact_term.restore()
+            system.revert()
             return ""
         if first:
             state.notes.append(
@@ -97,7 +97,7 @@ def by_relaxation(stepper: StaticStepper, early: bool) -> Attempt | str:
         return ""
     tried = "neither relaxation nor a damped motion" if aided else "no relaxation"
     said = f"; {tried} from the last converged state found an equilibrium nearby"
-    if sunk_corner(system.contact_term):
+    if sunk_corner(system):
         return said  # the message has the reason
     return f"{said}: the bodies snap or fold; use Dynamic to follow that"
 

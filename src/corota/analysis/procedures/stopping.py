@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.terms.contact.messages import gives_way
 from corota.model.plasticity import Mises
 
 if TYPE_CHECKING:
     from corota.analysis.equations import System
-    from corota.analysis.evaluation import Evaluation
     from corota.analysis.increments import Increments
     from corota.analysis.newton import Outcome
     from corota.analysis.state import State
@@ -37,7 +35,7 @@ def at_limit(system: System, step: Static, number: int, factor: float, state: St
     yielding = ", with yielding (plastic collapse, unless its shape snaps)" * (
         not moves and _yields(system)
     )
-    way = gives_way(system.contact_term)
+    way = system.gives_way()
     return (
         f"limit point at load factor {factor:.6g} of step {number}{yielding}: the structure "
         f"cannot carry more load in this equilibrium{way and f' ({way})'}. The states up to it are "
@@ -118,7 +116,7 @@ def explanation(
     system: System,
     number: int,
     control: Increments,
-    outcome: Outcome[Evaluation],
+    outcome: Outcome,
     state: State,
     end: str,
     rates: tuple[float, float],

@@ -46,7 +46,7 @@ class Damping(Term):
         self.mass = mass_damping(inertia.system, u, inertia.kind)
 
     def add(self, point: StatePoint, at: Evaluation) -> None:
-        """Set the damping of `at`, and add its derivative by velocity."""
+        """Add the damping of `at`, and its derivative by velocity."""
         system, v, values, weight = self.inertia.system, point.v, at.values, point.weights[1]
         force = np.zeros(len(v))
         if self.per_mass:
@@ -67,7 +67,7 @@ class Damping(Term):
                 # Derivatives of external forces have the other sign.
                 rows, columns, products = triplets
                 at.add_load_stiffness(rows, columns, -products)
-        at.damping = force
+        at.add_damping(force)
 
 
 def material_pairs(system: System) -> list[tuple[float, float]]:

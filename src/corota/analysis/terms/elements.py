@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.newton import ElementFailure
+from corota.analysis.failure import ElementFailure
 from corota.analysis.terms.term import Term
 from corota.analysis.terms.user_material import NO_NUMBER, UserBlocks
 from corota.model import elements

@@ -76,19 +76,16 @@ class Linearized:
     ) -> None:
         self.system = system
         self.u = u.copy()
-        self.multipliers = system.contact_term.committed
-        if multipliers is not None:
-            self.multipliers = multipliers
         self._load = load
-        self._laws = system.contact_term.law_multipliers()
         self._pressures: Any = None
         self._hard: Any = None
         self._normal: Any = None
         loads = system.conditions.as_reached() if time is None else nullcontext()
         with loads, system.elements.unloading(u):
-            self.at, coupling, self.states = linearized_contact(
-                system, u, self.multipliers, states, time or 0.0
+            self.at, coupling, self.states, self._laws = linearized_contact(
+                system, u, multipliers, states, time or 0.0
             )
+        self.multipliers = self.at.contact_state.multipliers
         self.link = self.at.link
         self.free = system.constraints.free
         self.nf = len(self.free)
@@ -311,7 +308,12 @@ class LinearMotion(Linearized):
             values = system.pattern.zeros() if values is None else values.copy()
             values += per_mass * self.mass_values
             _, triplets = Attachments(system).damp(self.u, np.zeros(system.n_dofs), values, 1.0)
-            matrix = self.padded(self.reduce(values, triplets))
+            more = system.damping_of_terms(self.u, values)
+            matrix = self.reduce(values, triplets)
+            if more is not None:
+                rows, columns, entries = more
+                matrix = matrix + self.reduce(None, (rows, columns, -entries))
+            matrix = self.padded(matrix)
             self._damping[key] = (matrix + self.coriolis()).tocsc() if self.turns else matrix
         return self._damping[key]
 

@@ -69,7 +69,7 @@ def massless_nodes(system: Any, redistribute: bool) -> NDArray[np.bool_] | None:
     """
     if not redistribute:
         return None
-    massless: NDArray[np.bool_] = system.contact_term.massless_nodes()
+    massless: NDArray[np.bool_] = system.nodes_of_terms("slave")
     return massless if massless.any() else None
 
 

@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -17,8 +18,12 @@ if TYPE_CHECKING:
     from corota.model.steps import Step
 
     Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
 
-
+#: Surfaces of ties; slaves and masters of contact.
+Role = Literal["tied", "slave", "master"]
+#: No nodes.
+NO_NODES = np.zeros(0, np.int64)
 #: Rates or multipliers where there are none.
 NONE = np.zeros(0)
 
@@ -33,7 +38,7 @@ class StatePoint(NamedTuple):
     time : float
         Step time.
     v, a : ndarray, shape (n_dofs,)
-        Velocity and acceleration; empty at rest.
+        Velocity and acceleration, zero at rest.
     weights : tuple of float
         Derivatives of displacement, velocity and acceleration by the unknown displacement.
     between : tuple, optional
@@ -51,6 +56,24 @@ class StatePoint(NamedTuple):
     multipliers: Floats = NONE
 
 
+@dataclass
+class TermOutput:
+    """Output of a term.
+
+    Parameters
+    ----------
+    contact : ndarray, shape (n_nodes, 5), or None
+        See :attr:`corota.results.Frame.C`.
+    scalars : dict of str to float
+    pairs : dict of str to ndarray, shape (n_nodes, 5)
+        See :attr:`corota.results.Frame.pairs`.
+    """
+
+    contact: Floats | None = None
+    scalars: dict[str, float] = field(default_factory=dict)
+    pairs: dict[str, Floats] = field(default_factory=dict)
+
+
 class Term(Protocol):
     """A term of the equation.
 
@@ -59,6 +82,10 @@ class Term(Protocol):
 
     #: Name in messages.
     name: str
+    #: Number of its multipliers, unknowns besides the dofs.
+    unknowns: int = 0
+    #: Remarks for the user after the start.
+    notes: Sequence[str] = ()
 
     @property
     def joins(self) -> bool:
@@ -82,7 +109,9 @@ class Term(Protocol):
     def add(self, point: StatePoint, at: Evaluation) -> None:
         """Add the force to `at`, its size to the scale, and its derivative to the tangent.
 
-        The tangent is not needed where `at.values` is empty.
+        A force that stores energy adds to `at.internal`, one of velocities by `at.add_damping`. Its
+        derivatives by displacement and velocity are multiplied by the `weights` of the point. The
+        tangent is not needed where `at.values` is empty.
         """
         ...
 
@@ -94,14 +123,42 @@ class Term(Protocol):
         """Accept the last evaluated state."""
         return
 
+    def revert(self) -> None:
+        """Go back to the committed state."""
+        return
+
     def energies(self) -> dict[str, float]:
         """Energy stored (``ALLSE``) or dissipated so far in the committed state, by name."""
         return {}
 
+    def output(self) -> TermOutput:
+        """Output of the committed state."""
+        return TermOutput()
+
+    def multiplier_force(self, u: Floats | None = None, values: Floats = NONE) -> Floats | None:
+        """Force of its committed multipliers at the dofs; None without any.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n_dofs,), optional
+            Displacement at which they act, in place of the committed one.
+        values : ndarray, shape (nnz,), optional
+            Tangent of the elements there.
+        """
+        return None
+
+    def nodes(self, role: Role) -> Ints:
+        """Nodes of the surfaces that it joins, by their role in it."""
+        return NO_NODES
+
+    def gives_way(self) -> str:
+        """What it lets slide or tip beyond the committed state, for messages; or nothing."""
+        return ""
+
 
 #: User-defined terms: each entry gives the term of a model, or ``None`` where it has none. They
-#: act on displacements, in every implicit scheme and in all linear procedures.
+#: act on displacements and velocities, in every scheme and in all linear procedures.
 TERMS: dict[str, Callable[[NumberedModel], Term | None]] = {}
 
 
-__all__ = ["TERMS", "StatePoint", "Term"]
+__all__ = ["TERMS", "Role", "StatePoint", "Term", "TermOutput"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.newton import ElementFailure
+from corota.analysis.failure import ElementFailure
 from corota.model import elements
 from corota.model.user_material import UserMaterial
 

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from corota.analysis.failure import ElementFailure
 from corota.analysis.increment_loop import Accepted
-from corota.analysis.newton import ElementFailure, Settings
+from corota.analysis.newton import Settings
 from corota.analysis.path_system import Point
 from corota.analysis.procedures.path.branches import BranchTracer
 from corota.analysis.procedures.path.controls import Row
@@ -141,7 +142,7 @@ class PathStepper:
             try:
                 self.along.restart()
                 z = self.along.start(state.u)
-                state.at = self.along.plain(self.along.evaluate(z, self.factor * period))
+                state.at = self.along.evaluate(z, self.factor * period)
             except ElementFailure as error:
                 raise ConvergenceError(f"{self.stopped}: {error}") from None
         return self.limit
@@ -233,7 +234,7 @@ class PathStepper:
 
     def _accept(self, found: Increment) -> Accepted:
         state, system = self.state, self.system
-        at, u = self.along.plain(found.point.at), found.point.u[: system.n_dofs]
+        at, u = found.point.at, found.point.u[: system.n_dofs]
         assert state.energies is not None
         state.energies.add_quasi_static(u, state.u, at)
         state.u, state.at, state.failed = u, at, None

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.newton import DIVERGED, ElementFailure, GiveUp, ResidualNorms, Settings
+from corota.analysis.failure import ElementFailure, GiveUp
+from corota.analysis.newton import DIVERGED, ResidualNorms, Settings
 from corota.analysis.path_system import Metric, Point, Tangent, product
 from corota.errors import SingularError
 

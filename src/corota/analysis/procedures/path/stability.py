@@ -289,8 +289,8 @@ def work_share(system: PathSystem, point: Point, mode: Floats) -> float:
         # Of the dofs alone: multipliers of contact have another unit.
         scale = float(np.abs(point.u[: system.n_dofs]).max(initial=0.0)) or 1.0
         step = 1e-6 * scale / float(np.abs(move).max())
-        ahead = system.evaluate(point.u + step * move, 0.0).internal
-        behind = system.evaluate(point.u - step * move, 0.0).internal
+        ahead = system.rows(point.u + step * move, 0.0)
+        behind = system.rows(point.u - step * move, 0.0)
         force = force - (ahead - behind) / (2.0 * step)
         force[move != 0.0] = 0.0
     whole = 0.0

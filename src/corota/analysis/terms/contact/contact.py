@@ -9,13 +9,20 @@ directions come from the core.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corota.analysis.terms.contact.gaps import CLOSED, COVERED, OPEN, Terms
-from corota.analysis.terms.term import Term
+from corota.analysis.terms.contact.gaps import (
+    CLOSED,
+    COVERED,
+    NO_CONTACT,
+    OPEN,
+    ContactState,
+    Terms,
+)
+from corota.analysis.terms.term import NO_NODES, NONE, Role, Term, TermOutput
 from corota.errors import ModelError, UnsupportedError
 from corota.lazy import lazy
 from corota.model.contact import ContactPair, Tie
@@ -26,6 +33,7 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.saddle_point import SaddlePointSystem
     from corota.analysis.numbered_model import NumberedModel
+    from corota.analysis.terms.contact.gaps import Kink
     from corota.analysis.terms.contact.pair import Pair
     from corota.analysis.terms.term import StatePoint
     from corota.model.steps import Step
@@ -37,52 +45,15 @@ if TYPE_CHECKING:
 check_side = lazy("corota.analysis.terms.contact.side:check_side")
 corner_note = lazy("corota.analysis.terms.contact.advice:corner_note")
 fillet_note = lazy("corota.analysis.terms.contact.advice:fillet_note")
+contact_output = lazy("corota.analysis.terms.contact.output:output")
+what_gives_way = lazy("corota.analysis.terms.contact.messages:gives_way")
 make_pair = lazy("corota.analysis.terms.contact.pair:Pair")
+near_side = lazy("corota.analysis.terms.contact.kinks:near_side")
 
 #: Procedures that support contact and ties between surfaces.
 WITH_CONTACT = ("static", "dynamic", "frequency", "buckle", "modal dynamic", "steady state")
 #: Damping of stabilized surfaces per stiffness of their nodes and period.
 STABILIZE = 1e-3
-
-
-@dataclass
-class ContactState:
-    """All pairs at a state.
-
-    Parameters
-    ----------
-    terms : list of Terms
-    force : ndarray, shape (n_dofs,)
-        Of the pairs on the nodes, along the axes of the nodes.
-    size : ndarray, shape (n_dofs,)
-        Sum of sizes of its parts.
-    multipliers : ndarray, shape (n_multipliers,)
-    damping : ndarray, shape (n_dofs,), or None
-        Stabilizing stiffness of this increment.
-    of_end : ndarray, shape (n_dofs,), or None
-        Force at the end, where a scheme weighs that of pressure laws between both ends.
-    states : list of ndarray
-        Of the constraints, once committed.
-    acting : list of Terms
-        Along whose gradients the forces acted, once committed.
-    where : ndarray, shape (n_nodes, 3)
-        Positions at which they did, once committed.
-    """
-
-    terms: list[Terms]
-    force: Floats
-    size: Floats
-    multipliers: Floats
-    damping: Floats | None = None
-    of_end: Floats | None = None
-    states: list[NDArray[np.int8]] = field(default_factory=list)
-    acting: list[Terms] = field(default_factory=list)
-    where: Floats | None = None
-
-    @property
-    def force_at_end(self) -> Floats:
-        """Of the pairs on the nodes at the end, shape (n_dofs,)."""
-        return self.force if self.of_end is None else self.of_end
 
 
 class ContactTerm(Term):
@@ -147,8 +118,14 @@ class ContactTerm(Term):
         self._dof = np.full(3 * len(system.per_node) + 1, -1, np.int64)
         self._dof[3 * system.node_of_dof + system.component] = np.arange(system.n_dofs)
         self._stiff = False
-        #: The kink of the surfaces at which the committed equilibrium lies.
-        self.kink: Any = None
+        #: The kink of the surfaces at which the committed equilibrium lies, and that at which the
+        #: bodies may rest in the increment.
+        self.kink: Kink | None = None
+        self.trial_kink: Kink | None = None
+        #: Displacements and contact of the last evaluation.
+        self.last = self.u, NO_CONTACT
+        #: Stiffness at each dof and displacements of springs that relaxation attaches.
+        self.springs: tuple[Floats, Floats] | None = None
         self.reported_constraints: set[int] = set()  # dropped constraints that were reported
         self.border: SaddlePointSystem | None = (
             None  # linear algebra with the multipliers, made when needed
@@ -172,30 +149,40 @@ class ContactTerm(Term):
         return bool(self.damped.any())
 
     @property
-    def tied_nodes(self) -> Ints:
-        """Nodes of both sides of ties."""
-        tied = [pair for pair in self.pairs if pair.tied]
-        sides = [pair.nodes for pair in tied]
-        sides += [pair.master.node_list for pair in tied if pair.master is not None]
-        return np.concatenate([np.zeros(0, np.int64), *sides])
+    def unknowns(self) -> int:  # type: ignore[override]
+        """Multipliers of all pairs."""
+        return self.n
 
-    @property
-    def force(self) -> Floats:
-        """Of the pairs on the nodes in the committed state, shape (n_dofs,)."""
-        return np.zeros(self.system.n_dofs) if self.at is None else self.at.force_at_end
+    def multiplier_force(self, u: Floats | None = None, values: Floats = NONE) -> Floats | None:
+        """Force of the committed tractions, in the committed state or at a displacement."""
+        if u is not None:
+            return self.evaluate(u, self.committed, 0.0, values).force
+        return None if self.at is None else self.at.force_at_end
+
+    def nodes(self, role: Role) -> Ints:
+        """Nodes of ties, or of slaves or masters of contact."""
+        tied = [pair for pair in self.pairs if pair.tied]
+        pairs = tied if role == "tied" else [pair for pair in self.pairs if not pair.tied]
+        sides = [NO_NODES]
+        if role != "master":
+            sides += [pair.slave.node_list for pair in pairs]
+        if role != "slave":
+            sides += [pair.master.node_list for pair in pairs if pair.master is not None]
+        return np.concatenate(sides)
+
+    def output(self) -> TermOutput:
+        """Values at slave nodes, and sums of the pairs."""
+        return TermOutput(*contact_output(self))
+
+    def gives_way(self) -> str:
+        """Whether a body slides or tips beyond the committed state."""
+        said: str = what_gives_way(self)
+        return said
 
     def law_multipliers(self) -> Ints:
         """Multipliers that are pressures of laws."""
         laws = [p.first + np.arange(p.n) for p in self.pairs if p.law is not None]
         return np.concatenate([np.zeros(0, np.int64), *laws])
-
-    def massless_nodes(self) -> NDArray[np.bool_]:
-        """Slave nodes of contact, shape (n_nodes,): others may carry their mass."""
-        found = np.zeros(len(self.system.per_node), bool)
-        for pair in self.pairs:
-            if not pair.tied:
-                found[pair.slave.node_list] = True
-        return found
 
     # -- steps -------------------------------------------------------------------------
 
@@ -354,20 +341,29 @@ class ContactTerm(Term):
             out.append((p, q if pair.two else np.zeros(pair.n)))
         return out
 
-    def add(self, point: StatePoint, at: Evaluation, known: ContactState | None = None) -> None:
-        """Add the forces for given multipliers; gaps and slips are the `contact` of `at`.
-
-        They are evaluated unless they are `known`.
-        """
-        state = known
-        if state is None:
-            state = self.evaluate(point.u, point.multipliers, point.time, at.values)
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        """Add the forces for given multipliers, and their gaps and slips."""
+        state = at.contact_state = self._at_kink(point) or self.evaluate(
+            point.u, point.multipliers, point.time, at.values
+        )
+        state.time = point.time
+        self.last = point.u, state
         at.internal = at.internal - state.force
         at.scale = at.scale + state.size
         if state.damping is not None:
-            at.internal += state.damping * (point.u - self.u)
-            at.added = state.damping
-        at.contact = state
+            at.add_spring(state.damping, point.u - self.u)
+        if self.springs is not None:
+            stiffness, since = self.springs
+            at.add_spring(stiffness, point.u - since)
+
+    def _at_kink(self, point: StatePoint) -> ContactState | None:
+        """Contact on the near side of the kink, with the force that it carries; or None."""
+        if self.trial_kink is None:
+            return None
+        state: ContactState | None = near_side(self, point, self.trial_kink)
+        if state is None:
+            self.trial_kink = None
+        return state
 
     def evaluate(
         self, u: Floats, multipliers: Floats, step_time: float, values: Floats
@@ -538,16 +534,12 @@ class ContactTerm(Term):
             self.pressure_work += 0.5 * float((before + self._pressure) @ moved)
             self.pressure_work += self.energies()["ALLCL"] - law
 
-    def restore(self) -> None:
+    def revert(self) -> None:
         """Go back to the committed state."""
         for pair in self.pairs:
             pair.core.restore()
             pair.frozen = False
-        self.slip_start = None
-
-    def work_sums(self, work: float) -> dict[str, float]:
-        """The work of contact for a dynamic frame; empty without pairs."""
-        return {"contact work": work} if self.pairs else {}
+        self.slip_start = self.springs = self.trial_kink = None
 
     def energies(self) -> dict[str, float]:
         """Energy that contact has dissipated and that its laws store [force*length]."""
@@ -555,6 +547,7 @@ class ContactTerm(Term):
         return {
             "ALLFD": float(sum(pair.friction_work for pair in self.pairs)),
             "ALLSD": self.damping_work,
+            "ALLPW": self.pressure_work,
             "ALLCL": float(sum(p.law_energy(t) for p, t in zip(self.pairs, terms, strict=False))),
         }
 
@@ -571,4 +564,4 @@ def _few(labels: Ints, most: int = 5) -> str:
     return shown + (", ..." if len(labels) > most else "")
 
 
-__all__ = ["ContactState", "ContactTerm"]
+__all__ = ["ContactTerm"]

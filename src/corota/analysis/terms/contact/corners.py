@@ -13,7 +13,7 @@ from corota.model.contact import ContactPair
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.equations import System
     from corota.analysis.terms.contact.pair import Pair
 
     Floats = NDArray[np.float64]
@@ -23,12 +23,13 @@ if TYPE_CHECKING:
 NAMED, FAR = 0.1, 2.0
 
 
-def sunk_corner(contact_term: ContactTerm) -> str:
+def sunk_corner(system: System) -> str:
     """Message on the deepest corner of a master inside a slave surface, or ''.
 
     A pressure law acts on areas, so that a corner has no constraint of its own: it can penetrate
     between two slave nodes until one of them is in contact with the side of the corner and jams.
     """
+    contact_term = system.contact_term
     x = contact_term.positions(contact_term.u)[:, :2]
     worst, said = NAMED, ""
     for pair in contact_term.pairs:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.energies import Energies
-from corota.analysis.newton import ElementFailure
+from corota.analysis.failure import ElementFailure
 from corota.analysis.terms.contact.forward import ForwardContact
 from corota.errors import ConvergenceError
 

@@ -11,25 +11,26 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from corota.analysis.linear.saddle_point import SaddlePointSystem
 from corota.analysis.newton import PROGRESS, Outcome, ResidualNorms
-from corota.analysis.terms.contact.contact import ContactState, ContactTerm
+from corota.analysis.rule import REST, Rule
+from corota.analysis.terms.contact.contact import ContactTerm
+from corota.analysis.terms.contact.gaps import ContactState, Kink
 from corota.analysis.terms.contact.holding import far, held, let_slip
 from corota.analysis.terms.contact.impact import impact_error
 from corota.analysis.terms.contact.kink_correction import along_kink, keeps_kink
-from corota.analysis.terms.contact.kinks import Kink, Sides, again, both_sides
+from corota.analysis.terms.contact.kinks import both_sides
 from corota.analysis.terms.contact.linearization import linearized
 from corota.analysis.terms.contact.messages import explanation
 from corota.analysis.terms.contact.pair import CLOSED
 from corota.analysis.terms.contact.pivoting import pivoted
-from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
+from corota.analysis.terms.contact.problem import RightHandSides
 from corota.analysis.terms.contact.state_choice import chosen
 from corota.analysis.terms.contact.tunneling import outside, passed
-from corota.analysis.terms.term import StatePoint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -65,13 +66,14 @@ class ContactEquations:
 
     Parameters
     ----------
-    inner : System, or a motion around it
-        Residual and tangent without contact.
     system : System
+    rule : Rule
+        What the increment makes of its unknowns.
     """
 
-    def __init__(self, inner: Any, system: System) -> None:
-        self.inner, self.system = inner, system
+    def __init__(self, system: System, rule: Rule = REST) -> None:
+        self.system, self.rule = system, rule
+        self.evaluate = system.evaluate
         self.contact_term: ContactTerm = system.contact_term
         self.n = system.n_dofs
         self.forget()
@@ -92,8 +94,7 @@ class ContactEquations:
         self.relaxing = False  # whether the bodies may move to another equilibrium
         #: Previous position in relaxation, for the tunneling check.
         self.since: Floats | None = None
-        #: Stiffness of the spring at each dof, in relaxation.
-        self.brake: tuple[Floats, Floats] | None = None
+        self.contact_term.springs = None
         #: Kink of the contact surfaces at which the bodies may rest, and how often one
         #: was tried.
         self.kink: Kink | None = None
@@ -101,7 +102,6 @@ class ContactEquations:
         #: Whether the kink is that of the committed state, which may lie behind by now.
         self.inherits = False
         self.places: list[Floats] = []  # displacements of the last three evaluations
-        self.time = 0.0
         self.first_move = 0.0  # of the first correction [length]
         self.loose = ""  # bodies that were unconstrained until contact was closed
         self.slip_directions: dict[
@@ -120,25 +120,20 @@ class ContactEquations:
         """Displacements with the committed multipliers."""
         return np.concatenate([u, self.contact_term.committed])
 
-    def evaluate(self, z: Floats, step_time: float) -> ContactEvaluation:
-        """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
-        u, multipliers = z[: self.n], z[self.n :].copy()
-        at: Evaluation = self.inner.evaluate(u, step_time)
-        point = StatePoint(u, step_time, multipliers=multipliers)
-        self.contact_term.add(point, at, self._at_kink(u, multipliers, step_time))
-        self.places = [*self.places[-2:], u.copy()]
-        self.time = step_time
-        if self.brake is not None:
-            stiffness, since = self.brake
-            at.internal = at.internal + stiffness * (u - since)
-            at.added = stiffness if at.added is None else at.added + stiffness
-        if at.added is not None:
-            self.system.pattern.add_diagonal(at.values, at.added)
-        return ContactEvaluation(at, at.contact)
+    @property
+    def kink(self) -> Kink | None:
+        """Kink of the contact surfaces at which the bodies may rest."""
+        return self.contact_term.trial_kink
 
-    def residual_norms(self, at: ContactEvaluation, z: Floats) -> ResidualNorms:
+    @kink.setter
+    def kink(self, kink: Kink | None) -> None:
+        self.contact_term.trial_kink = kink
+
+    def residual_norms(self, at: Evaluation, z: Floats) -> ResidualNorms:
         """Size of the residual, of equilibrium and of the contact conditions."""
-        norms: ResidualNorms = self.inner.residual_norms(at.at, z[: self.n])
+        norms = self.system.residual_norms(at, z[: self.n])
+        if not self.places or not np.array_equal(self.places[-1], z[: self.n]):
+            self.places = [*self.places[-2:], z[: self.n].copy()]
         norms.note = self.stage
         complementarity, pair, constraint = self.complementarity(at)
         before = norms.force
@@ -155,10 +150,10 @@ class ContactEquations:
             self.least = min(self.least, norms.size)
         return norms
 
-    def return_tangent(self, at: ContactEvaluation) -> None:
+    def return_tangent(self, at: Evaluation) -> None:
         """Keep the tangent: states of contact are used later."""
 
-    def complementarity(self, at: ContactEvaluation) -> tuple[float, int, int]:
+    def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
         """Largest contact residual as a force; its pair and constraint."""
         worst = (0.0, 0, 0)
         for k, (pair, terms, (p, q)) in enumerate(self._pairs(at.contact_state)):
@@ -169,13 +164,11 @@ class ContactEquations:
                     worst = (float(complementarity[i]), k, i)
         return worst
 
-    def predict(self, at: ContactEvaluation, du_prescribed: Floats) -> tuple[Floats, int]:
+    def predict(self, at: Evaluation, du_prescribed: Floats) -> tuple[Floats, int]:
         """Newton correction of displacements and multipliers."""
         return self.correct(at, -at.residual, du_prescribed)
 
-    def correct(
-        self, at: ContactEvaluation, rhs: Floats, du_prescribed: Floats
-    ) -> tuple[Floats, int]:
+    def correct(self, at: Evaluation, rhs: Floats, du_prescribed: Floats) -> tuple[Floats, int]:
         """Correction for a right-hand side of equilibrium; that of contact is added."""
         right_sides = RightHandSides(rhs[: self.n, None], du_prescribed[: self.n, None], np.ones(1))
         if keeps_kink(self, at):
@@ -209,15 +202,6 @@ class ContactEquations:
         if kink is not None and self.system.nlgeom and not self.contact_term.persistent:
             self.kink, self.inherits = replace(kink, base=None), True
 
-    def _at_kink(self, u: Floats, multipliers: Floats, step_time: float) -> ContactState | None:
-        """Contact on the near side of the kink, with the force that it carries; or None."""
-        if self.kink is None:
-            return None
-        state = again(self, Sides(self, multipliers, step_time), u, self.kink)
-        if state is None:
-            self.kink = None
-        return state
-
     # -- one linearization ---------------------------------------------------------------
 
     def _moved(self, z: Floats) -> Floats:
@@ -233,7 +217,7 @@ class ContactEquations:
 
     def _columns(
         self,
-        at: ContactEvaluation,
+        at: Evaluation,
         right_sides: RightHandSides,
         states: States,
         slip_directions: dict[tuple[int, int], float] | None = None,
@@ -258,26 +242,26 @@ class ContactEquations:
         return np.concatenate([du, dp]), negative
 
     def _solve(
-        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
+        self, at: Evaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int]:
         coupling, own, expected = self._coupling(at.contact_state, states)
         force = right_sides.force + self.system.at_nodes(coupling.force)[:, None] * right_sides.own
         rows = own[:, None] * right_sides.own
         release = -at.contact_state.multipliers[:, None] * right_sides.own
         du, dp, negative = self.border.solve(
-            at.at, coupling, force, rows, release, right_sides.constrained
+            at, coupling, force, rows, release, right_sides.constrained
         )
         return du, dp, negative - expected if negative >= 0 else -1
 
     def _held(
-        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
+        self, at: Evaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int, States]:
         """Correction for states that constrain the bodies, with the fewest changes."""
         return held(self, at, states, right_sides)
 
     def _let_slip(
         self,
-        at: ContactEvaluation,
+        at: Evaluation,
         states: States,
         right_sides: RightHandSides,
         found: tuple[Floats, Floats, int],
@@ -319,18 +303,17 @@ class ContactEquations:
 
     # -- the end of an increment -------------------------------------------------------
 
-    def settle(self, outcome: Outcome[ContactEvaluation]) -> Outcome[Evaluation]:
+    def settle(self, outcome: Outcome) -> Outcome:
         """Result of an increment in terms of the system; explains failures."""
         u = outcome.u[: self.n].copy()
-        at = None if outcome.at is None else outcome.at.at
         if outcome.converged and outcome.at is not None:
             outcome.reason = self.refuse(outcome.at, outcome.u)
             outcome.converged = not outcome.reason
-        settled: Outcome[Any] = replace(outcome, u=u, at=cast("Any", at))
+        settled = replace(outcome, u=u)
         self.contact_state = None if outcome.at is None else outcome.at.contact_state
         if not outcome.converged:
             settled.reason = f"{outcome.reason}{self.explain(outcome.at)}"
-            self.contact_term.restore()
+            self.contact_term.revert()
         elif self.single:
             settled.note = (
                 f"{outcome.note}; contact state changed at one node at a time in {self.single} "
@@ -346,18 +329,16 @@ class ContactEquations:
             settled.note = f"{settled.note}; {said}".strip("; ")
         return settled
 
-    def refuse(self, at: ContactEvaluation, z: Floats) -> str:
+    def refuse(self, at: Evaluation, z: Floats) -> str:
         """Why an equilibrium is refused; empty if it is not.
 
         Nodes passed through the opposite surface, or an unconstrained body is far away.
         """
-        if self.inner is self.system:
-            far: str = self.system.scales.implausible_displacement(z)
-            if far:
-                return far
+        moves = self.rule.moves
+        if not moves and (unlikely := self.system.scales.implausible_displacement(z)):
+            return unlikely
         if not self.system.nlgeom:
             return ""
-        moves = self.inner is not self.system
         since = None if moves else self.since
         old, new = (
             self.contact_term.positions(self.contact_term.u if since is None else since),
@@ -438,7 +419,7 @@ class ContactEquations:
         self.contact_term.reported_constraints |= self.border.dropped
         return notes
 
-    def explain(self, at: ContactEvaluation | None) -> str:
+    def explain(self, at: Evaluation | None) -> str:
         """Pair and nodes that caused a failed increment, and what was tried."""
         return explanation(self, at)
 

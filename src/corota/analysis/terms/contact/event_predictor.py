@@ -22,8 +22,8 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
-    from corota.analysis.terms.contact.problem import ContactEvaluation
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
@@ -133,7 +133,7 @@ class EventPath:
 
     def __init__(self, path: EventSystem, base: Point, tangent: Tangent, states: States) -> None:
         self.path, self.base, self.tangent, self.states = path, base, tangent, states
-        self.at: ContactEvaluation = base.at
+        self.at: Evaluation = base.at
         self.gaps = [terms.gap for terms in self.at.contact_state.terms]
         self.z, self.factor = base.u, base.factor
         self.seen = {(k, i, int(s[i])) for k, s in enumerate(states) for i in range(len(s))}

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from corota.analysis.terms.contact.active_set import UnilateralConstraints
-from corota.analysis.terms.contact.contact import ContactState
+from corota.analysis.terms.contact.gaps import ContactState
 from corota.analysis.terms.contact.pair import CLOSED, COVERED, OPEN
 from corota.errors import ConvergenceError
 
@@ -154,7 +154,7 @@ class ForwardContact:
 
     def sums(self) -> dict[str, float]:
         """Contact output of a frame."""
-        return self.contact.work_sums(self.account.contact)
+        return {"contact work": self.account.contact}
 
     def _look(self, pair: Pair, x: Floats, time: float) -> Terms:
         """Gaps at a state."""

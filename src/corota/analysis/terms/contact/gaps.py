@@ -1,9 +1,9 @@
-"""Gaps, slips and their gradients at a state."""
+"""Gaps, slips and their gradients at a state; kinks."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 OPEN, CLOSED, SLIPPING = 0, 1, 2
 #: Fraction of its full area below which a node counts as uncovered.
 COVERED = 1e-9
+#: Force beyond a side that is rounding, over the jump.
+BEYOND = 1e-9
 
 
 @dataclass
@@ -59,4 +61,99 @@ class Terms:
         return self if self.between is None else self.between
 
 
-__all__ = ["CLOSED", "COVERED", "OPEN", "SLIPPING", "Terms"]
+@dataclass(eq=False)
+class ContactState:
+    """All pairs at a state.
+
+    Parameters
+    ----------
+    terms : list of Terms
+    force : ndarray, shape (n_dofs,)
+        Of the pairs on the nodes, along the axes of the nodes.
+    size : ndarray, shape (n_dofs,)
+        Sum of sizes of its parts.
+    multipliers : ndarray, shape (n_multipliers,)
+    damping : ndarray, shape (n_dofs,), or None
+        Stabilizing stiffness of this increment.
+    of_end : ndarray, shape (n_dofs,), or None
+        Force at the end, where a scheme weighs that of pressure laws between both ends.
+    states : list of ndarray
+        Of the constraints, once committed.
+    acting : list of Terms
+        Along whose gradients the forces acted, once committed.
+    where : ndarray, shape (n_nodes, 3)
+        Positions at which they did, once committed.
+    settled : list of ndarray
+        States at a point of a path, once they are computed.
+    time : float
+        Step time.
+    """
+
+    terms: list[Terms]
+    force: Floats
+    size: Floats
+    multipliers: Floats
+    damping: Floats | None = None
+    of_end: Floats | None = None
+    states: list[NDArray[np.int8]] = field(default_factory=list)
+    acting: list[Terms] = field(default_factory=list)
+    where: Floats | None = None
+    settled: list[NDArray[np.int8]] = field(default_factory=list)
+    time: float = 0.0
+
+    @property
+    def force_at_end(self) -> Floats:
+        """Of the pairs on the nodes at the end, shape (n_dofs,)."""
+        return self.force if self.of_end is None else self.of_end
+
+
+@dataclass
+class Kink:
+    """A place where contact forces jump, against the motion across it.
+
+    Parameters
+    ----------
+    normal : ndarray, shape (n_dofs,)
+        Gradient of the distance across the kink, positive on the far side.
+    move : ndarray, shape (n_dofs,)
+        Translations that go across, a motion of distance 1.
+    jump : ndarray, shape (n_dofs,)
+        Contact force of the far side less that of the near one.
+    width : float
+        Search distance [length].
+    distance : float
+        From the displacement judged last to the kink [length].
+    share : float
+        Part of the jump that is carried, from 0 on the near side to 1 on the far one.
+    """
+
+    normal: Floats
+    move: Floats
+    jump: Floats
+    width: float = 0.0
+    distance: float = 0.0
+    share: float = 0.0
+    far: list[Terms] = field(default_factory=list)  # of the pairs on the far side
+    #: Displacement and share from which a correction was made, and the corrections of both.
+    base: tuple[Floats, float, Floats, float] | None = None
+
+    @property
+    def excess(self) -> float:
+        """Force beyond those of both sides [force]."""
+        over = max(-self.share, self.share - 1.0)
+        return over * float(np.abs(self.jump).max()) if over > BEYOND else 0.0
+
+    def follow(self, u: Floats) -> None:
+        """Take the share that belongs to a trial, which may be part of a correction."""
+        if self.base is None:
+            return
+        start, share, du, change = self.base
+        square = float(du @ du)
+        part = min(max(float((u - start) @ du) / square, 0.0), 1.0) if square > 0.0 else 1.0
+        self.share = share + part * change
+
+
+#: That of a state without pairs, or evaluated without multipliers.
+NO_CONTACT = ContactState([], np.zeros(0), np.zeros(0), np.zeros(0))
+
+__all__ = ["CLOSED", "COVERED", "NO_CONTACT", "OPEN", "SLIPPING", "ContactState", "Kink", "Terms"]

@@ -13,11 +13,8 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.problem import (
-        ContactEvaluation,
-        ContactProblem,
-        RightHandSides,
-    )
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
 
     Floats = NDArray[np.float64]
     States = list[NDArray[np.int8]]
@@ -29,7 +26,7 @@ EQUAL = 1e-6
 
 
 def held(
-    problem: ContactProblem, at: ContactEvaluation, states: States, right_sides: RightHandSides
+    problem: ContactProblem, at: Evaluation, states: States, right_sides: RightHandSides
 ) -> tuple[Floats, Floats, int, States]:
     """Correction for states that constrain the bodies, with the fewest changes.
 
@@ -58,7 +55,7 @@ def held(
     return _close_some(problem, at, stuck, right_sides, reason)
 
 
-def _least_stick(problem: ContactProblem, at: ContactEvaluation, states: States) -> States:
+def _least_stick(problem: ContactProblem, at: Evaluation, states: States) -> States:
     """States with the half that exceeds the friction least sticking again."""
     out = []
     for s, (pair, terms, (p, q)) in zip(states, problem._pairs(at.contact_state), strict=True):
@@ -73,7 +70,7 @@ def _least_stick(problem: ContactProblem, at: ContactEvaluation, states: States)
 
 def let_slip(
     problem: ContactProblem,
-    at: ContactEvaluation,
+    at: Evaluation,
     states: States,
     right_sides: RightHandSides,
     found: tuple[Floats, Floats, int],
@@ -127,7 +124,7 @@ def far(problem: ContactProblem, du: Floats, right_sides: RightHandSides) -> boo
 
 def _close_some(
     problem: ContactProblem,
-    at: ContactEvaluation,
+    at: Evaluation,
     states: States,
     right_sides: RightHandSides,
     error: SingularError,

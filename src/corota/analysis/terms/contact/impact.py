@@ -12,7 +12,8 @@ from corota.analysis.terms.contact.pair import COVERED, OPEN
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import ContactState, ContactTerm
+    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.gaps import ContactState
 
     Floats = NDArray[np.float64]
 

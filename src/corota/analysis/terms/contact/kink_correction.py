@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.newton import GiveUp
+from corota.analysis.failure import GiveUp
 from corota.analysis.terms.contact.kinks import Sides, found
 from corota.analysis.terms.contact.problem import RightHandSides
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.problem import ContactEvaluation, ContactProblem
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.problem import ContactProblem
 
     Floats = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ FEWEST_SHARES, MOST_SHARES = -2.0, 3.0
 TO_AND_FRO = 0.2
 
 
-def keeps_kink(problem: ContactProblem, at: ContactEvaluation) -> bool:
+def keeps_kink(problem: ContactProblem, at: Evaluation) -> bool:
     """Whether the correction is one at a kink; looks for one where there is no progress."""
     if problem.kink is not None:
         problem.beyond += problem.kink.excess > 0.0
@@ -43,17 +44,17 @@ def keeps_kink(problem: ContactProblem, at: ContactEvaluation) -> bool:
         problem.waited < WAITED
         or problem.kinks >= MAX_KINKS
         or not _to_and_fro(problem.places)
-        or at.at.link.couples
+        or at.link.couples
         or problem.contact_term.persistent
         or not problem.system.nlgeom
     ):
         return False
-    sides = Sides(problem, at.contact_state.multipliers, problem.time)
+    sides = Sides(problem.contact_term, at.contact_state.multipliers, at.contact_state.time)
     _, before, here = problem.places
-    problem.kink = found(problem, sides, here, before)
+    problem.kink = found(sides, here, before)
     # The candidates of the search may have changed.
     state, now = at.contact_state, sides.state(here)
-    at.at.internal = at.at.internal + state.force - now.force
+    at.internal = at.internal + state.force - now.force
     at.contact_state = now
     problem.kinks += problem.kink is not None
     return problem.kink is not None
@@ -68,7 +69,7 @@ def _to_and_fro(places: list[Floats]) -> bool:
 
 
 def along_kink(
-    problem: ContactProblem, at: ContactEvaluation, right_sides: RightHandSides
+    problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
 ) -> tuple[Floats, int] | None:
     """Newton correction with the force that the kink carries as an unknown."""
     kink = problem.kink

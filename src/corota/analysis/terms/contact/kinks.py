@@ -12,19 +12,22 @@ Source: F. H. Clarke, *Optimization and Nonsmooth Analysis* (1983), ch. 2.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from corota.analysis.terms.contact.gaps import Kink
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import ContactState
+    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Terms
-    from corota.analysis.terms.contact.problem import ContactProblem
+    from corota.analysis.terms.term import StatePoint
 
     Floats = NDArray[np.float64]
 
@@ -41,54 +44,6 @@ WIDTH = 4.0
 NEAR = (0.2, 3.0)
 #: Least width in which it is searched, over the rounding of gaps.
 ROUNDED = 1e3
-#: Force beyond a side that is rounding, over the jump.
-BEYOND = 1e-9
-
-
-@dataclass
-class Kink:
-    """A place where contact forces jump, against the motion across it.
-
-    Parameters
-    ----------
-    normal : ndarray, shape (n_dofs,)
-        Gradient of the distance across the kink, positive on the far side.
-    move : ndarray, shape (n_dofs,)
-        Translations that go across, a motion of distance 1.
-    jump : ndarray, shape (n_dofs,)
-        Contact force of the far side less that of the near one.
-    width : float
-        Search distance [length].
-    distance : float
-        From the displacement judged last to the kink [length].
-    share : float
-        Part of the jump that is carried, from 0 on the near side to 1 on the far one.
-    """
-
-    normal: Floats
-    move: Floats
-    jump: Floats
-    width: float = 0.0
-    distance: float = 0.0
-    share: float = 0.0
-    far: list[Terms] = field(default_factory=list)  # of the pairs on the far side
-    #: Displacement and share from which a correction was made, and the corrections of both.
-    base: tuple[Floats, float, Floats, float] | None = None
-
-    @property
-    def excess(self) -> float:
-        """Force beyond those of both sides [force]."""
-        over = max(-self.share, self.share - 1.0)
-        return over * float(np.abs(self.jump).max()) if over > BEYOND else 0.0
-
-    def follow(self, u: Floats) -> None:
-        """Take the share that belongs to a trial, which may be part of a correction."""
-        if self.base is None:
-            return
-        start, share, du, change = self.base
-        square = float(du @ du)
-        part = min(max(float((u - start) @ du) / square, 0.0), 1.0) if square > 0.0 else 1.0
-        self.share = share + part * change
 
 
 class Sides:
@@ -96,20 +51,25 @@ class Sides:
 
     Parameters
     ----------
-    problem : ContactProblem
+    term : ContactTerm
     multipliers : ndarray, shape (n_multipliers,)
     step_time : float
     """
 
-    def __init__(self, problem: ContactProblem, multipliers: Floats, step_time: float) -> None:
-        self.problem, self.multipliers, self.time = problem, multipliers, step_time
+    def __init__(self, term: ContactTerm, multipliers: Floats, step_time: float) -> None:
+        self.term, self.multipliers, self.time = term, multipliers, step_time
+
+    @property
+    def noise(self) -> float:
+        """Gaps that are rounding [length]."""
+        return max(pair.noise for pair in self.term.pairs)
 
     def state(self, u: Floats, shear: bool = True) -> ContactState:
         """Contact at a displacement, whatever masters the nodes had before.
 
         Without `shear` its force is that of the pressures alone.
         """
-        term = self.problem.contact_term
+        term = self.term
         multipliers = self.multipliers
         if not shear:
             multipliers = multipliers.copy()
@@ -147,7 +107,7 @@ class Sides:
         return (low, high, jump) if float(np.abs(jump).max()) > JUMP * whole else None
 
 
-def found(problem: ContactProblem, sides: Sides, here: Floats, there: Floats) -> Kink | None:
+def found(sides: Sides, here: Floats, there: Floats) -> Kink | None:
     """The kink between two displacements, seen from the first, or None.
 
     Parameters
@@ -159,23 +119,24 @@ def found(problem: ContactProblem, sides: Sides, here: Floats, there: Floats) ->
         return here + t * (there - here)
 
     at = sides.jump(place)
-    kink = None if at is None else _kink(problem, sides, place, at)
+    kink = None if at is None else _kink(sides, place, at)
     if at is None or kink is None:
         return None
     apart = float(kink.normal @ (there - here))
-    if apart <= max(pair.noise for pair in problem.contact_term.pairs):
+    if apart <= sides.noise:
         return None  # rounding, or the jump drives the bodies apart: nothing rests there
     kink.width, kink.distance = WIDTH * apart, 0.5 * (at[0] + at[1]) * apart
     return kink
 
 
-def again(problem: ContactProblem, sides: Sides, u: Floats, kink: Kink) -> ContactState | None:
+def near_side(term: ContactTerm, point: StatePoint, kink: Kink) -> ContactState | None:
     """Contact on the near side of a kink next to a displacement, None if there is none any more.
 
     The kink takes the new normal, jump and distance.
     """
+    u, sides = point.u, Sides(term, point.multipliers, point.time)
     # In a width of rounding either side may come first.
-    least = ROUNDED * max(pair.noise for pair in problem.contact_term.pairs)
+    least = ROUNDED * sides.noise
     for width in (*(max(share * abs(kink.distance), least) for share in NEAR), kink.width):
         if width > kink.width:
             continue
@@ -184,7 +145,7 @@ def again(problem: ContactProblem, sides: Sides, u: Floats, kink: Kink) -> Conta
             return u + (2.0 * t - 1.0) * w * kink.move
 
         at = sides.jump(place)
-        new = None if at is None else _kink(problem, sides, place, at)
+        new = None if at is None else _kink(sides, place, at)
         if at is None or new is None or float(new.jump @ kink.jump) <= 0.0:
             continue
         kink.far = sides.state(place(at[1])).terms
@@ -228,7 +189,6 @@ def _mixed(near: Terms, far: Terms, share: float) -> Terms:
 
 
 def _kink(
-    problem: ContactProblem,
     sides: Sides,
     place: Callable[[float], Floats],
     at: tuple[float, float, Floats],
@@ -236,11 +196,11 @@ def _kink(
     low, high, jump = at
     # Gaps are continuous: the jump of their gradients is normal to the kink. Slips are not.
     pressures = jump
-    if any(pair.friction for pair in problem.contact_term.pairs):
+    if any(pair.friction for pair in sides.term.pairs):
         pressures = sides.state(place(high), False).force - sides.state(place(low), False).force
-    moves = np.where(problem.system.is_rotation, 0.0, pressures)
+    moves = np.where(sides.term.system.is_rotation, 0.0, pressures)
     size = float(np.sqrt(moves @ moves))
     return Kink(-pressures / size, -moves / size, jump) if size > 0.0 else None
 
 
-__all__ = ["Kink", "Sides", "again", "both_sides", "found"]
+__all__ = ["Sides", "both_sides", "found", "near_side"]

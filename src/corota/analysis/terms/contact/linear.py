@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
 
     Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
 
 #: Compliance of closed constraints relative to that of their nodes: constraints that follow from
@@ -28,14 +29,15 @@ COMPLIANCE = 1e-10
 
 
 def linearized_contact(
-    system: System, u: Floats, multipliers: Floats, states: States | None, time: float
-) -> tuple[Evaluation, Coupling, States]:
-    """Evaluation of the bodies with the forces of contact, the rows of contact, and its states.
+    system: System, u: Floats, multipliers: Floats | None, states: States | None, time: float
+) -> tuple[Evaluation, Coupling, States, Ints]:
+    """Evaluation with the forces of contact, its rows and states, and multipliers of laws.
 
     Parameters
     ----------
     u : ndarray, shape (n_dofs,)
-    multipliers : ndarray, shape (n_multipliers,)
+    multipliers : ndarray, shape (n_multipliers,), or None
+        The committed ones by default.
     states : list of ndarray or None
         Of the constraints; the committed ones by default, with what slips stuck.
     time : float
@@ -45,18 +47,20 @@ def linearized_contact(
     if not contact_term.pairs:
         none, entries = np.zeros(0), Triplets.join([])
         coupling = Coupling(entries, entries, entries, entries, none, none, lambda: stacked([]))
-        return system.evaluate(u.copy(), time), coupling, []
-    contact = ContactEquations(system, system)
-    found = contact.evaluate(np.concatenate([u, multipliers]), time)
+        return system.evaluate(u.copy(), time), coupling, [], contact_term.law_multipliers()
+    if multipliers is None:
+        multipliers = contact_term.committed
+    contact = ContactEquations(system)
+    at = system.evaluate(np.concatenate([u, multipliers]), time)
     if states is None and contact_term.at is not None and contact_term.at.states:
         states = contact_term.at.states
     elif states is None:
         states = [
-            pair.states(terms, p, q) for pair, terms, (p, q) in contact._pairs(found.contact_state)
+            pair.states(terms, p, q) for pair, terms, (p, q) in contact._pairs(at.contact_state)
         ]
     states = [np.where(s == SLIPPING, CLOSED, s).astype(np.int8) for s in states]
     contact.slip_directions = {p.first: np.ones(p.n) for p in contact_term.pairs}
-    coupling = contact._coupling(found.contact_state, states)[0]
+    coupling = contact._coupling(at.contact_state, states)[0]
     own, hard = np.zeros(contact_term.n), np.zeros(contact_term.n, bool)
     for pair in contact_term.pairs:
         part = pair.full / pair.stiffness
@@ -66,8 +70,8 @@ def linearized_contact(
         hard[pair.first + pair.n : pair.first + pair.width] = True
     bare = hard & (coupling.diagonal <= 0.0)
     coupling.diagonal[bare] = -COMPLIANCE * own[bare]
-    contact_term.restore()
-    return found.at, coupling, states
+    contact_term.revert()
+    return at, coupling, states, contact_term.law_multipliers()
 
 
 __all__ = ["COMPLIANCE", "linearized_contact"]

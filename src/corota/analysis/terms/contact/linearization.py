@@ -14,7 +14,8 @@ from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import ContactState, ContactTerm
+    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.pair import Pair, Terms
 
     Floats = NDArray[np.float64]

@@ -12,8 +12,9 @@ from corota.analysis.terms.contact.corners import sunk_corner
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from corota.analysis.evaluation import Evaluation
     from corota.analysis.terms.contact.contact import ContactTerm
-    from corota.analysis.terms.contact.problem import ContactEvaluation, ContactProblem
+    from corota.analysis.terms.contact.problem import ContactProblem
 
 #: How often a state must have changed to be named.
 OFTEN = 2
@@ -24,7 +25,7 @@ WHOLE = 0.99
 LEAST_TURN = np.radians(50.0)
 
 
-def explanation(problem: ContactProblem, at: ContactEvaluation | None) -> str:
+def explanation(problem: ContactProblem, at: Evaluation | None) -> str:
     """Pair and nodes that caused a failed increment, and what was tried."""
     if at is None:
         return ""
@@ -65,7 +66,7 @@ def explanation(problem: ContactProblem, at: ContactEvaluation | None) -> str:
             f"; {problem.pivoted} iterations chose the states of all contact nodes together "
             "(by pivoting), which did not converge either"
         )
-    return said + sunk_corner(problem.contact_term)
+    return said + sunk_corner(problem.system)
 
 
 def gives_way(contact_term: ContactTerm) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from corota.analysis.newton import ElementFailure, newton
+from corota.analysis.failure import ElementFailure
+from corota.analysis.newton import newton
+from corota.analysis.rule import REST, Rule
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,7 +71,6 @@ class NoContact:
 
 
 def solve_increment(
-    inner: Any,
     system: System,
     u: Floats,
     prescribed: Floats,
@@ -78,20 +79,21 @@ def solve_increment(
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
     known: Evaluation | None = None,
     last_chance: bool = False,
-) -> tuple[Outcome[Evaluation], ContactIncrement]:
+    rule: Rule = REST,
+) -> tuple[Outcome, ContactIncrement]:
     """Newton's method on displacements and, with contact, on its multipliers.
 
     Parameters
     ----------
-    inner : System, or a motion around it
-        Residual and tangent without contact.
     system : System
     u, prescribed, step_time, settings, report
         As for :func:`corota.analysis.newton.newton`.
     known : Evaluation, optional
-        Of `inner` at `u` and an earlier time: its tangent is the first one.
+        Without contact at `u` and an earlier time: its tangent is the first one.
     last_chance : bool
         Whether no shorter increment may follow: the attempt is then not given up early.
+    rule : Rule
+        What the increment makes of its unknowns.
 
     Returns
     -------
@@ -102,7 +104,7 @@ def solve_increment(
     """
     if not system.contact_term.pairs:
         begin = None if known is None else system.with_loads(known, u, step_time)
-        outcome = newton(inner, u, prescribed, step_time, settings, begin, report)
+        outcome = newton(system, u, prescribed, step_time, settings, begin, report, rule)
         return outcome, NoContact(system.n_dofs)
     from corota.analysis.terms.contact.equations import (
         MAX_EXTRA_CONTACT_ITERATIONS,
@@ -111,7 +113,7 @@ def solve_increment(
     )
     from corota.analysis.terms.contact.output import pressures
 
-    problem = ContactEquations(inner, system)
+    problem = ContactEquations(system, rule)
     problem.inherit_kink()
     n = system.n_dofs
     z = problem.start(u)
@@ -122,26 +124,26 @@ def solve_increment(
     start = None
     if known is not None:
         with contextlib.suppress(ElementFailure):  # which Newton's method reports
-            start = problem.evaluate(z, step_time)
-            start.at.values[:] = known.values
+            start = problem.evaluate(z, step_time, rule)
+            start.values[:] = known.values
             # Stabilizing damping of this increment.
-            for added, sign in ((known.added, -1.0), (start.at.added, 1.0)):
+            for added, sign in ((known.added, -1.0), (start.added, 1.0)):
                 if added is not None:
-                    system.pattern.add_diagonal(start.at.values, sign * added)
+                    system.pattern.add_diagonal(start.values, sign * added)
     fluids = system.conditions.fluids
     if fluids:
         term = system.contact_term
         known_terms = None if term.at is None else term.at.terms
         system.conditions.begin_fluids(*pressures(term, known_terms, term.committed), u)
         start = None
-    found = newton(problem, z, target, step_time, more, start, report)
+    found = newton(problem, z, target, step_time, more, start, report, rule)
     while fluids and found.converged and found.at is not None:
         state = found.at.contact_state
         contact = pressures(system.contact_term, state.terms, state.multipliers)
         if not system.conditions.advance_fluids(*contact, found.u[:n], step_time):
             break
         problem.go_on()
-        again = newton(problem, found.u, target, step_time, more, None, report)
+        again = newton(problem, found.u, target, step_time, more, None, report, rule)
         again.iterations += found.iterations
         found = again
     return problem.settle(found), problem

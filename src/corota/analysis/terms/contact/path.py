@@ -7,7 +7,6 @@ commit; a point's own states give the direction of the path there.
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from corota.analysis.path_system import NOT_CONSERVATIVE, SmoothPath
 from corota.analysis.terms.contact.equations import MAX_EXTRA_CONTACT_ITERATIONS, ContactEquations
 from corota.analysis.terms.contact.event_predictor import predict_through_events
 from corota.analysis.terms.contact.pair import CLOSED, OPEN, SLIPPING
-from corota.analysis.terms.contact.problem import ContactEvaluation, RightHandSides
+from corota.analysis.terms.contact.problem import RightHandSides
 from corota.errors import ModelError
 
 if TYPE_CHECKING:
@@ -34,30 +33,6 @@ SLIPS = (
     "friction slips, and has no potential: the tangent is not symmetric, its pivots do not show "
     "stability there (use dynamics)"
 )
-
-
-@dataclass
-class Along(ContactEvaluation):
-    """An evaluation on a path.
-
-    Parameters
-    ----------
-    two : tuple of bool
-        Whether a pair has multipliers of its slips too.
-    states : list of ndarray or None
-        Of the constraints at the point, once they are computed.
-    """
-
-    two: tuple[bool, ...] = ()
-    states: States | None = None
-
-    @property
-    def internal(self) -> Floats:
-        """Forces at dofs, then gaps and slips in the rows of the multipliers."""
-        parts = [self.at.internal]
-        for terms, two in zip(self.contact_state.terms, self.two, strict=True):
-            parts += [-terms.gap, -terms.slip] if two else [-terms.gap]
-        return np.concatenate(parts)
 
 
 class ContactPathEquations(ContactEquations):
@@ -78,7 +53,7 @@ class ContactPathEquations(ContactEquations):
     more_iterations = MAX_EXTRA_CONTACT_ITERATIONS
 
     def __init__(self, system: System, notes: list[str]) -> None:
-        super().__init__(system, system)
+        super().__init__(system)
         contact_term = self.contact_term
         for pair in contact_term.pairs:
             ramped = getattr(pair.item, "start", "") == "ramp" and contact_term.number == 1
@@ -93,8 +68,6 @@ class ContactPathEquations(ContactEquations):
         self.notes = notes
         self.n_dofs, self.length = system.n_dofs, system.length
         self.counted = np.concatenate([system.counted, np.zeros(contact_term.n, bool)])
-        self.two = tuple(pair.two for pair in contact_term.pairs)
-        self._now: tuple[Floats, Along, float] | None = None
         #: States of the direction at the committed state, with which an attempt begins.
         self._base: States | None = None
         #: Whether nothing was tried since, and whether an attempt may bring bodies into contact.
@@ -105,25 +78,24 @@ class ContactPathEquations(ContactEquations):
         """Why pivots do not show stability."""
         return SLIPS if any(p.friction for p in self.contact_term.pairs) else NOT_CONSERVATIVE
 
-    def plain(self, at: Along) -> Evaluation:
-        """The system's own evaluation, its internal force with that of contact."""
-        return at.at
-
-    def restart(self, loose: bool = False, like: Along | None = None) -> None:
+    def restart(self, loose: bool = False, like: Evaluation | None = None) -> None:
         """Begin an attempt with the states of the last commit, or of another evaluation."""
-        self.contact_term.restore()
+        self.contact_term.revert()
         self.forget()
         self._fresh, self._loose = False, loose
-        first = self._base if like is None or like.states is None else like.states
+        first = (
+            self._base if not (like and like.contact_state.settled) else like.contact_state.settled
+        )
         if first is not None:
             self.last = [s.copy() for s in first]
 
-    def evaluate(self, z: Floats, step_time: float) -> Along:
-        """Residual, tangent, gaps and slips; dependent dofs of `z` are set, in place."""
-        found = super().evaluate(z, step_time)
-        at = Along(found.at, found.contact_state, self.two)
-        self._now = (z, at, step_time)
-        return at
+    def rows(self, z: Floats, step_time: float) -> Floats:
+        """Forces at dofs, then gaps and slips in the rows of the multipliers."""
+        at = self.evaluate(z, step_time)
+        parts = [at.internal]
+        for pair, terms in zip(self.contact_term.pairs, at.contact_state.terms, strict=True):
+            parts += [-terms.gap, -terms.slip] if pair.two else [-terms.gap]
+        return np.concatenate(parts)
 
     def load_rate(self, z: Floats) -> tuple[Floats, Floats]:
         """Change of forces and of prescribed dofs per unit of load factor, 0 for multipliers."""
@@ -131,18 +103,18 @@ class ContactPathEquations(ContactEquations):
         force, move = self.system.load_rate(z[: self.n])
         return np.concatenate([force, none]), np.concatenate([move, none])
 
-    def advance(self, at: Along, force: Floats, move: Floats) -> tuple[Floats, Floats]:
+    def advance(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, Floats]:
         """Newton correction, and the change per unit of load factor with the same states."""
         n = self.n
         right_sides = RightHandSides(
-            np.stack([-at.at.residual, force[:n]], axis=1),
+            np.stack([-at.residual, force[:n]], axis=1),
             np.stack([np.zeros(n), move[:n]], axis=1),
             np.array([1.0, 0.0]),
         )
         x, _ = self._columns(at, right_sides, self._choose(at.contact_state))
         return x[:, 0], x[:, 1]
 
-    def rate(self, at: Along, force: Floats, move: Floats) -> tuple[Floats, int]:
+    def rate(self, at: Evaluation, force: Floats, move: Floats) -> tuple[Floats, int]:
         """Change per unit of load factor with the states of a point, and negative pivots.
 
         The pivots are those of the bodies: one for each closed constraint is taken off.
@@ -154,7 +126,7 @@ class ContactPathEquations(ContactEquations):
 
     def rate_with(
         self,
-        at: Along,
+        at: Evaluation,
         states: States,
         force: Floats,
         move: Floats,
@@ -182,7 +154,7 @@ class ContactPathEquations(ContactEquations):
         """All unknowns for forces of shape (n_dofs,), with the last factorization."""
         return np.concatenate(self.border.correct_with_last_factor(rhs))
 
-    def ahead(self, at: Along, rate: Floats) -> float:
+    def ahead(self, at: Evaluation, rate: Floats) -> float:
         """Whether state changes since the commit continue along a direction.
 
         Where a constraint closed its pressure grows from zero; where one opened its gap does;
@@ -211,29 +183,26 @@ class ContactPathEquations(ContactEquations):
 
     def commit(self) -> None:
         """Accept the last evaluated state, of bodies and contact."""
-        assert self._now is not None
-        z, at, step_time = self._now
+        u, self.contact_state = self.contact_term.last
         self.system.commit()
-        self.contact_state = at.contact_state
-        self.notes += self.accept(z[: self.n], step_time)
+        self.notes += self.accept(u, self.contact_state.time)
         self._base, self._fresh = None, True
 
     # -- parts -------------------------------------------------------------------------
 
-    def _settled(self, at: Along) -> States:
+    def _settled(self, at: Evaluation) -> States:
         """States of a point: as the last correction left them, if one was made."""
-        if at.states is None:
+        state = at.contact_state
+        if not state.settled:
             corrected = self.last if self.corrections else None
             before: Any = corrected or [None] * len(self.contact_term.pairs)
-            at.states = [
+            state.settled = [
                 pair.states(terms, p, q, last)
-                for (pair, terms, (p, q)), last in zip(
-                    self._pairs(at.contact_state), before, strict=True
-                )
+                for (pair, terms, (p, q)), last in zip(self._pairs(state), before, strict=True)
             ]
-        return at.states
+        return state.settled
 
-    def gap_rates(self, at: Along, rate: Floats) -> list[tuple[Floats, Floats]]:
+    def gap_rates(self, at: Evaluation, rate: Floats) -> list[tuple[Floats, Floats]]:
         """Change of weighted gaps and slips of each pair along a direction."""
         moved = np.append(rate[: self.n], 0.0)
         out = []
@@ -246,7 +215,7 @@ class ContactPathEquations(ContactEquations):
         return out
 
     def _held(
-        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
+        self, at: Evaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int, States]:
         """Correction with unchanged states: on a path, a singular stiffness is a critical point.
 
@@ -270,4 +239,4 @@ def path_system(system: System, notes: list[str]) -> Any:
     return ContactPathEquations(system, notes) if system.contact_term.pairs else SmoothPath(system)
 
 
-__all__ = ["SLIPS", "Along", "ContactPathEquations", "path_system"]
+__all__ = ["SLIPS", "ContactPathEquations", "path_system"]

@@ -27,11 +27,8 @@ from corota.errors import SingularError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.problem import (
-        ContactEvaluation,
-        ContactProblem,
-        RightHandSides,
-    )
+    from corota.analysis.evaluation import Evaluation
+    from corota.analysis.terms.contact.problem import ContactProblem, RightHandSides
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
@@ -71,13 +68,13 @@ class Pivoting:
     Parameters
     ----------
     problem : ContactProblem
-    at : ContactEvaluation
+    at : Evaluation
     right_sides : RightHandSides
         One right-hand side.
     """
 
     def __init__(
-        self, problem: ContactProblem, at: ContactEvaluation, right_sides: RightHandSides
+        self, problem: ContactProblem, at: Evaluation, right_sides: RightHandSides
     ) -> None:
         self.problem, self.at, self.right_sides = problem, at, right_sides
         self.pairs = list(problem._pairs(at.contact_state))
@@ -393,9 +390,7 @@ class Pivoting:
         return out, slip_direction
 
 
-def pivoted(
-    problem: ContactProblem, at: ContactEvaluation, right_sides: RightHandSides
-) -> Found | None:
+def pivoted(problem: ContactProblem, at: Evaluation, right_sides: RightHandSides) -> Found | None:
     """A correction with states from the whole linearized problem; None if there is none."""
     pairs = list(problem._pairs(at.contact_state))
     first = [pair.states(terms, p, q) for pair, terms, (p, q) in pairs]
@@ -418,7 +413,7 @@ def _small(problem: ContactProblem) -> float:
 
 def responses(
     problem: ContactProblem,
-    at: ContactEvaluation,
+    at: Evaluation,
     states: States,
     slip_directions: list[Floats],
     right_sides: RightHandSides,
@@ -439,14 +434,12 @@ def responses(
     release = np.zeros_like(both)
     release[:, 0] = -right_sides.own[0] * at.contact_state.multipliers
     du, dp, _ = problem.border.solve(
-        at.at, coupling, np.column_stack(columns), both, release, constrained
+        at, coupling, np.column_stack(columns), both, release, constrained
     )
     return du, dp
 
 
-def rates_of(
-    problem: ContactProblem, at: ContactEvaluation, du: Floats, only: int | None = None
-) -> Any:
+def rates_of(problem: ContactProblem, at: Evaluation, du: Floats, only: int | None = None) -> Any:
     """Changes of weighted gaps and slips of each pair, or one, with columns of displacements."""
     moved = np.stack([problem.system.in_space(u) for u in du.reshape(problem.n, -1).T], axis=1)
     moved = np.concatenate([moved, np.zeros((1, moved.shape[1]))])

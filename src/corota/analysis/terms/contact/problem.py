@@ -1,4 +1,4 @@
-"""An increment with contact: evaluation, right-hand sides, interface of the problem."""
+"""An increment with contact: right-hand sides, interface of the problem."""
 
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
@@ -15,43 +15,12 @@ if TYPE_CHECKING:
     from corota.analysis.evaluation import Evaluation
     from corota.analysis.linear.coupling import Coupling
     from corota.analysis.linear.saddle_point import SaddlePointSystem
-    from corota.analysis.terms.contact.contact import ContactState, ContactTerm
+    from corota.analysis.terms.contact.contact import ContactTerm
+    from corota.analysis.terms.contact.gaps import ContactState, Kink
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int64]
     States = list[NDArray[np.int8]]
-
-
-@dataclass
-class ContactEvaluation:
-    """Evaluation of a system and its contact.
-
-    Parameters
-    ----------
-    at : Evaluation
-        Of the system; its internal force holds that of contact.
-    contact_state : ContactState
-    """
-
-    at: Evaluation
-    contact_state: ContactState
-
-    @property
-    def residual(self) -> Floats:
-        """That of equilibrium, and zeros for the multipliers."""
-        return np.concatenate([self.at.residual, np.zeros(len(self.contact_state.multipliers))])
-
-    @property
-    def internal(self) -> Floats:
-        return self.at.internal
-
-    @property
-    def external(self) -> Floats:
-        return self.at.external
-
-    @property
-    def scale(self) -> Floats:
-        return self.at.scale
 
 
 @dataclass
@@ -100,8 +69,6 @@ class ContactProblem(Protocol):
         Kinks tried, and corrections in which one carried more than its jump.
     places : list of ndarray
         Displacements of the last three evaluations.
-    time : float
-        Step time of the last evaluation.
     stage : str
         How the last correction was found.
     """
@@ -121,12 +88,11 @@ class ContactProblem(Protocol):
     cautious: bool
     pivoting: bool
     loose: str
-    kink: Any
+    kink: Kink | None
     kinks: int
     beyond: int
     inherits: bool
     places: list[Floats]
-    time: float
     stage: str
 
     @property
@@ -134,7 +100,7 @@ class ContactProblem(Protocol):
         """Linear algebra with the multipliers."""
         ...
 
-    def complementarity(self, at: ContactEvaluation) -> tuple[float, int, int]:
+    def complementarity(self, at: Evaluation) -> tuple[float, int, int]:
         """Largest contact residual as a force; its pair and constraint."""
         ...
 
@@ -149,22 +115,22 @@ class ContactProblem(Protocol):
     ) -> tuple[Coupling, Floats, int]: ...
 
     def _solve(
-        self, at: ContactEvaluation, states: States, right_sides: RightHandSides
+        self, at: Evaluation, states: States, right_sides: RightHandSides
     ) -> tuple[Floats, Floats, int]: ...
 
     def _columns(
-        self, at: ContactEvaluation, right_sides: RightHandSides, states: States
+        self, at: Evaluation, right_sides: RightHandSides, states: States
     ) -> tuple[Floats, int]: ...
 
     def _far(self, du: Floats, right_sides: RightHandSides) -> bool: ...
 
     def _let_slip(
         self,
-        at: ContactEvaluation,
+        at: Evaluation,
         states: States,
         right_sides: RightHandSides,
         found: tuple[Floats, Floats, int],
     ) -> tuple[Floats, Floats, int, States]: ...
 
 
-__all__ = ["ContactEvaluation", "ContactProblem", "RightHandSides"]
+__all__ = ["ContactProblem", "RightHandSides"]

@@ -22,11 +22,13 @@ Optim. 14 (1976).
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from corota.analysis.newton import ElementFailure, GiveUp, Outcome, newton
+from corota.analysis.failure import ElementFailure, GiveUp
+from corota.analysis.newton import Outcome, newton
+from corota.analysis.rule import REST, Rule
 from corota.analysis.terms.contact.damped_motion import REMAINS, come_to_rest
 from corota.analysis.terms.contact.equations import (
     MAX_EXTRA_CONTACT_ITERATIONS,
@@ -41,9 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from corota.analysis.equations import System
-    from corota.analysis.evaluation import Evaluation
     from corota.analysis.newton import ResidualNorms, Settings
-    from corota.analysis.terms.contact.problem import ContactEvaluation
 
     Floats = NDArray[np.float64]
 
@@ -74,11 +74,11 @@ def relax(
     step_time: float,
     settings: Settings,
     report: Callable[[int, ResidualNorms, float, str], None] | None = None,
-    inner: Any = None,
+    rule: Rule = REST,
     nearby: bool = False,
     aid: Aid = "",
-) -> tuple[Outcome[Evaluation], ContactEquations]:
-    """Find an equilibrium by creep; in dynamics (`inner`) with the inertia of an increment.
+) -> tuple[Outcome, ContactEquations]:
+    """Find an equilibrium by creep; in dynamics (by its `rule`) with the inertia of an increment.
 
     The other parameters and the results are those of
     :func:`corota.analysis.terms.contact.newton.solve_increment`.
@@ -91,7 +91,7 @@ def relax(
         Whether the bodies drift where no positions are found, or start where a damped motion brings
         them to rest.
     """
-    creep = _Creep(inner or system, system, u, prescribed, step_time, settings, report)
+    creep = _Creep(rule, system, u, prescribed, step_time, settings, report)
     creep.aid = aid
     if nearby:
         creep.within = u.copy()
@@ -103,7 +103,7 @@ class _Creep:
 
     def __init__(
         self,
-        inner: Any,
+        rule: Rule,
         system: System,
         u: Floats,
         prescribed: Floats,
@@ -112,7 +112,7 @@ class _Creep:
         report: Callable[[int, ResidualNorms, float, str], None] | None,
     ) -> None:
         self.system, self.step_time, self.report = system, step_time, report
-        self.problem = ContactEquations(inner, system)
+        self.problem = ContactEquations(system, rule)
         self.z = self.problem.start(u)
         self.left = prescribed - u  # that supports still have to move
         most = settings.max_iterations + MAX_EXTRA_CONTACT_ITERATIONS
@@ -130,7 +130,7 @@ class _Creep:
         self.farthest = FARTHEST * self.edge
         self.stiffness = self.problem.contact_term.nodal
 
-    def run(self) -> Outcome[ContactEvaluation]:
+    def run(self) -> Outcome:
         if self.aid == "motion":
             out = self._from_rest()
             if out.converged or not self.moved:
@@ -165,13 +165,13 @@ class _Creep:
                 break
         return self._missed(out)
 
-    def _found(self, out: Outcome[ContactEvaluation]) -> Outcome[ContactEvaluation]:
+    def _found(self, out: Outcome) -> Outcome:
         out.iterations = self.corrections
         by = "a damped motion and relaxation" if self.moved else "relaxation"
         out.note = f"found by {by} in {self.corrections} iterations"
         return out
 
-    def _missed(self, out: Outcome[ContactEvaluation]) -> Outcome[ContactEvaluation]:
+    def _missed(self, out: Outcome) -> Outcome:
         out.converged = False
         out.iterations = self.corrections
         out.reason = (
@@ -179,16 +179,16 @@ class _Creep:
         )
         return out
 
-    def _from_rest(self) -> Outcome[ContactEvaluation]:
+    def _from_rest(self) -> Outcome:
         """An equilibrium without springs, from where a damped motion brings the bodies to rest."""
         n, term = self.problem.n, self.system.contact_term
         begin, left = self.z, self.left
         reason = "a damped motion did not bring the bodies to rest"
-        out: Outcome[ContactEvaluation] = Outcome(False, begin, None, reason=reason)
+        out: Outcome = Outcome(False, begin, None, reason=reason)
         for remains in REMAINS:
             rest = come_to_rest(self.system, begin[:n], left, self.step_time, self.edge, remains)
             if rest is None:
-                term.restore()
+                term.revert()
                 continue
             self.moved = True
             self.z, self.left = np.concatenate([rest.u, rest.multipliers]), np.zeros_like(left)
@@ -220,7 +220,7 @@ class _Creep:
         problem.last, problem.relaxing = states, True
         problem.since = self.z[: problem.n].copy()
         if share:
-            problem.brake = (share * self.stiffness, problem.since)
+            self.system.contact_term.springs = (share * self.stiffness, problem.since)
 
     def _drift(self, corrections: int) -> float:
         """Take single corrections, with contact states from the whole linearized problem.
@@ -238,12 +238,12 @@ class _Creep:
             support[:n] = part * self.left
             self.corrections += 1
             try:
-                at = problem.evaluate(self.z.copy(), self.step_time)
+                at = problem.evaluate(self.z.copy(), self.step_time, problem.rule)
                 dz, _ = problem.predict(at, support)
                 moved = self._largest(dz)
                 length = min(1.0, farthest / moved) if moved else 1.0
                 z = self.z + length * dz
-                at = problem.evaluate(z, self.step_time)
+                at = problem.evaluate(z, self.step_time, problem.rule)
                 missed = bool(problem.refuse(at, z))
             except (ElementFailure, GiveUp, SingularError):
                 missed = True
@@ -258,9 +258,9 @@ class _Creep:
                 self.report(self.corrections, norms, length * moved, said)
         return min(share, LARGEST)
 
-    def _place(self, share: float) -> Outcome[ContactEvaluation]:
+    def _place(self, share: float) -> Outcome:
         """The next position, with springs of a fraction of the nodal stiffness."""
-        problem, n = self.problem, self.problem.n
+        problem, n, rule = self.problem, self.problem.n, self.problem.rule
         states = problem.last
         self._begin(share)
         target = self.z.copy()
@@ -276,7 +276,7 @@ class _Creep:
                 self.report(self.corrections, norms, correction, f"{said}; {note}".strip("; "))
 
         try:
-            out = newton(problem, self.z, target, self.step_time, settings, None, report)
+            out = newton(problem, self.z, target, self.step_time, settings, None, report, rule)
         except SingularError as error:
             out = Outcome(False, self.z, None, reason=f"singular tangent: {error}")
             self.corrections += 1

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corota.analysis.newton import GiveUp
+from corota.analysis.failure import GiveUp
 from corota.analysis.terms.contact.pair import COVERED, OPEN
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from corota.analysis.terms.contact.contact import ContactState
+    from corota.analysis.terms.contact.gaps import ContactState
     from corota.analysis.terms.contact.problem import ContactProblem
 
     States = list[NDArray[np.int8]]

@@ -1,0 +1,109 @@
+"""A term from outside the package that acts on velocities: an eddy-current brake."""
+
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import corota as ct
+from corota.analysis.evaluation import Evaluation
+from corota.analysis.terms.term import TERMS, StatePoint, Term
+
+#: Damping of a node in the middle of the field [force*time/length], and half width of the field.
+STRENGTH, WIDTH = 0.4, 1.5
+
+
+class EddyBrake(Term):
+    """Each node that passes a magnet at x = 0 is braked by ``c exp(-(x / w)^2) v``."""
+
+    name = "eddy brake"
+
+    def __init__(self, system: Any, width: float) -> None:
+        self.system, self.width = system, width
+        self.x, self.dofs = system.model.mesh.points[:, 0], np.flatnonzero(system.component == 0)
+
+    def add(self, point: StatePoint, at: Evaluation) -> None:
+        place = (self.x + point.u[self.dofs]) / self.width
+        c, v = STRENGTH * np.exp(-(place**2)), point.v[self.dofs]
+        force, slope = np.zeros((2, self.system.n_dofs))
+        force[self.dofs] = c * v
+        slope[self.dofs] = (point.weights[1] - 2.0 * point.weights[0] * place / self.width * v) * c
+        at.add_damping(force)
+        at.scale += np.abs(force)
+        if len(at.values):
+            self.system.pattern.add_diagonal(at.values, slope)
+
+
+def flying(monkeypatch: pytest.MonkeyPatch, width: float) -> ct.Model:
+    """A block 1 x 0.5 of mass 2 that flies along x from x = -6, at a velocity of 5."""
+    monkeypatch.setitem(TERMS, "eddy brake", lambda system: EddyBrake(system, width))
+    model = ct.Model(ct.mesh.rectangle(1.0, 0.5, 2, 1, origin=(-6.5, 0.0)))
+    model.section("all", element="Q4I", material=ct.Elastic(E=1e4, nu=0.3, rho=4.0))
+    model.fix("all", x=None, y=0.0)
+    model.velocity("all", x=5.0)
+    return model
+
+
+@pytest.mark.filterwarnings("ignore:central differences took")
+@pytest.mark.parametrize(
+    "scheme", ["newmark", "hht", "generalized_alpha", "energy_momentum", "central_difference"]
+)
+def test_a_magnet_takes_a_momentum_that_does_not_depend_on_the_velocity(
+    monkeypatch: pytest.MonkeyPatch, scheme: str
+) -> None:
+    """``m dv = -c(x) dx``: six nodes lose c w sqrt(pi) each, and the energy is heat."""
+    step = ct.Dynamic(period=4.0, increments=200, scheme=scheme)
+    if scheme == "central_difference":
+        step = ct.Dynamic(period=4.0, scheme=scheme)
+    results = ct.solve(flying(monkeypatch, WIDTH), step, threads=1)
+    mass, lost = 2.0, 6.0 * STRENGTH * WIDTH * math.sqrt(math.pi)
+    last = 5.0 - lost / mass
+    momentum = results.history("momentum x")
+    # Velocities of central differences are half an increment late: c dt / 2 m of the loss.
+    late = 0.5 * 6.0 * STRENGTH / mass * results.frames[-1].scalars["dt"]
+    near = 2e-3 + (lost * late / (mass * last) if scheme == "central_difference" else 0.0)
+    assert momentum[0] == pytest.approx(mass * 5.0, rel=1e-9)
+    assert momentum[-1] == pytest.approx(mass * last, rel=near)
+    heat = 0.5 * mass * (25.0 - last**2)
+    assert results.history("ALLVD")[-1] == pytest.approx(heat, rel=5e-3 + near)
+    assert max(np.abs(results.history("energy balance error"))) < 5e-3
+
+
+@pytest.mark.parametrize("scheme", ["newmark", "hht", "energy_momentum"])
+def test_a_uniform_field_is_a_dashpot_at_each_node(
+    monkeypatch: pytest.MonkeyPatch, scheme: str
+) -> None:
+    """From the first acceleration on: in one long increment, and in several."""
+    for increments in (1, 5):
+        found = []
+        for own in (True, False):
+            model = flying(monkeypatch, 1e9)
+            if not own:
+                monkeypatch.delitem(TERMS, "eddy brake")
+                for node in range(model.mesh.n_nodes):
+                    model.dashpot(node, x=STRENGTH)
+            step = ct.Dynamic(period=1.0, increments=increments, scheme=scheme, tolerance=1e-12)
+            results = ct.solve(model, step, threads=1)
+            found.append([(f.U, f.V[:, :2], f.A[:, :2]) for f in results.frames])
+        assert np.array(found[0]) == pytest.approx(np.array(found[1]), abs=1e-8)
+
+
+def test_linear_procedures_have_its_damping(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Decay of the modes of a block on a spring, and the response at its resonance."""
+    found = []
+    for own in (True, False):
+        model = flying(monkeypatch, 1e9)
+        model.velocities.clear()
+        model.fix("left", x=0.0, y=None)
+        if not own:
+            monkeypatch.delitem(TERMS, "eddy brake")
+            for node in range(model.mesh.n_nodes):
+                model.dashpot(node, x=STRENGTH)
+        modes = ct.solve(model, ct.Frequency(modes=2, complex_modes=True), threads=1).modes[0]
+        assert abs(np.asarray(modes.growth)).min() > 0.1
+        found.append(np.concatenate([modes.factors, modes.growth]))
+    assert found[0] == pytest.approx(found[1], rel=1e-9)
